@@ -11,7 +11,7 @@ use std::path::Path;
 
 /// Sources without sentences for the screen: names for graphics tools, keywords of files and
 /// reports, and the page's API and its test programs, whose messages are English.
-const NOT_SHOWN: [&str; 13] = [
+const NOT_SHOWN: [&str; 14] = [
     "crates/session/src/report.rs",
     "src/app/api.rs",
     "src/app/api/error.rs",
@@ -23,6 +23,7 @@ const NOT_SHOWN: [&str; 13] = [
     "src/platform/native/reader.rs",
     "src/web_api.rs",
     "src/render/pipelines.rs",
+    "src/render/pipelines/stage.rs",
     "src/render/renderer.rs",
     "src/render/targets.rs",
 ];

@@ -3,7 +3,7 @@
 use eframe::wgpu;
 use std::borrow::Cow;
 
-/// A buffer that is made anew only to become larger.
+/// A buffer that is replaced only by a larger one.
 pub(super) struct GrowingBuffer {
     label: &'static str,
     usage: wgpu::BufferUsages,
@@ -12,8 +12,7 @@ pub(super) struct GrowingBuffer {
 
 /// Makes a buffer that holds `contents`.
 ///
-/// It is never mapped: where a device is dying a browser refuses that by an exception, which wgpu
-/// takes for a reason to stop.
+/// It is never mapped: on a lost device, browsers throw an exception there, and wgpu panics.
 pub(super) fn filled_buffer(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
@@ -43,7 +42,7 @@ impl GrowingBuffer {
         Self { label, usage: usage | wgpu::BufferUsages::COPY_DST, buffer: None }
     }
 
-    /// Writes `bytes`. Returns whether the buffer was made anew.
+    /// Writes `bytes`. Returns whether the buffer was replaced.
     pub(super) fn write(
         &mut self,
         device: &wgpu::Device,
@@ -69,8 +68,8 @@ impl GrowingBuffer {
     }
 }
 
-/// Writes `blocks` to `out`, each at a multiple of `stride`, and one block of zeros more so
-/// that no window reaches past the end.
+/// Writes `blocks` to `out`, each at a multiple of `stride`, and one more block of zeros, so that no
+/// binding reaches past the end.
 pub(super) fn spaced<T: bytemuck::Pod>(blocks: &[T], stride: usize, out: &mut Vec<u8>) {
     out.clear();
     out.resize(stride * (blocks.len() + 1), 0);
@@ -79,7 +78,7 @@ pub(super) fn spaced<T: bytemuck::Pod>(blocks: &[T], stride: usize, out: &mut Ve
     }
 }
 
-/// Binds one block of a buffer of uniform blocks.
+/// Makes a bind group for one block of a buffer of uniform blocks.
 pub(super) fn uniform_group(
     device: &wgpu::Device,
     layout: &wgpu::BindGroupLayout,

@@ -1,4 +1,4 @@
-//! The stage as a part of egui's picture.
+//! The stage as a paint callback of egui.
 
 use super::StageRenderer;
 use eframe::egui::{self, PaintCallbackInfo, epaint::ViewportInPixels};
@@ -10,7 +10,7 @@ use segue_scene::Stage;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Makes the renderer and leaves it with egui's. Call it once, when the app is created.
+/// Makes the renderer, and stores it in egui's resources. Call it once, when the app is created.
 pub(crate) fn install(render_state: &RenderState) {
     let (device, queue, adapter) =
         (&render_state.device, &render_state.queue, &render_state.adapter);
@@ -18,10 +18,10 @@ pub(crate) fn install(render_state: &RenderState) {
     render_state.renderer.write().callback_resources.insert(renderer);
 }
 
-/// A shape that shows `stage` in `rect`. Every stage of the page has an `id` of its own.
+/// Returns a shape that shows `stage` in `rect`. Every stage of the page has an `id` of its own.
 ///
-/// Keep the `Arc` and change the stage with `Arc::make_mut` in the next frame: egui has let go of
-/// it by then, so that nothing is copied.
+/// Keep the `Arc`, and change the stage with `Arc::make_mut` in the next frame. egui has dropped its
+/// handle by then, so that nothing is copied.
 pub(crate) fn paint_callback(
     id: u64,
     rect: egui::Rect,
@@ -35,11 +35,11 @@ pub(crate) fn paint_callback(
     ))
 }
 
-/// What stood still for so long is drawn finely where moving things are drawn coarsely.
+/// The time without a change after which a coarsely drawn stage is drawn finely.
 const REFINE_AFTER: Duration = Duration::from_millis(200);
 
-/// The size in physical pixels of the target for a stage in `rect`: what its panes' viewports
-/// divide.
+/// Returns the size in physical pixels of the target for a stage in `rect`. The viewports of the
+/// panes divide it.
 pub(crate) fn stage_pixels(ctx: &egui::Context, rect: egui::Rect) -> [u32; 2] {
     let pixels_per_point = ctx.pixels_per_point();
     let screen = ctx.content_rect().size() * pixels_per_point;

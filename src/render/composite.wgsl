@@ -1,4 +1,4 @@
-// Puts the finished stage into the page: pixel by pixel, or stretched where it is smaller.
+// Copies the finished stage into the page, pixel by pixel, or stretched where it is smaller.
 
 @group(0) @binding(0) var stage: texture_2d<f32>;
 @group(0) @binding(1) var linearly: sampler;
@@ -21,13 +21,13 @@ fn texel(uv: vec2f) -> vec3f {
     return textureSampleLevel(stage, linearly, uv, 0.0).rgb;
 }
 
-// The page's target takes encoded colours as they are.
+// For a target of the page that takes encoded colours.
 @fragment
 fn fs_encoded(in: Pixel) -> @location(0) vec4f {
     return vec4f(texel(in.uv), 1.0);
 }
 
-// The page's target encodes what is written.
+// For a target of the page that encodes linear colours.
 @fragment
 fn fs_linear(in: Pixel) -> @location(0) vec4f {
     let c = texel(in.uv);

@@ -4,31 +4,31 @@ use super::frame::{FigureDraw, PaneDraw, SkinDraw};
 use super::layout::ViewUniform;
 use super::light::LightMap;
 use super::mesh::ConeBuffers;
-use super::pipelines::{Brush, Pipelines};
+use super::pipelines::{PipelineKind, Pipelines};
 use super::skins::SkinStore;
 use super::view::View;
 use eframe::wgpu;
 use std::cell::Cell;
 
-/// Writes the drawing commands of one stage, whose buffers are filled.
+/// An encoder of the drawing commands of one stage, whose buffers are filled.
 pub(super) struct StageEncoder<'a> {
     pub(super) pipelines: &'a Pipelines,
     pub(super) fine: &'a ConeBuffers,
     pub(super) coarse: &'a ConeBuffers,
-    /// Takes the place of the light map where there is none.
+    /// The map that is bound where there is no light map.
     pub(super) unlit: &'a LightMap,
     pub(super) light: Option<&'a LightMap>,
     pub(super) skins: &'a SkinStore,
-    /// Distance between the uniform blocks of panes, bytes.
+    /// The distance between the uniform blocks of panes, bytes.
     pub(super) view_stride: usize,
-    /// Distance between the uniform blocks of figures, bytes.
+    /// The distance between the uniform blocks of figures, bytes.
     pub(super) figure_stride: usize,
     pub(super) view: &'a View,
 }
 
 impl StageEncoder<'_> {
-    /// Draws what the main light sees. Returns `false` where something is left out because its
-    /// pipeline is yet to be made.
+    /// Draws the light map. Returns `false` where something is left out because its pipeline is not
+    /// made yet.
     fn encode_light(&self, light: &LightMap, encoder: &mut wgpu::CommandEncoder) -> bool {
         let view = self.view;
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -43,7 +43,7 @@ impl StageEncoder<'_> {
             }),
             ..Default::default()
         });
-        // The map itself is being drawn.
+        // The map cannot be bound while it is drawn into.
         pass.set_bind_group(1, &self.unlit.bound, &[]);
         let mut complete = true;
         for (index, pane) in view.drawn.panes.iter().enumerate() {
@@ -62,28 +62,29 @@ impl StageEncoder<'_> {
                 view.drawn.solid_skins.get(pane.solid_skins.clone()).unwrap_or_default();
             let glass = figures
                 .iter()
-                .filter(|figure| figure.in_light)
+                .filter(|figure| figure.casts_key_shadow)
                 .filter_map(|figure| figure.skin.as_ref());
             if let (Some(limbs), Some(pipeline)) = (
                 view.limbs
                     .buffer
                     .as_ref()
                     .filter(|_| figures.iter().any(|figure| !figure.limbs().is_empty())),
-                self.pipelines.get(Brush::Cast),
+                self.pipelines.get(PipelineKind::Cast),
             ) {
                 pass.set_pipeline(pipeline);
                 pass.set_vertex_buffer(0, self.coarse.vertices.slice(..));
                 pass.set_vertex_buffer(1, limbs.slice(..));
                 pass.set_index_buffer(self.coarse.indices.slice(..), wgpu::IndexFormat::Uint16);
-                for figure in
-                    figures.iter().filter(|figure| figure.in_light && !figure.limbs().is_empty())
+                for figure in figures
+                    .iter()
+                    .filter(|figure| figure.casts_key_shadow && !figure.limbs().is_empty())
                 {
                     pass.draw_indexed(0..self.coarse.index_count, 0, figure.limbs());
                 }
             }
             let mut skins = solid_skins.iter().chain(glass).peekable();
             if skins.peek().is_some() {
-                let pipeline = self.pipelines.get(Brush::SkinCast);
+                let pipeline = self.pipelines.get(PipelineKind::SkinCast);
                 complete &= pipeline.is_some();
                 if let Some(pipeline) = pipeline {
                     pass.set_pipeline(pipeline);
@@ -94,8 +95,8 @@ impl StageEncoder<'_> {
         complete
     }
 
-    /// Draws all panes. Returns `false` where something is left out because its pipeline is yet to
-    /// be made.
+    /// Draws all panes. Returns `false` where something is left out because its pipeline is not made
+    /// yet.
     pub(super) fn encode(&self, encoder: &mut wgpu::CommandEncoder) -> bool {
         let view = self.view;
         let is_lit = view.drawn.panes.iter().any(|pane| pane.lit.is_some());
@@ -116,7 +117,7 @@ impl StageEncoder<'_> {
                         b: clear[2],
                         a: 1.0,
                     }),
-                    // The samples are done with once they are resolved.
+                    // The samples are not needed once they are resolved.
                     store: if targets.samples.is_some() {
                         wgpu::StoreOp::Discard
                     } else {
@@ -153,8 +154,8 @@ impl StageEncoder<'_> {
         complete
     }
 
-    /// Draws one pane. Returns `false` where something is left out because its pipeline is yet to
-    /// be made.
+    /// Draws one pane. Returns `false` where something is left out because its pipeline is not made
+    /// yet.
     fn encode_pane(&self, pass: &mut wgpu::RenderPass<'_>, pane: &PaneDraw) -> bool {
         let view = self.view;
         let (Some(limbs), Some(strokes), Some(rings)) =
@@ -163,8 +164,8 @@ impl StageEncoder<'_> {
             return true;
         };
         let complete = Cell::new(true);
-        let take = |pass: &mut wgpu::RenderPass<'_>, brush| {
-            let pipeline = self.pipelines.get(brush);
+        let set = |pass: &mut wgpu::RenderPass<'_>, kind| {
+            let pipeline = self.pipelines.get(kind);
             if let Some(pipeline) = pipeline {
                 pass.set_pipeline(pipeline);
             }
@@ -182,50 +183,53 @@ impl StageEncoder<'_> {
             );
         };
 
-        // The ground, and what lies on it. Bodies stand above it: nothing of it can hide them.
-        if take(pass, Brush::Ground) {
+        // The ground and what lies on it, without depth: it cannot hide the bodies above it.
+        if set(pass, PipelineKind::Ground) {
             pass.draw(0..3, 0..1);
         }
         let casts = figures().any(|figure| !figure.casting.is_empty());
-        if casts && take(pass, Brush::Shadow) {
+        if casts && set(pass, PipelineKind::Shadow) {
             pass.set_vertex_buffer(0, limbs.slice(..));
-            // Limbs that follow each other in the buffer are drawn at once.
-            let mut waiting = 0..0;
+            // Limbs that are adjacent in the buffer are drawn at once.
+            let mut adjacent = 0..0;
             for FigureDraw { casting, .. } in figures().filter(|figure| !figure.casting.is_empty())
             {
-                if casting.start == waiting.end {
-                    waiting.end = casting.end;
+                if casting.start == adjacent.end {
+                    adjacent.end = casting.end;
                 } else {
-                    pass.draw(0..4, std::mem::replace(&mut waiting, casting.clone()));
+                    pass.draw(0..4, std::mem::replace(&mut adjacent, casting.clone()));
                 }
             }
-            pass.draw(0..4, waiting);
+            pass.draw(0..4, adjacent);
         }
-        if pane.lit.is_some() && take(pass, Brush::KeyShadow) {
+        if pane.lit.is_some() && set(pass, PipelineKind::KeyShadow) {
             pass.draw(0..4, 0..1);
         }
-        if (casts || pane.lit.is_some()) && take(pass, Brush::Shade) {
+        if (casts || pane.lit.is_some()) && set(pass, PipelineKind::Shade) {
             pass.draw(0..3, 0..1);
         }
         let quads = |pass: &mut wgpu::RenderPass<'_>,
-                     brush,
+                     kind,
                      buffer: &wgpu::Buffer,
                      range: &std::ops::Range<u32>| {
-            if !range.is_empty() && take(pass, brush) {
+            if !range.is_empty() && set(pass, kind) {
                 pass.set_vertex_buffer(0, buffer.slice(..));
                 pass.draw(0..4, range.clone());
             }
         };
-        quads(pass, Brush::FlatLine, strokes, &pane.strokes[0]);
-        quads(pass, Brush::Ring, rings, &pane.rings);
+        quads(pass, PipelineKind::FlatLine, strokes, &pane.strokes[0]);
+        quads(pass, PipelineKind::Ring, rings, &pane.rings);
 
         let has_edges = view.drawn.views.first().is_some_and(ViewUniform::has_edges);
         let solids = || figures().filter(|figure| !figure.ghost && !figure.limbs().is_empty());
-        // Fronts first: what is hidden need not be lit, and bodies are mostly limbs within limbs.
-        for (brush, wanted) in
-            [(Brush::Front, true), (Brush::Solid, true), (Brush::Edge, has_edges)]
-        {
-            if wanted && solids().next().is_some() && take(pass, brush) {
+        // The depths of fronts come first, so that hidden surfaces are not lit: most limbs are inside
+        // others.
+        for (kind, wanted) in [
+            (PipelineKind::Front, true),
+            (PipelineKind::Solid, true),
+            (PipelineKind::Edge, has_edges),
+        ] {
+            if wanted && solids().next().is_some() && set(pass, kind) {
                 pass.set_vertex_buffer(1, limbs.slice(..));
                 for figure in solids() {
                     set_figure(pass, figure);
@@ -234,31 +238,31 @@ impl StageEncoder<'_> {
             }
         }
         let solid_skins = view.drawn.solid_skins.get(pane.solid_skins.clone()).unwrap_or_default();
-        for (brush, wanted) in [(Brush::Skin, true), (Brush::SkinEdge, has_edges)] {
-            if wanted && !solid_skins.is_empty() && take(pass, brush) {
+        for (kind, wanted) in [(PipelineKind::Skin, true), (PipelineKind::SkinEdge, has_edges)] {
+            if wanted && !solid_skins.is_empty() && set(pass, kind) {
                 for skin in solid_skins {
                     self.draw_skin(pass, skin);
                 }
             }
         }
-        quads(pass, Brush::SpaceLine, strokes, &pane.strokes[1]);
-        // Each ghost first finds its front, then colours it: far ones first.
+        quads(pass, PipelineKind::SpaceLine, strokes, &pane.strokes[1]);
+        // Of each ghost, the depths of the front are drawn, then its colours. Far ghosts come first.
         for (number, figure) in figures().filter(|figure| figure.ghost).enumerate() {
             pass.set_stencil_reference(number as u32 % 255 + 1);
             if let Some(skin) = &figure.skin {
-                // Glass has an outline, too.
-                for (brush, wanted) in [
-                    (Brush::SkinFront, true),
-                    (Brush::SkinGhost, true),
-                    (Brush::SkinEdge, figure.in_light && has_edges),
+                // A skin of glass has an outline, too.
+                for (kind, wanted) in [
+                    (PipelineKind::SkinFront, true),
+                    (PipelineKind::SkinGhost, true),
+                    (PipelineKind::SkinEdge, figure.casts_key_shadow && has_edges),
                 ] {
-                    if wanted && take(pass, brush) {
+                    if wanted && set(pass, kind) {
                         self.draw_skin(pass, skin);
                     }
                 }
             } else {
-                for brush in [Brush::Front, Brush::Ghost] {
-                    if take(pass, brush) {
+                for kind in [PipelineKind::Front, PipelineKind::Ghost] {
+                    if set(pass, kind) {
                         pass.set_vertex_buffer(1, limbs.slice(..));
                         set_figure(pass, figure);
                         self.draw_limbs(pass, figure);
@@ -266,11 +270,11 @@ impl StageEncoder<'_> {
                 }
             }
         }
-        quads(pass, Brush::FlatLine, strokes, &pane.strokes[2]);
+        quads(pass, PipelineKind::FlatLine, strokes, &pane.strokes[2]);
         complete.get()
     }
 
-    /// Draws figures in their skin with the pipeline that is set.
+    /// Draws figures in a skin with the current pipeline.
     fn draw_skin(&self, pass: &mut wgpu::RenderPass<'_>, skin: &SkinDraw) {
         let view = self.view;
         let mesh = view.drawn.meshes.get(skin.mesh).and_then(|mesh| self.skins.get(&mesh.0));
@@ -283,7 +287,7 @@ impl StageEncoder<'_> {
         }
     }
 
-    /// Draws the limbs of a figure with the pipeline that is set.
+    /// Draws the limbs of a figure with the current pipeline.
     fn draw_limbs(&self, pass: &mut wgpu::RenderPass<'_>, figure: &FigureDraw) {
         for (mesh, range) in [(self.fine, &figure.fine), (self.coarse, &figure.coarse)] {
             if !range.is_empty() {

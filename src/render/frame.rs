@@ -1,11 +1,11 @@
-//! From the draw list to what the GPU reads: plain bytes and the order of drawing. Nothing here
-//! allocates once it has grown.
+//! Conversion of a draw list to data for the GPU: plain bytes, and the order of drawing. Buffers are
+//! reused, so that a frame like the last one allocates nothing.
 
 use super::instances::{
     bytes, figure_uniform, find_nearest, limb_instance, lowest, ring_instance, stroke_instance,
 };
 use super::layout::{
-    FigureUniform, JointTexels, LimbInstance, NEIGHBOURS, RingInstance, SkinInstance,
+    FigureUniform, JointTexels, LimbInstance, MAX_NEIGHBOURS, RingInstance, SkinInstance,
     StrokeInstance, ViewUniform,
 };
 use super::light;
@@ -16,13 +16,13 @@ use segue_scene::{Color, Figure, Layer, Limb, Pane, Skin, Stage, Viewport};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// From this radius in pixels on a limb is drawn with the fine mesh.
-const FINE_FROM_PIXELS: f32 = 9.0;
+/// The smallest radius of a limb that is drawn with the fine mesh, pixels.
+const MIN_FINE_PIXELS: f32 = 9.0;
 
-/// One body in the instance buffers: of limbs, or in a skin.
+/// A body in the instance buffers, made of limbs or in a skin.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct FigureDraw {
-    /// Its block of [`Frame::figure_uniforms`], where it is of limbs.
+    /// The index of its block in [`Frame::figure_uniforms`], where it is made of limbs.
     pub(super) uniform: usize,
     pub(super) skin: Option<SkinDraw>,
     pub(super) fine: Range<u32>,
@@ -30,13 +30,13 @@ pub(super) struct FigureDraw {
     /// The limbs whose shadow is drawn.
     pub(super) casting: Range<u32>,
     pub(super) ghost: bool,
-    /// Whether it keeps the main light off.
-    pub(super) in_light: bool,
+    /// Whether it casts a shadow of the main light.
+    pub(super) casts_key_shadow: bool,
     depth: f32,
 }
 
 impl FigureDraw {
-    /// Its limbs.
+    /// Returns the range of its limbs.
     pub(super) fn limbs(&self) -> Range<u32> {
         self.fine.start..self.coarse.end
     }
@@ -45,7 +45,7 @@ impl FigureDraw {
 /// Figures in the same skin, one instance each.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct SkinDraw {
-    /// Into [`Frame::meshes`].
+    /// The index in [`Frame::meshes`].
     pub(super) mesh: usize,
     pub(super) instances: Range<u32>,
 }
@@ -60,22 +60,22 @@ impl PartialEq for SharedMesh {
     }
 }
 
-/// One pane in the instance buffers.
+/// A pane in the instance buffers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct PaneDraw {
     pub(super) viewport: Viewport,
-    /// Into [`Frame::figures`]: solid ones first, then ghosts from far to near.
+    /// The range in [`Frame::figures`]: solid ones first, then ghosts from far to near.
     pub(super) figures: Range<usize>,
-    /// Into [`Frame::solid_skins`]: all solid figures in skins.
+    /// The range in [`Frame::solid_skins`] of all solid figures in skins.
     pub(super) solid_skins: Range<usize>,
-    /// Strokes on the ground, in space, and over everything.
+    /// The ranges of the strokes on the ground, in space, and over everything.
     pub(super) strokes: [Range<u32>; 3],
     pub(super) rings: Range<u32>,
     /// The pane's part of the light map, where it has bodies that cast shadows.
     pub(super) lit: Option<Viewport>,
 }
 
-/// A stage, ready for the GPU.
+/// A stage as data for the GPU.
 #[derive(Clone, Default, PartialEq)]
 pub(super) struct Frame {
     pub(super) clear: Color,
@@ -98,7 +98,7 @@ fn clip(viewport: Viewport, [width, height]: [u32; 2]) -> Viewport {
     Viewport { x, y, width: viewport.width.min(width - x), height: viewport.height.min(height - y) }
 }
 
-/// Returns the same part of another target; neighbours stay neighbours.
+/// Returns the same part of another target. Adjacent parts stay adjacent.
 fn stretched(viewport: Viewport, from: [u32; 2], to: [u32; 2]) -> Viewport {
     let place = |at: u32, axis: usize| {
         (f64::from(at) * f64::from(to[axis]) / f64::from(from[axis].max(1))).round() as u32
@@ -166,7 +166,7 @@ impl Frame {
         }
     }
 
-    /// The number of a mesh in this frame.
+    /// Returns the index of a mesh in this frame, and adds it where it is new.
     fn mesh(&mut self, mesh: &Arc<SkinnedMesh>) -> usize {
         let known = self.meshes.iter().position(|known| Arc::ptr_eq(&known.0, mesh));
         known.unwrap_or_else(|| {
@@ -175,7 +175,7 @@ impl Frame {
         })
     }
 
-    /// Adds a figure in its skin; the number of its instance.
+    /// Adds a figure in a skin. Returns the index of its instance.
     fn add_skin(&mut self, pane: &Pane, skin: &Skin, ghost: bool) -> u32 {
         let first = self.joints.len() as u32;
         let transforms = pane.joints.get(skin.joints.clone()).unwrap_or_default();
@@ -186,7 +186,7 @@ impl Frame {
             let shift = transform.translation.extend(red + 256.0 * green + 65_536.0 * blue);
             [transform.rotation.to_array(), shift.to_array()]
         }));
-        // A joint that is no number takes its vertices nowhere.
+        // A joint that is not finite leaves its vertices in the bind pose.
         for [rotation, shift] in self.joints.iter_mut().skip(first as usize) {
             if !rotation.iter().chain(shift.iter()).all(|part| part.is_finite()) {
                 (*rotation, *shift) = ([0.0, 0.0, 0.0, 1.0], [0.0; 4]);
@@ -201,8 +201,7 @@ impl Frame {
         self.skins.len() as u32 - 1
     }
 
-    /// Adds all solid figures in skins: those that share one follow each other, and are drawn at
-    /// once.
+    /// Adds all solid figures in skins. Those with the same mesh are adjacent, and drawn at once.
     fn add_solid_skins(&mut self, pane: &Pane) -> Range<usize> {
         let first = self.solid_skins.len();
         let solids = || {
@@ -217,8 +216,8 @@ impl Frame {
                 continue;
             }
             let start = self.skins.len() as u32;
-            for alike in solids().filter(|other| Arc::ptr_eq(&other.mesh, &skin.mesh)) {
-                self.add_skin(pane, alike, false);
+            for same in solids().filter(|other| Arc::ptr_eq(&other.mesh, &skin.mesh)) {
+                self.add_skin(pane, same, false);
             }
             let instances = start..self.skins.len() as u32;
             self.solid_skins.push(SkinDraw { mesh, instances });
@@ -226,6 +225,7 @@ impl Frame {
         first..self.solid_skins.len()
     }
 
+    /// Adds all figures of a pane but solid ones in skins, which have only their shadows here.
     fn add_figures(
         &mut self,
         pane: &Pane,
@@ -236,11 +236,11 @@ impl Frame {
         let first = self.figures.len();
         let [_, _, back] = pane.camera.axes();
         let plain = quality == Quality::Plain;
-        // Where the main light's shadow is all there is to be, none is soft.
+        // Flat looks have only the main light's shadow, and no soft ones.
         let soft = plain || !flat;
-        // The shadows of high limbs are as wide as the body and hardly seen: where every pixel
-        // costs, only what is low casts one.
-        let only_low = plain || pane.figures.len() > MANY_FIGURES;
+        // The shadows of high limbs are as wide as the body and hardly visible. They are left out
+        // where the number of pixels matters.
+        let only_low = plain || pane.figures.len() > MAX_SHADED_FIGURES;
         for figure in &pane.figures {
             let Some(limbs) = pane.limbs.get(figure.limbs.clone()) else {
                 continue;
@@ -253,7 +253,7 @@ impl Frame {
                 coarse: 0..0,
                 casting: 0..0,
                 ghost: figure.ghost,
-                in_light: light::keeps_off_light(figure),
+                casts_key_shadow: light::casts_key_shadow(figure),
                 depth: 0.0,
             };
             if let Some(skin) = &figure.skin {
@@ -282,7 +282,7 @@ impl Frame {
                     draw.casting = start..start + low.count() as u32;
                 }
             }
-            // Limbs come with the biggest first: the trunk says where the body is.
+            // The first limb is the largest: the trunk, which stands for the body's position.
             let depth = limbs.first().map_or(0.0, |l| -((l.a + l.b) * 0.5).dot(back));
             draw.depth = if depth.is_finite() { depth } else { 0.0 };
             self.figures.push(draw);
@@ -298,7 +298,7 @@ impl Frame {
         first..self.figures.len()
     }
 
-    /// Adds the limbs of a figure that is seen as such.
+    /// Adds the limbs of a figure without a skin.
     fn add_limbs(
         &mut self,
         limbs: &[Limb],
@@ -313,7 +313,7 @@ impl Frame {
             !plain
                 && limb.radius_a.max(limb.radius_b)
                     * pane.camera.pixels_per_metre((limb.a + limb.b) * 0.5, height)
-                    >= FINE_FROM_PIXELS
+                    >= MIN_FINE_PIXELS
         };
         let instance = |limb: &Limb| limb_instance(limb, figure.shadow);
         let start = self.limbs.len() as u32;
@@ -321,12 +321,12 @@ impl Frame {
         let middle = self.limbs.len() as u32;
         self.limbs.extend(limbs.iter().filter(|l| !is_fine(l)).filter_map(instance));
         if middle == start {
-            // The lowest first: theirs are the shadows.
+            // The lowest come first, so that those that cast shadows are adjacent.
             self.limbs[start as usize..].sort_unstable_by(|a, b| lowest(a).total_cmp(&lowest(b)));
         } else if quality == Quality::Full {
-            // Nobody sees how limbs melt in a body that is small all over.
-            let bodys_own = &mut self.limbs[start as usize..];
-            find_nearest(&limbs[..limbs.len().min(NEIGHBOURS)], bodys_own, figure.ghost);
+            // In a body without fine limbs, the blending of limbs is not visible.
+            let instances = &mut self.limbs[start as usize..];
+            find_nearest(&limbs[..limbs.len().min(MAX_NEIGHBOURS)], instances, figure.ghost);
         }
         let end = self.limbs.len() as u32;
         (draw.fine, draw.coarse, draw.casting) = (start..middle, middle..end, start..end);
@@ -335,8 +335,8 @@ impl Frame {
     }
 }
 
-/// With more figures than this in a pane, only their low limbs shade the ground softly.
-const MANY_FIGURES: usize = 12;
+/// The greatest number of figures in a pane whose high limbs cast soft shadows, too.
+const MAX_SHADED_FIGURES: usize = 12;
 
-/// Below this height a limb's soft shadow is worth its pixels where there are few to spend, metres.
+/// The height up to which limbs cast soft shadows where those of high limbs are left out, metres.
 const LOW_SHADOW_HEIGHT_M: f32 = 0.5;

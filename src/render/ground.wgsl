@@ -1,8 +1,9 @@
-// Background and floor of a pane, found per pixel: a pool of light around the focus, and a grid that fades with it.
+// Background and floor of a pane, computed per pixel: a pool of light around the focus, and a grid
+// that fades with it.
 
 struct Pixel {
     @builtin(position) clip: vec4f,
-    // -1 to 1 over the pane, up and right.
+    // -1 to 1 over the pane, to the right and up.
     @location(0) ndc: vec2f,
 }
 
@@ -15,7 +16,7 @@ fn vs_ground(@builtin(vertex_index) index: u32) -> Pixel {
     return out;
 }
 
-// How much of a pixel the lines of a grid of `cell` metres cover, `width` pixels wide.
+// Returns the share of a pixel that the lines of a grid cover. `cell` in metres, `width` in pixels.
 fn grid_cover(at: vec2f, cell: f32, width: f32) -> f32 {
     let uv = at / cell;
     let footprint = max(fwidth(uv), vec2f(1e-6));
@@ -36,12 +37,13 @@ fn ground_color(in: Pixel) -> vec3f {
     let direction = select(ahead, view.forward.xyz, orthographic);
     let steep = select(direction.y, min(direction.y, -1e-5), origin.y > 0.0);
     let t = min(-origin.y / steep, 4000.0);
-    // Measured from the focus' own cell of the grid: digits stay far from the origin.
+    // Measured from the focus' own cell of the grid, so that precision does not suffer far from the
+    // origin.
     let cell = view.more.y;
     let base = floor(view.focus.xz / cell) * cell;
     let at = (origin.xz - base) + direction.xz * t;
     let from_focus = length(at - (view.focus.xz - base)) / view.floor.w;
-    // From here on the derivatives are needed, so nothing branches.
+    // Derivatives are taken below, so nothing may branch.
     let cover = grid_cover(at, cell, view.key.w);
     let facing = f32(origin.y > 0.0 && direction.y < -1e-5);
     let pool = exp(-from_focus * from_focus * 0.9) * facing;
@@ -55,10 +57,10 @@ fn fs_ground(in: Pixel) -> @location(0) vec4f {
     return vec4f(ground_color(in) + dither(in.clip.xy), 1.0);
 }
 
-// Once more in full shadow, blended by what the shadows left of the target's alpha.
+// Draws the ground again in full shadow, blended by the light that is left in the target's alpha.
 @fragment
 fn fs_shade(in: Pixel) -> @location(0) vec4f {
-    // From below the ground is not seen, nor what lies on it.
+    // Seen from below, the ground is invisible, and so are the shadows on it.
     let dark = view.focus.w * f32(view.eye.y > 0.0);
     return vec4f(ground_color(in) * (1.0 - dark * vec3f(1.0, 0.97, 0.90)) + dither(in.clip.xy), 1.0);
 }

@@ -1,4 +1,4 @@
-//! A stage as a picture in memory.
+//! Rendering of a stage to a picture in memory.
 
 use super::StageRenderer;
 use eframe::wgpu;
@@ -16,7 +16,7 @@ pub(crate) struct Image {
     pub(crate) rgba: Vec<u8>,
 }
 
-/// Why there is no picture.
+/// The reason why there is no picture.
 #[derive(Debug, thiserror::Error, segue_text::ToMessage)]
 pub(crate) enum ImageError {
     /// The size is zero or more than the device can draw.
@@ -24,22 +24,22 @@ pub(crate) enum ImageError {
         "a picture of {0} × {1} pixels cannot be drawn: choose a size from 1 × 1 up to what the graphics card allows"
     )]
     Size(u32, u32),
-    /// The device did not hand the pixels out.
+    /// The device did not return the pixels.
     #[error(
         "the graphics card did not give the picture back ({0}): try again, or reload if the picture on the page is gone too"
     )]
     Device(String),
-    /// Packing failed.
+    /// The picture was not encoded.
     #[error("the picture could not be packed as PNG: {why}", why = .0.to_string())]
     Pack(#[from] std::io::Error),
 }
 
-/// Rows copied from a texture start at multiples of this.
+/// The alignment of rows that are copied from a texture, bytes.
 const ROW_ALIGNMENT: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT;
 const SNAPSHOT: u64 = u64::MAX;
 
-/// Draws a stage off the screen and waits for its pixels. Natively only: a page must not wait, it
-/// reads its canvas.
+/// Draws a stage off the screen, and waits for its pixels. Only natively, because a page must not
+/// block; it reads its canvas.
 pub(crate) fn render_to_image(
     renderer: &mut StageRenderer,
     device: &wgpu::Device,
@@ -65,7 +65,7 @@ pub(crate) fn render_to_image(
     image
 }
 
-/// Submits what `encoder` holds, and waits for the pixels of a texture with four bytes each.
+/// Submits the commands of `encoder`, and waits for the pixels of a texture with four bytes each.
 pub(super) fn read_texture(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
@@ -96,7 +96,7 @@ pub(super) fn read_texture(
 
     let (sender, receiver) = mpsc::channel();
     buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
-        // Nobody listens any more when the wait below has failed.
+        // The receiver is gone when the wait below has failed.
         drop(sender.send(result));
     });
     let device_error = |e: &dyn std::fmt::Display| ImageError::Device(e.to_string());
@@ -117,18 +117,18 @@ pub(super) fn read_texture(
 }
 
 impl Image {
-    /// The colour of a pixel from the top left corner; `None` outside.
+    /// Returns the colour of a pixel, counted from the top left corner; `None` outside.
     pub(crate) fn pixel(&self, x: u32, y: u32) -> Option<[u8; 4]> {
         let start = (y as usize * self.width as usize + x as usize) * 4;
         (x < self.width).then(|| self.rgba.get(start..start + 4)?.try_into().ok()).flatten()
     }
 
-    /// The picture as a PNG file (ISO/IEC 15948), 8 bits per channel.
+    /// Returns the picture as a PNG file (ISO/IEC 15948), 8 bits per channel.
     pub(crate) fn to_png(&self) -> Result<Vec<u8>, ImageError> {
         let mut packed = ZlibEncoder::new(Vec::new(), Compression::default());
         let row = self.width as usize * 4;
         for (y, line) in self.rgba.chunks_exact(row.max(1)).enumerate() {
-            // "Up" filter: the difference to the row above packs smooth pictures well.
+            // The filter "up", the difference from the row above, compresses smooth pictures well.
             packed.write_all(&[if y == 0 { 0 } else { 2 }])?;
             if y == 0 {
                 packed.write_all(line)?;
@@ -144,7 +144,7 @@ impl Image {
         let mut header = Vec::new();
         header.extend(self.width.to_be_bytes());
         header.extend(self.height.to_be_bytes());
-        // Depth 8, colour with alpha, deflate, standard filters, no interlace.
+        // Depth 8, colour with alpha, deflate, standard filters, no interlacing.
         header.extend([8, 6, 0, 0, 0]);
         for (kind, content) in [(b"IHDR", &header), (b"IDAT", &data), (b"IEND", &Vec::new())] {
             png.extend((content.len() as u32).to_be_bytes());

@@ -1,14 +1,14 @@
-//! Instances for the GPU from the parts of a draw list.
+//! Conversion of the parts of a draw list to instances for the GPU.
 
 use super::layout::{
-    FigureUniform, LimbInstance, NEAREST, NEIGHBOURS, RingInstance, StrokeInstance,
+    FigureUniform, LimbInstance, MAX_NEAREST, MAX_NEIGHBOURS, RingInstance, StrokeInstance,
 };
 use glam::Vec4;
 use segue_scene::{Color, Figure, Limb, Ring, Stroke};
 
-/// Limbs nearer than this melt into each other, metres.
+/// The distance below which limbs blend into each other, metres.
 const TOUCHING: f32 = 0.02;
-/// Ends the list of the nearest.
+/// The end of a list of nearest limbs.
 const NONE: u8 = 255;
 
 /// Returns a colour in bytes.
@@ -31,7 +31,7 @@ pub(super) fn limb_instance(limb: &Limb, shadow: f32) -> Option<LimbInstance> {
         b: limb.b.extend(limb.radius_b).to_array(),
         flat: limb.flat.extend(limb.flatness).to_array(),
         color: bytes(limb.color),
-        near: [NONE; NEAREST],
+        near: [NONE; MAX_NEAREST],
         shadow,
     })
 }
@@ -56,9 +56,9 @@ pub(super) fn ring_instance(ring: &Ring) -> Option<RingInstance> {
 pub(super) fn figure_uniform(limbs: &[Limb], figure: &Figure) -> FigureUniform {
     let solid = if figure.ghost { 0.0 } else { 1.0 };
     let mut uniform =
-        FigureUniform { about: [solid, 0.0, 0.0, 0.0], neighbours: [[0.0; 4]; 3 * NEIGHBOURS] };
+        FigureUniform { about: [solid, 0.0, 0.0, 0.0], neighbours: [[0.0; 4]; 3 * MAX_NEIGHBOURS] };
     for (limb, triple) in limbs.iter().zip(uniform.neighbours.chunks_exact_mut(3)) {
-        // As the mesh is bent: the flattening is across the axis.
+        // The flattening is across the axis, as in the shader.
         let flat =
             limb.flat - limb.flat.project_onto_normalized((limb.b - limb.a).normalize_or_zero());
         let flatness = if flat.length() > 1e-3 { limb.flatness.max(0.05) } else { 1.0 };
@@ -69,17 +69,17 @@ pub(super) fn figure_uniform(limbs: &[Limb], figure: &Figure) -> FigureUniform {
     uniform
 }
 
-/// Notes for every instance which limbs of its body, by their numbers in `limbs`, touch it or take
-/// the most light from it. A ghost's limbs shade nothing: there only touch counts.
+/// Fills in for every instance the indices in `limbs` of those that touch it or take the most light
+/// from it. The limbs of a ghost shade nothing, so only touching ones count there.
 pub(super) fn find_nearest(limbs: &[Limb], instances: &mut [LimbInstance], ghost: bool) {
     for instance in instances {
         let (a, b) = (Vec4::from(instance.a), Vec4::from(instance.b));
         let points = [a.truncate(), (a.truncate() + b.truncate()) * 0.5, b.truncate()];
         let (half, own_radius) = (points[0].distance(points[2]) * 0.5, a.w.max(b.w));
-        let mut scores = [0.0f32; NEAREST];
+        let mut scores = [0.0f32; MAX_NEAREST];
         for (index, limb) in limbs.iter().enumerate() {
             let radius = limb.radius_a.max(limb.radius_b);
-            // Touching limbs first, then those that fill the most of the view from here.
+            // Touching limbs come first, then those that cover the largest angle seen from here.
             let score_at = |distance: f32, gap: f32| {
                 if gap < TOUCHING { 10.0 - gap } else { radius / distance.max(1e-4) }
             };
@@ -88,7 +88,8 @@ pub(super) fn find_nearest(limbs: &[Limb], instances: &mut [LimbInstance], ghost
             let too_far = ghost && at_least - own_radius - radius >= TOUCHING;
             if too_far
                 || (at_least > 0.0
-                    && score_at(at_least, at_least - own_radius - radius) <= scores[NEAREST - 1])
+                    && score_at(at_least, at_least - own_radius - radius)
+                        <= scores[MAX_NEAREST - 1])
             {
                 continue;
             }
@@ -102,7 +103,7 @@ pub(super) fn find_nearest(limbs: &[Limb], instances: &mut [LimbInstance], ghost
             let span = limb.b - limb.a;
             let scale = span.length_squared().max(1e-9).recip();
             let own_radii = [a.w, 0.5 * (a.w + b.w), b.w];
-            // From both ends and the middle, each with the girths there.
+            // The score is the best of both ends and the middle, each with the radii there.
             let score = (0..3).map(|i| {
                 let t = ((points[i] - limb.a).dot(span) * scale).clamp(0.0, 1.0);
                 let distance = points[i].distance(limb.a + span * t);
@@ -110,8 +111,8 @@ pub(super) fn find_nearest(limbs: &[Limb], instances: &mut [LimbInstance], ghost
                 score_at(distance, distance - own_radii[i] - here)
             });
             let score = score.fold(0.0, f32::max);
-            // Insert into the list, the strongest first.
-            if score > scores[NEAREST - 1] && (score > 5.0 || !ghost) {
+            // Insert into the list in descending order.
+            if score > scores[MAX_NEAREST - 1] && (score > 5.0 || !ghost) {
                 let at = scores.partition_point(|&s| s >= score);
                 scores[at..].rotate_right(1);
                 instance.near[at..].rotate_right(1);

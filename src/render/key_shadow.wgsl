@@ -1,4 +1,5 @@
-// The main light's shadow on the ground: where the pane's part of the light map meets it. The target's alpha keeps what light is left.
+// The main light's shadow on the ground, where the pane's part of the light map meets it. The
+// target's alpha is the share of light that is left.
 
 struct Lit {
     @builtin(position) clip: vec4f,
@@ -11,7 +12,7 @@ fn vs_key_shadow(@builtin(vertex_index) index: u32) -> Lit {
     let across = (view.light_right.xyz * corner.x + view.light_up.xyz * corner.y) * view.light_center.w;
     let start = view.light_center.xyz + across;
     var out: Lit;
-    // The light is never level.
+    // The light is never horizontal.
     out.world = start - view.key.xyz * (start.y / view.key.y);
     out.clip = view.clip_from_world * vec4f(out.world, 1.0);
     return out;

@@ -1,20 +1,20 @@
-//! The bytes that shaders read: instances, vertices and uniform blocks, and the formats of targets.
+//! Memory layouts of instances, vertices and uniform blocks, and the formats of targets.
 
 use eframe::wgpu;
 use segue_scene::Color;
 
-/// Format of a stage's colours. They are kept encoded, as egui keeps its own: blending then looks
-/// the same in the stage and beside it.
+/// The format of a stage's colours. They are sRGB-encoded, as egui's own, so that blending looks the
+/// same in the stage and beside it.
 pub(super) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
-/// Format of a stage's depths.
+/// The format of a stage's depths.
 pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth24PlusStencil8;
-/// Format of the light map.
+/// The format of the light map.
 pub(super) const MAP_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
 
-/// Limbs of one body that melt into the others and shade them.
-pub(super) const NEIGHBOURS: usize = 48;
-/// How many of them a limb looks at.
-pub(super) const NEAREST: usize = 20;
+/// The greatest number of limbs of one body that blend into the others and shade them.
+pub(super) const MAX_NEIGHBOURS: usize = 48;
+/// The greatest number of other limbs that a limb is blended with and shaded by.
+pub(super) const MAX_NEAREST: usize = 20;
 
 /// A limb of limb.wgsl.
 #[repr(C)]
@@ -24,7 +24,7 @@ pub(super) struct LimbInstance {
     pub(super) b: [f32; 4],
     pub(super) flat: [f32; 4],
     pub(super) color: [u8; 4],
-    pub(super) near: [u8; NEAREST],
+    pub(super) near: [u8; MAX_NEAREST],
     pub(super) shadow: f32,
 }
 
@@ -32,12 +32,12 @@ pub(super) struct LimbInstance {
 #[repr(C)]
 #[derive(Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(super) struct SkinInstance {
-    /// The first of its joints; where its colour is from, as in skin.wgsl.
+    /// The index of its first joint, and the source of its colour, as in skin.wgsl.
     pub(super) figure: [u32; 2],
     pub(super) color: [u8; 4],
 }
 
-/// Two texels of a joint: see skin.wgsl.
+/// The two texels of a joint, as in skin.wgsl.
 pub(super) type JointTexels = [[f32; 4]; 2];
 
 /// A piece of a line of line.wgsl.
@@ -85,7 +85,7 @@ pub(super) struct ViewUniform {
 }
 
 impl ViewUniform {
-    /// Returns whether edges are to be seen.
+    /// Returns whether edges are visible.
     pub(super) fn has_edges(&self) -> bool {
         self.edge[3] > 0.0 && self.style[0] > 0.0
     }
@@ -96,7 +96,7 @@ impl ViewUniform {
 #[derive(Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(super) struct FigureUniform {
     pub(super) about: [f32; 4],
-    pub(super) neighbours: [[f32; 4]; 3 * NEIGHBOURS],
+    pub(super) neighbours: [[f32; 4]; 3 * MAX_NEIGHBOURS],
 }
 
 /// A vertex of skin.wgsl.

@@ -1,5 +1,5 @@
-//! What the main light sees: the box about the bodies of a pane, and the map of depths that it is
-//! drawn into.
+//! The main light's shadow map: the box around the bodies of a pane, and the map of depths that they
+//! are drawn into.
 
 use super::layout::MAP_FORMAT;
 use super::pipelines::Pipelines;
@@ -7,28 +7,31 @@ use eframe::wgpu;
 use glam::{Vec2, Vec3};
 use segue_scene::{Figure, Pane, Viewport};
 
-/// Width and height of the map of all panes, texels.
+/// The width and the height of the map of all panes, texels.
 pub(super) const MAP_SIZE: u32 = 2048;
-/// A body farther than this from the middle of the picture casts no shadow: the others' would get
-/// coarse, metres.
-const FARTHEST: f32 = 16.0;
-/// From higher up no shadow reaches the ground: the map's depths would get coarse, metres.
-const HIGHEST: f32 = 30.0;
-/// About every body, for what its limbs do not tell of its skin, metres.
-const MARGIN: f32 = 0.08;
+/// The greatest distance from the pane's focus at which a limb casts a shadow, metres. A farther one
+/// would make the map coarse for the others.
+const MAX_DISTANCE_M: f32 = 16.0;
+/// The greatest height from which a shadow reaches the ground, metres. A greater one would make the
+/// map's depths coarse.
+const MAX_HEIGHT_M: f32 = 30.0;
+/// The margin around every limb, metres, because a skin may be wider than its limbs.
+const MARGIN_M: f32 = 0.08;
 
-/// Whether a figure stands in the main light: solid ones do, and those that are only seen through.
-pub(super) fn keeps_off_light(figure: &Figure) -> bool {
+/// Returns whether a figure casts a shadow of the main light: solid ones do, and those whose skin is
+/// of glass.
+pub(super) fn casts_key_shadow(figure: &Figure) -> bool {
     figure.shadow >= 1.0
 }
 
-/// The box of a pane's bodies, along the light.
+/// A box around a pane's bodies, aligned with the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LightBox {
-    /// Its middle, metres in the world.
+    /// The centre, metres in the world.
     pub(super) center: Vec3,
-    /// Unit: to the right of the map, up on it.
+    /// The unit vector to the right of the map.
     pub(super) right: Vec3,
+    /// The unit vector up on the map.
     pub(super) up: Vec3,
     /// Half of its width and height, metres.
     pub(super) half_width: f32,
@@ -36,14 +39,14 @@ pub(super) struct LightBox {
     pub(super) half_depth: f32,
 }
 
-/// The main light's direction in a pane, from its camera's axes: it stands over the left shoulder,
-/// so that the body is modelled from all sides.
+/// Returns the unit vector towards the main light of a pane. The light is above the left shoulder of
+/// the camera, so that the shape of a body shows from all sides.
 pub(super) fn key_direction(right: Vec3, yaw: f32) -> Vec3 {
     let level_back = Vec3::new(yaw.sin(), 0.0, yaw.cos());
     (Vec3::Y * 0.86 - right * 0.62 + level_back * 0.55).normalize_or(Vec3::Y)
 }
 
-/// The parts of the map for so many panes: equal squares.
+/// Returns a pane's part of the map, which is divided into equal squares.
 pub(super) fn tile(index: usize, panes: usize) -> Viewport {
     let columns = (1..MAP_SIZE).find(|columns| (columns * columns) as usize >= panes).unwrap_or(1);
     let side = MAP_SIZE / columns;
@@ -52,31 +55,31 @@ pub(super) fn tile(index: usize, panes: usize) -> Viewport {
 }
 
 impl LightBox {
-    /// About every solid body that casts a shadow in the pane and the ground that it falls on;
-    /// `None` where there is none.
+    /// Returns the box around every body that casts a shadow in the pane, and the ground that the
+    /// shadows fall on; `None` where there is none.
     ///
-    /// Shadows must not crawl while a body walks: the box grows in steps, and moves by whole texels
-    /// of a map of `texels` × `texels`.
+    /// The box grows in steps, and moves by whole texels of a map of `texels` × `texels`. Otherwise
+    /// the edges of shadows would crawl while a body walks.
     pub(super) fn about(pane: &Pane, key: Vec3, texels: u32) -> Option<Self> {
         let right = Vec3::Y.cross(key).try_normalize()?;
         let up = key.cross(right);
         let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
         let (mut near, mut far) = (f32::NEG_INFINITY, f32::INFINITY);
-        for figure in pane.figures.iter().filter(|figure| keeps_off_light(figure)) {
+        for figure in pane.figures.iter().filter(|figure| casts_key_shadow(figure)) {
             for limb in pane.limbs.get(figure.limbs.clone()).unwrap_or_default() {
                 for (point, radius) in [(limb.a, limb.radius_a), (limb.b, limb.radius_b)] {
-                    let is_near = (point - pane.focus).abs().max_element() < FARTHEST;
+                    let is_near = (point - pane.focus).abs().max_element() < MAX_DISTANCE_M;
                     if !(is_near && radius.is_finite()) {
                         continue;
                     }
                     let on_map = Vec2::new(point.dot(right), point.dot(up));
                     let along = point.dot(key);
-                    let reach = radius + MARGIN;
+                    let reach = radius + MARGIN_M;
                     (low, high) = (low.min(on_map - reach), high.max(on_map + reach));
                     near = near.max(along + reach);
-                    // From the ball's lower end along the light to the ground.
+                    // The ground where the ray of the light through the ball's lower end meets it.
                     far = far.min(
-                        along - reach - (point.y + reach).clamp(0.0, HIGHEST) / key.y.max(0.1),
+                        along - reach - (point.y + reach).clamp(0.0, MAX_HEIGHT_M) / key.y.max(0.1),
                     );
                 }
             }
@@ -88,8 +91,7 @@ impl LightBox {
         let half_width = ((half.max(0.25).log2() * 2.0).ceil() * 0.5).exp2();
         let texel = 2.0 * half_width / texels.max(1) as f32;
         let middle = ((low + high) * (0.5 / texel)).round() * texel;
-        // Depths are of the texture's steps, not of the texels': they need not be snapped, but a
-        // still body's must stay.
+        // Depths need not be multiples of a texel, but those of a body at rest must not change.
         let (far, near) = ((far * 4.0).floor() * 0.25, (near * 4.0).ceil() * 0.25);
         Some(Self {
             center: right * middle.x + up * middle.y + key * ((near + far) * 0.5),
@@ -101,14 +103,14 @@ impl LightBox {
     }
 }
 
-/// The map, and how shaders read it.
+/// A shadow map, and the bind group by which shaders read it.
 pub(super) struct LightMap {
     pub(super) depths: wgpu::TextureView,
     pub(super) bound: wgpu::BindGroup,
 }
 
 impl LightMap {
-    /// A map of `size` × `size` texels.
+    /// Returns a map of `size` × `size` texels.
     pub(super) fn new(device: &wgpu::Device, pipelines: &Pipelines, size: u32) -> Self {
         let texture = device.create_texture(&wgpu::TextureDescriptor {
             label: Some("light map"),
@@ -175,7 +177,7 @@ mod tests {
     const KEY: Vec3 = Vec3::new(0.48, 0.64, 0.6);
 
     #[test]
-    fn bodies_and_the_ground_below_them_are_inside() {
+    fn light_box_contains_the_bodies_and_their_shadows() {
         let centers =
             [Vec3::new(0.4, 1.7, -0.3), Vec3::new(-0.9, 0.1, 1.2), Vec3::new(90.0, 0.0, 0.0)];
         let fit = LightBox::about(&pane(&centers), KEY, 1024).unwrap();
@@ -189,14 +191,14 @@ mod tests {
                 assert!(from.dot(KEY).abs() < fit.half_depth);
             }
         }
-        // What is far off does not make the others' shadows coarse.
+        // The far body does not make the shadows of the others coarse.
         assert!(fit.half_width < 3.0);
         assert_eq!(LightBox::about(&Pane::default(), KEY, 1024), None);
         assert_eq!(LightBox::about(&pane(&[Vec3::NAN]), KEY, 1024), None);
     }
 
     #[test]
-    fn a_body_that_walks_keeps_the_texels() {
+    fn light_box_of_a_walking_body_moves_by_whole_texels() {
         let fit = |x: f32| {
             LightBox::about(&pane(&[Vec3::new(x, 1.0, 0.0), Vec3::new(x, 0.2, 0.5)]), KEY, 1024)
                 .unwrap()
@@ -214,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn tiles_lie_side_by_side() {
+    fn tiles_of_four_panes_are_quarters_of_the_map() {
         assert_eq!(tile(0, 1).width, MAP_SIZE);
         let tiles: Vec<_> = (0..4).map(|index| tile(index, 4)).collect();
         assert!(

@@ -1,16 +1,18 @@
-// Rounded cones: one mesh, bent to each limb. Solid, ghostly, and their edges.
+// Limbs: one mesh of a rounded cone, bent to each limb. Solid bodies, ghosts, and edges.
 
 struct Figure {
     // 1 for a solid body; the rest is unused.
     about: vec4f,
-    // Three for each limb of the body: centre and radius of its first ball, of its second, direction and scale of its flattening.
+    // Three for each limb of the body: centre and radius of its first ball, of its second,
+    // direction and scale of its flattening.
     neighbours: array<vec4f, 144>,
 }
 
 @group(2) @binding(0) var<uniform> figure: Figure;
 
 struct Limb {
-    // Cosine and sine about the axis; from the seam (0) to the pole (1); which ball.
+    // Cosine and sine about the axis; position from the seam (0) to the pole (1); the ball (0 or
+    // 1).
     @location(0) mesh: vec4f,
     // Centre and radius of the two balls.
     @location(1) a: vec4f,
@@ -18,7 +20,7 @@ struct Limb {
     // Direction and scale of the flattening.
     @location(3) flat_axis: vec4f,
     @location(4) color: vec4f,
-    // The limbs of the body that lie nearest, by number; 255 ends the list.
+    // The indices of the nearest limbs of the body; 255 ends the list.
     @location(5) near_a: vec4u,
     @location(6) near_b: vec4u,
     @location(7) near_c: vec4u,
@@ -51,7 +53,7 @@ fn bend(limb: Limb) -> Bent {
     if has_axis {
         axis = span / len;
     }
-    // The flattening is across the axis; a ball is flattened as it is told.
+    // The flattening is across the axis; a ball is flattened along the given direction.
     var flat_axis = limb.flat_axis.xyz;
     if has_axis {
         flat_axis = flat_axis - axis * dot(flat_axis, axis);
@@ -71,7 +73,8 @@ fn bend(limb: Limb) -> Bent {
     side = normalize(side);
     let other = cross(axis, side);
 
-    // Both balls touch the hull where its normal stands `tilt` over the cross-section: there the caps begin.
+    // Both balls touch the hull where its normal is inclined by `tilt` against the cross-section.
+    // The caps begin there.
     let tilt = asin(clamp((limb.a.w - limb.b.w) / max(len, 1e-6), -1.0, 1.0));
     let pole = select(-1.5707963, 1.5707963, limb.mesh.w > 0.5);
     let angle = mix(tilt, pole, limb.mesh.z);
@@ -100,8 +103,9 @@ fn vs_limb(limb: Limb) -> Surface {
     return out;
 }
 
-// The hull, grown by the width of an edge; its back shows around the limb. It lies a little deeper than the limb, so that edges are drawn
-// where one limb passes before another and not where they merge.
+// Draws the hull, grown by the width of an edge, so that its back shows around the limb. It is a
+// little deeper than the limb, so that edges are drawn where one limb passes in front of another,
+// and not where limbs blend.
 @vertex
 fn vs_edge(limb: Limb) -> Surface {
     let bent = bend(limb);
@@ -121,16 +125,17 @@ fn vs_edge(limb: Limb) -> Surface {
 }
 
 struct Around {
-    // Normal of the body where its limbs are melted together.
+    // Normal of the body, blended between its limbs.
     normal: vec3f,
-    // How much of the sky gets past the body's other limbs, 0 to 1.
+    // The share of the sky that the body's other limbs leave visible, 0 to 1.
     sky: f32,
 }
 
-// What a point of the surface sees of the other limbs of its body.
+// Returns the influence of the other limbs of the body on a point of its surface.
 //
-// Normal: of every limb that lies within a third of its radius, weighted by how near its surface is; seams between limbs vanish like in clay.
-// Sky: the closed form of a ball before the sky (Quilez, "Sphere ambient occlusion"), for the nearest ball in each limb.
+// The normal is the mean over every limb within a third of its radius, weighted by the nearness of
+// its surface, so that seams between limbs vanish like in clay. The sky is the closed form of a
+// ball in front of the sky (Quilez, "Sphere ambient occlusion"), for the nearest ball in each limb.
 fn look_around(in: Surface) -> Around {
     let world = in.world;
     let normal = normalize(in.normal);
@@ -146,7 +151,8 @@ fn look_around(in: Surface) -> Around {
         let b = figure.neighbours[3u * i + 1u];
         let from_a = world - a.xyz;
         let span = b.xyz - a.xyz;
-        // Back to the round limb, and there to the ball of it that is nearest: its line to the point stands on the cone's side.
+        // The flattening is undone, and the nearest ball of the round limb found: the line from it
+        // to the point is perpendicular to the cone's side.
         let flattening = figure.neighbours[3u * i + 2u];
         let round = from_a + flattening.xyz * dot(from_a, flattening.xyz) * (1.0 / flattening.w - 1.0);
         let len = max(length(span), 1e-5);
@@ -169,7 +175,8 @@ fn look_around(in: Surface) -> Around {
         let to_ball = span * t - from_a;
         let distance = max(length(to_ball), 1e-5);
         let ratio = min(ball / distance, 1.0);
-        // Where limbs merge they are one surface, which does not shade itself: the seam would show.
+        // Limbs that blend are one surface, which does not shade itself. Otherwise the seam would
+        // show.
         sky *= 1.0 - max(dot(normal, to_ball) / distance, 0.0) * ratio * ratio * smoothstep(0.0, 0.04, gap);
     }
     return Around(normalize(melted), sky);
@@ -192,13 +199,13 @@ fn fs_ghost(in: Surface) -> @location(0) vec4f {
     return ghost_color(in.color, in.world, look_around(in).normal);
 }
 
-// As the main light sees it.
+// Draws the depths for the light map.
 @vertex
 fn vs_cast(limb: Limb) -> @builtin(position) vec4f {
     return vec4f(on_map(bend(limb).world), 1.0);
 }
 
-// For passes that only find depths.
+// For passes that write only depths.
 @fragment
 fn fs_depth() -> @location(0) vec4f {
     return vec4f(0.0);

@@ -17,11 +17,11 @@ struct Inked {
     @location(0) color: vec4f,
     // Pixels across the line and along it from its start.
     @location(1) at: vec2f,
-    // Half the width and the length in pixels; which ends are free.
+    // Half the width and the length in pixels; 1 for each free end.
     @location(2) @interpolate(flat) size: vec4f,
 }
 
-// A point before the camera's nearest depth is moved along the line to `other` until it is seen.
+// Moves a point in front of the near plane along the line to `other`, up to the plane.
 fn clip_near(point: vec3f, other: vec3f) -> vec3f {
     let near = view.forward.w * 1.01;
     let depth = dot(point - view.eye.xyz, view.forward.xyz);
@@ -64,7 +64,7 @@ fn vs_line(stroke: Stroke) -> Inked {
     if free {
         offset += along * select(-reach, reach, at_end);
     } else {
-        // The neighbour's direction on the screen, from the side that is seen.
+        // The neighbour's direction on the screen, from the visible side.
         let near_point = select(start, end, at_end);
         let neighbour = clip_near(select(stroke.before, stroke.after, at_end), near_point);
         let c = to_pixels(view.clip_from_world * vec4f(neighbour, 1.0));
@@ -78,7 +78,8 @@ fn vs_line(stroke: Stroke) -> Inked {
     let corner = select(a, b, at_end) + offset;
     let clip = select(clip_start, clip_end, at_end);
     var out: Inked;
-    // Divided here: the position along and across the line then runs evenly over the screen.
+    // Divided here, so that the position along and across the line is interpolated linearly on the
+    // screen.
     out.clip = vec4f(corner / (view.viewport.zw * 0.5), clip.z / max(clip.w, 1e-6), 1.0);
     out.color = select(stroke.color_start, stroke.color_end, at_end);
     out.at = vec2f(side * reach, dot(corner - a, along));
@@ -88,11 +89,11 @@ fn vs_line(stroke: Stroke) -> Inked {
 
 @fragment
 fn fs_line(in: Inked) -> @location(0) vec4f {
-    // Past a free end the distance to the end counts, else the distance across.
+    // The distance to the end counts past a free end, and the distance across elsewhere.
     let past_start = max(-in.at.y, 0.0) * in.size.z;
     let past_end = max(in.at.y - in.size.y, 0.0) * in.size.w;
     let from_line = length(vec2f(in.at.x, max(past_start, past_end)));
-    // A line under a pixel wide keeps a pixel and gets fainter.
+    // A line of less than a pixel is drawn a pixel wide, and fainter.
     let half_width = max(in.size.x, 0.5);
     let cover = clamp(half_width + 0.5 - from_line, 0.0, 1.0) * min(in.size.x / half_width, 1.0);
     if cover <= 0.004 {

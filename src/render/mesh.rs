@@ -1,10 +1,10 @@
-//! The one mesh: a rounded cone before it is bent to a limb.
+//! The mesh of all limbs: a unit rounded cone, which the shader bends to a limb.
 
 use super::buffers::filled_buffer;
 use eframe::wgpu;
 
-/// A vertex: cosine and sine about the axis, 0 (the seam with the other cap) to 1 (the pole), and
-/// which ball (0 or 1).
+/// A vertex: the cosine and the sine about the axis, the position from the seam (0) to the pole (1),
+/// and the ball (0 or 1).
 pub(super) type ConeVertex = [f32; 4];
 
 /// A unit rounded cone.
@@ -14,7 +14,7 @@ pub(super) struct ConeMesh {
 }
 
 impl ConeMesh {
-    /// With `sides` around the axis and `rings` from each seam to its pole.
+    /// Returns a mesh with `sides` around the axis and `rings` from each seam to its pole.
     pub(super) fn new(sides: u16, rings: u16) -> Self {
         let mut vertices = Vec::new();
         // Rows from the pole of the first ball over its seam, along the cone, to the pole of the
@@ -38,7 +38,7 @@ impl ConeMesh {
                     (row + 1) * sides + side,
                     (row + 1) * sides + next,
                 ];
-                // At the poles one of the two triangles has no area.
+                // At the poles, one of the two triangles has no area.
                 if row > 0 {
                     indices.extend([a, b, c]);
                 }
@@ -59,7 +59,7 @@ pub(super) struct ConeBuffers {
 }
 
 impl ConeBuffers {
-    /// Brings a mesh to the device.
+    /// Uploads a mesh to the device.
     pub(super) fn new(device: &wgpu::Device, queue: &wgpu::Queue, mesh: &ConeMesh) -> Self {
         let buffer = |contents: &[u8], usage| filled_buffer(device, queue, "cone", contents, usage);
         Self {
@@ -75,8 +75,8 @@ mod tests {
     use super::*;
     use glam::Vec3;
 
-    /// The same as the shader's, for balls of radius 1 about the origin and of radius 0.5 about (0,
-    /// 3, 0).
+    /// Bends a vertex as the shader does, for a ball of radius 1 at the origin and one of radius 0.5 at
+    /// (0, 3, 0).
     fn bend(vertex: ConeVertex) -> Vec3 {
         let tilt = (0.5f32 / 3.0).asin();
         let pole = if vertex[3] > 0.5 { 1.0 } else { -1.0 } * std::f32::consts::FRAC_PI_2;
@@ -86,10 +86,10 @@ mod tests {
     }
 
     #[test]
-    fn it_is_closed_faces_outwards_and_has_the_volume_of_a_rounded_cone() {
+    fn cone_mesh_is_closed_and_has_the_volume_of_a_rounded_cone() {
         let mesh = ConeMesh::new(96, 48);
         let at = |i: u16| bend(mesh.vertices[usize::from(i)]);
-        // A place in space, to 10 µm: the vertices of a pole are one.
+        // Positions are rounded to 10 µm, so that the vertices of a pole coincide.
         let place = |i: u16| (at(i) * 1e5).round().as_ivec3().to_array();
         let mut volume = 0.0;
         let mut edges = std::collections::BTreeMap::<_, i32>::new();
@@ -101,8 +101,8 @@ mod tests {
                     if from < to { 1 } else { -1 };
             }
         }
-        assert!(edges.values().all(|&walked| walked == 0), "every edge is walked once each way");
-        // Frustum between the tangent circles plus both spherical caps.
+        assert!(edges.values().all(|&sum| sum == 0), "every edge is used once in each direction");
+        // The volume of the frustum between the tangent circles plus that of both spherical caps.
         let (r, s, l) = (1.0f64, 0.5f64, 3.0f64);
         let sine = (r - s) / l;
         let cos = (1.0 - sine * sine).sqrt();

@@ -1,4 +1,4 @@
-//! Draws a [`segue_scene::Stage`] with wgpu, inside the page that egui paints.
+//! Rendering of a [`segue_scene::Stage`] with wgpu, inside the page that egui paints.
 //!
 //! The stage is drawn in egui's prepare step into a target of its own (multisampled, with depth)
 //! and copied into the page, pixel by pixel, in its paint step. A stage that did not change since

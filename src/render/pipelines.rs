@@ -1,58 +1,49 @@
 //! The render pipelines of a device.
 
-use super::layout::{
-    COLOR_FORMAT, DEPTH_FORMAT, FigureUniform, LimbInstance, MAP_FORMAT, RingInstance,
-    SkinInstance, SkinVertex, StrokeInstance, ViewUniform,
-};
-use super::mesh::ConeVertex;
+mod composite;
+mod layouts;
+pub(super) mod shaders;
+mod stage;
+
+use super::layout::{FigureUniform, ViewUniform};
+use composite::composite_pipeline;
 use eframe::wgpu;
+use layouts::{light_layout, texture_entry, uniform_layout};
+use shaders::{GROUND, KEY_SHADOW, LIMB, LINE, RING, SHADOW, SKIN, Shader};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};
-use wgpu::CompareFunction::{Less, LessEqual};
-use wgpu::Face::{Back, Front};
+use wgpu::CompareFunction::LessEqual;
 
-/// The shaders as they are compiled: what all share comes first.
-pub(super) const LIMB: &str =
-    concat!(include_str!("view.wgsl"), include_str!("light.wgsl"), include_str!("limb.wgsl"));
-pub(super) const SKIN: &str =
-    concat!(include_str!("view.wgsl"), include_str!("light.wgsl"), include_str!("skin.wgsl"));
-pub(super) const KEY_SHADOW: &str =
-    concat!(include_str!("view.wgsl"), include_str!("light.wgsl"), include_str!("key_shadow.wgsl"));
-pub(super) const SHADOW: &str = concat!(include_str!("view.wgsl"), include_str!("shadow.wgsl"));
-pub(super) const GROUND: &str = concat!(include_str!("view.wgsl"), include_str!("ground.wgsl"));
-pub(super) const LINE: &str = concat!(include_str!("view.wgsl"), include_str!("line.wgsl"));
-pub(super) const RING: &str = concat!(include_str!("view.wgsl"), include_str!("ring.wgsl"));
-pub(super) const COMPOSITE: &str = include_str!("composite.wgsl");
-
-/// What a stage is drawn with.
+/// A pipeline of a stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Brush {
+pub(super) enum PipelineKind {
     Ground,
     Shadow,
     Shade,
     Ring,
-    /// On the ground and over everything: no depth.
+    /// Lines on the ground and over everything, without depth.
     FlatLine,
     SpaceLine,
     Solid,
     Edge,
-    /// Only the depth of the limbs' fronts.
+    /// The depths of limbs' front faces, without colours.
     Front,
     Ghost,
-    /// A body in the light map.
+    /// Limbs in the light map.
     Cast,
-    /// What the light map says of the ground.
+    /// The main light's shadow on the ground, by the light map.
     KeyShadow,
-    /// The same of bodies in skins.
+    /// Solid bodies in skins.
     Skin,
     SkinEdge,
     SkinFront,
     SkinGhost,
+    /// Bodies in skins in the light map.
     SkinCast,
 }
 
-impl Brush {
-    /// In the order in which they are missed.
+impl PipelineKind {
+    /// All pipelines, in order of importance.
     const ALL: [Self; 17] = [
         Self::Ground,
         Self::Skin,
@@ -73,14 +64,14 @@ impl Brush {
         Self::Ring,
     ];
 
-    /// Whether there is no picture without it.
-    const fn is_vital(self) -> bool {
+    /// Returns whether no picture can be drawn without it.
+    const fn is_essential(self) -> bool {
         matches!(self, Self::Ground | Self::Front | Self::Solid | Self::Skin)
     }
 }
 
-/// The pipelines of a device. WebGL takes long to make one: the first picture comes with those that
-/// it cannot do without, and the others are made one in a frame.
+/// The pipelines of a device. WebGL takes long to make one, so the first picture is drawn with the
+/// essential ones, and the others are made one in a frame.
 pub(super) struct Pipelines {
     device: wgpu::Device,
     pub(super) view_layout: wgpu::BindGroupLayout,
@@ -93,13 +84,13 @@ pub(super) struct Pipelines {
     pub(super) composite_sampler: wgpu::Sampler,
     pub(super) composite: wgpu::RenderPipeline,
     pub(super) sample_count: u32,
-    /// For what lies on the ground and in space.
+    /// The layout for the ground, lines and rings.
     plain: wgpu::PipelineLayout,
-    /// For what the main light falls on.
+    /// The layout for the main light's shadow on the ground.
     lit: wgpu::PipelineLayout,
-    /// For bodies.
+    /// The layout for bodies of limbs.
     bodily: wgpu::PipelineLayout,
-    /// For bodies in skins.
+    /// The layout for bodies in skins.
     skinned: wgpu::PipelineLayout,
     limb: Shader,
     skin: Shader,
@@ -108,141 +99,9 @@ pub(super) struct Pipelines {
     ground: Shader,
     line: Shader,
     ring: Shader,
-    made: [OnceLock<wgpu::RenderPipeline>; Brush::ALL.len()],
-    /// Those that were asked for: a bit each.
-    wanted: AtomicU32,
-}
-
-/// A shader that is compiled when the first pipeline needs it.
-struct Shader {
-    label: &'static str,
-    source: &'static str,
-    module: OnceLock<wgpu::ShaderModule>,
-}
-
-impl Shader {
-    const fn new(label: &'static str, source: &'static str) -> Self {
-        Self { label, source, module: OnceLock::new() }
-    }
-
-    fn module(&self, device: &wgpu::Device) -> &wgpu::ShaderModule {
-        self.module.get_or_init(|| {
-            device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(self.label),
-                source: wgpu::ShaderSource::Wgsl(self.source.into()),
-            })
-        })
-    }
-}
-
-/// What differs between the pipelines of the stage.
-struct Recipe<'a> {
-    label: &'a str,
-    shader: &'a Shader,
-    layout: &'a wgpu::PipelineLayout,
-    entries: [&'a str; 2],
-    buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
-    blend: Option<wgpu::BlendState>,
-    writes: wgpu::ColorWrites,
-    /// Compare and write.
-    depth: Option<(wgpu::CompareFunction, bool)>,
-    topology: wgpu::PrimitiveTopology,
-    cull: Option<wgpu::Face>,
-    stencil: wgpu::StencilState,
-}
-
-const OVER: wgpu::BlendState = wgpu::BlendState::ALPHA_BLENDING;
-
-/// Takes light away: the target's alpha is what is left of it.
-const DARKEN: wgpu::BlendState = wgpu::BlendState {
-    color: wgpu::BlendComponent {
-        src_factor: wgpu::BlendFactor::Zero,
-        dst_factor: wgpu::BlendFactor::One,
-        operation: wgpu::BlendOperation::Add,
-    },
-    alpha: wgpu::BlendComponent {
-        src_factor: wgpu::BlendFactor::Zero,
-        dst_factor: wgpu::BlendFactor::OneMinusSrcAlpha,
-        operation: wgpu::BlendOperation::Add,
-    },
-};
-
-/// Between full shadow (what is drawn) and full light (what is there), by the light that is left.
-const SHADE: wgpu::BlendState = wgpu::BlendState {
-    color: wgpu::BlendComponent {
-        src_factor: wgpu::BlendFactor::OneMinusDstAlpha,
-        dst_factor: wgpu::BlendFactor::DstAlpha,
-        operation: wgpu::BlendOperation::Add,
-    },
-    alpha: wgpu::BlendComponent::REPLACE,
-};
-
-/// Where two limbs of a ghost share a surface, it is coloured once: the stencil keeps the number of
-/// the ghost that was there last.
-fn once_per_ghost() -> wgpu::StencilState {
-    let face = wgpu::StencilFaceState {
-        compare: wgpu::CompareFunction::NotEqual,
-        fail_op: wgpu::StencilOperation::Keep,
-        depth_fail_op: wgpu::StencilOperation::Keep,
-        pass_op: wgpu::StencilOperation::Replace,
-    };
-    wgpu::StencilState { front: face, back: face, read_mask: 0xff, write_mask: 0xff }
-}
-
-fn uniform_layout(device: &wgpu::Device, label: &str, size: usize) -> wgpu::BindGroupLayout {
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some(label),
-        entries: &[wgpu::BindGroupLayoutEntry {
-            binding: 0,
-            visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-            ty: wgpu::BindingType::Buffer {
-                ty: wgpu::BufferBindingType::Uniform,
-                has_dynamic_offset: true,
-                min_binding_size: wgpu::BufferSize::new(size as u64),
-            },
-            count: None,
-        }],
-    })
-}
-
-/// The light map as depths to compare with, and as depths.
-fn light_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    let seen = wgpu::ShaderStages::FRAGMENT;
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("light map"),
-        entries: &[
-            texture_entry(0, seen, wgpu::TextureSampleType::Depth),
-            sampler_entry(1, wgpu::SamplerBindingType::Comparison),
-            texture_entry(2, seen, wgpu::TextureSampleType::Float { filterable: false }),
-            sampler_entry(3, wgpu::SamplerBindingType::NonFiltering),
-        ],
-    })
-}
-
-fn texture_entry(
-    binding: u32,
-    visibility: wgpu::ShaderStages,
-    sample_type: wgpu::TextureSampleType,
-) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility,
-        ty: wgpu::BindingType::Texture {
-            sample_type,
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        },
-        count: None,
-    }
-}
-
-fn sampler_entry(binding: u32, kind: wgpu::SamplerBindingType) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::FRAGMENT,
-        ty: wgpu::BindingType::Sampler(kind),
-        count: None,
-    }
+    stage: [OnceLock<wgpu::RenderPipeline>; PipelineKind::ALL.len()],
+    /// The pipelines that were requested and are not made yet, a bit for each.
+    requested: AtomicU32,
 }
 
 impl Pipelines {
@@ -288,8 +147,8 @@ impl Pipelines {
             ground: Shader::new("ground", GROUND),
             line: Shader::new("line", LINE),
             ring: Shader::new("ring", RING),
-            made: std::array::from_fn(|_| OnceLock::new()),
-            wanted: AtomicU32::new(0),
+            stage: std::array::from_fn(|_| OnceLock::new()),
+            requested: AtomicU32::new(0),
             view_layout,
             figure_layout,
             joints_layout,
@@ -318,291 +177,27 @@ impl Pipelines {
         }
     }
 
-    /// The pipeline; `None` where the picture can do without it until it is made. Natively that
-    /// takes no time worth a word.
-    pub(super) fn get(&self, brush: Brush) -> Option<&wgpu::RenderPipeline> {
-        let slot = &self.made[brush as usize];
-        if brush.is_vital() || cfg!(not(target_arch = "wasm32")) {
-            return Some(slot.get_or_init(|| self.make(brush)));
+    /// Returns a pipeline. On the web, it is `None` for one that is not essential and not made yet,
+    /// which is then requested. Natively, making one takes negligible time.
+    pub(super) fn get(&self, kind: PipelineKind) -> Option<&wgpu::RenderPipeline> {
+        let slot = &self.stage[kind as usize];
+        if kind.is_essential() || cfg!(not(target_arch = "wasm32")) {
+            return Some(slot.get_or_init(|| self.make(kind)));
         }
         if slot.get().is_none() {
-            self.wanted.fetch_or(1 << brush as u32, Ordering::Relaxed);
+            self.requested.fetch_or(1 << kind as u32, Ordering::Relaxed);
         }
         slot.get()
     }
 
-    /// Makes the next one that was asked for in vain.
+    /// Makes the most important of the requested pipelines.
     pub(super) fn make_next(&self) {
-        let wanted = self.wanted.load(Ordering::Relaxed);
-        let Some(&brush) = Brush::ALL.iter().find(|&&brush| wanted & 1 << brush as u32 != 0) else {
+        let requested = self.requested.load(Ordering::Relaxed);
+        let Some(&kind) = PipelineKind::ALL.iter().find(|&&kind| requested & 1 << kind as u32 != 0)
+        else {
             return;
         };
-        self.made[brush as usize].get_or_init(|| self.make(brush));
-        self.wanted.fetch_and(!(1 << brush as u32), Ordering::Relaxed);
+        self.stage[kind as usize].get_or_init(|| self.make(kind));
+        self.requested.fetch_and(!(1 << kind as u32), Ordering::Relaxed);
     }
-
-    fn make(&self, brush: Brush) -> wgpu::RenderPipeline {
-        let device = &self.device;
-        let mesh_attributes = wgpu::vertex_attr_array![0 => Float32x4];
-        let limb_attributes = wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4, 3 => Float32x4, 4 => Unorm8x4, 5 => Uint8x4, 6 => Uint8x4, 7 => Uint8x4, 8 => Uint8x4, 9 => Uint8x4, 10 => Float32];
-        let line_attributes = wgpu::vertex_attr_array![
-            0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32x3, 4 => Unorm8x4, 5 => Unorm8x4, 6 => Float32
-        ];
-        let ring_attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Unorm8x4, 2 => Float32];
-        let mesh_buffer = wgpu::VertexBufferLayout {
-            array_stride: size_of::<ConeVertex>() as u64,
-            step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: &mesh_attributes,
-        };
-        let instances = |stride: usize, attributes| wgpu::VertexBufferLayout {
-            array_stride: stride as u64,
-            step_mode: wgpu::VertexStepMode::Instance,
-            attributes,
-        };
-        let limb_buffer = instances(size_of::<LimbInstance>(), &limb_attributes[..]);
-        let limb_buffers = [Some(mesh_buffer), Some(limb_buffer.clone())];
-        // The shadow reads the limbs, but for their colour.
-        let [place_a, place_b, flat, .., strength] = limb_attributes;
-        let shadow_attributes = [place_a, place_b, flat, strength];
-        let shadow_buffers =
-            [Some(wgpu::VertexBufferLayout { attributes: &shadow_attributes, ..limb_buffer })];
-        let skin_attributes = wgpu::vertex_attr_array![0 => Float32x3, 1 => Snorm16x4, 2 => Uint16x4, 3 => Unorm16x4, 4 => Unorm8x4];
-        let skin_figure_attributes = wgpu::vertex_attr_array![5 => Uint32x2, 6 => Unorm8x4];
-        let skin_buffers = [
-            Some(wgpu::VertexBufferLayout {
-                array_stride: size_of::<SkinVertex>() as u64,
-                step_mode: wgpu::VertexStepMode::Vertex,
-                attributes: &skin_attributes,
-            }),
-            Some(instances(size_of::<SkinInstance>(), &skin_figure_attributes[..])),
-        ];
-        let line_buffers = [Some(instances(size_of::<StrokeInstance>(), &line_attributes[..]))];
-        let ring_buffers = [Some(instances(size_of::<RingInstance>(), &ring_attributes[..]))];
-
-        let ground_recipe = |label, entry, blend| Recipe {
-            label,
-            shader: &self.ground,
-            layout: &self.plain,
-            entries: ["vs_ground", entry],
-            buffers: &[],
-            blend,
-            writes: wgpu::ColorWrites::ALL,
-            depth: None,
-            topology: wgpu::PrimitiveTopology::TriangleList,
-            cull: None,
-            stencil: wgpu::StencilState::default(),
-        };
-        let quad = wgpu::PrimitiveTopology::TriangleStrip;
-        let line_recipe = |label, depth| Recipe {
-            shader: &self.line,
-            entries: ["vs_line", "fs_line"],
-            buffers: &line_buffers,
-            topology: quad,
-            depth,
-            ..ground_recipe(label, "", Some(OVER))
-        };
-        let shadow_recipe = |label, shader, layout, entries| Recipe {
-            shader,
-            layout,
-            entries,
-            writes: wgpu::ColorWrites::ALPHA,
-            topology: quad,
-            ..ground_recipe(label, "", Some(DARKEN))
-        };
-        let limb_recipe = |label, entries, depth, blend, cull| Recipe {
-            label,
-            shader: &self.limb,
-            layout: &self.bodily,
-            entries,
-            buffers: &limb_buffers,
-            blend,
-            writes: wgpu::ColorWrites::ALL,
-            depth: Some(depth),
-            topology: wgpu::PrimitiveTopology::TriangleList,
-            cull: Some(cull),
-            stencil: wgpu::StencilState::default(),
-        };
-        let skin_recipe = |label, entries, depth, blend, cull| Recipe {
-            shader: &self.skin,
-            layout: &self.skinned,
-            buffers: &skin_buffers,
-            ..limb_recipe(label, entries, depth, blend, cull)
-        };
-        let recipe = match brush {
-            Brush::Ground => ground_recipe("ground", "fs_ground", None),
-            Brush::Shade => ground_recipe("shade", "fs_shade", Some(SHADE)),
-            Brush::Shadow => Recipe {
-                buffers: &shadow_buffers,
-                ..shadow_recipe("shadow", &self.shadow, &self.plain, ["vs_shadow", "fs_shadow"])
-            },
-            Brush::KeyShadow => shadow_recipe(
-                "key shadow",
-                &self.key_shadow,
-                &self.lit,
-                ["vs_key_shadow", "fs_key_shadow"],
-            ),
-            Brush::Cast => Recipe {
-                layout: &self.plain,
-                ..limb_recipe("cast", ["vs_cast", ""], (Less, true), None, Back)
-            },
-            Brush::Ring => Recipe {
-                shader: &self.ring,
-                entries: ["vs_ring", "fs_ring"],
-                buffers: &ring_buffers,
-                topology: quad,
-                ..ground_recipe("ring", "", Some(OVER))
-            },
-            Brush::FlatLine => line_recipe("line", None),
-            Brush::SpaceLine => line_recipe("line in space", Some((LessEqual, true))),
-            Brush::Solid => {
-                limb_recipe("limb", ["vs_limb", "fs_solid"], (LessEqual, false), None, Back)
-            }
-            Brush::Edge => {
-                limb_recipe("limb edge", ["vs_edge", "fs_edge"], (Less, true), Some(OVER), Front)
-            }
-            Brush::Front => Recipe {
-                writes: wgpu::ColorWrites::empty(),
-                ..limb_recipe("limb front", ["vs_limb", "fs_depth"], (Less, true), None, Back)
-            },
-            Brush::Ghost => Recipe {
-                stencil: once_per_ghost(),
-                ..limb_recipe(
-                    "ghost",
-                    ["vs_limb", "fs_ghost"],
-                    (LessEqual, false),
-                    Some(OVER),
-                    Back,
-                )
-            },
-            Brush::Skin => skin_recipe("skin", ["vs_skin", "fs_skin"], (Less, true), None, Back),
-            Brush::SkinEdge => skin_recipe(
-                "skin edge",
-                ["vs_skin_edge", "fs_skin_edge"],
-                (Less, true),
-                Some(OVER),
-                Front,
-            ),
-            Brush::SkinFront => Recipe {
-                writes: wgpu::ColorWrites::empty(),
-                ..skin_recipe("skin front", ["vs_skin", "fs_depth"], (Less, true), None, Back)
-            },
-            Brush::SkinGhost => Recipe {
-                stencil: once_per_ghost(),
-                ..skin_recipe(
-                    "skin ghost",
-                    ["vs_skin", "fs_skin_ghost"],
-                    (LessEqual, false),
-                    Some(OVER),
-                    Back,
-                )
-            },
-            Brush::SkinCast => {
-                skin_recipe("skin cast", ["vs_skin_cast", ""], (Less, true), None, Back)
-            }
-        };
-        stage_pipeline(device, &recipe, self.sample_count)
-    }
-}
-
-/// A recipe without an entry for colours only finds depths, for the light map.
-fn stage_pipeline(
-    device: &wgpu::Device,
-    recipe: &Recipe<'_>,
-    sample_count: u32,
-) -> wgpu::RenderPipeline {
-    let module = recipe.shader.module(device);
-    let is_cast = recipe.entries[1].is_empty();
-    let targets = [Some(wgpu::ColorTargetState {
-        format: COLOR_FORMAT,
-        blend: recipe.blend,
-        write_mask: recipe.writes,
-    })];
-    let (compare, write) = recipe.depth.unwrap_or((wgpu::CompareFunction::Always, false));
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(recipe.label),
-        layout: Some(recipe.layout),
-        vertex: wgpu::VertexState {
-            module,
-            entry_point: Some(recipe.entries[0]),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: recipe.buffers,
-        },
-        primitive: wgpu::PrimitiveState {
-            topology: recipe.topology,
-            cull_mode: recipe.cull,
-            ..wgpu::PrimitiveState::default()
-        },
-        depth_stencil: Some(wgpu::DepthStencilState {
-            format: if is_cast { MAP_FORMAT } else { DEPTH_FORMAT },
-            depth_write_enabled: Some(write),
-            depth_compare: Some(compare),
-            stencil: recipe.stencil.clone(),
-            bias: wgpu::DepthBiasState::default(),
-        }),
-        multisample: wgpu::MultisampleState {
-            count: if is_cast { 1 } else { sample_count },
-            ..wgpu::MultisampleState::default()
-        },
-        fragment: (!is_cast).then(|| wgpu::FragmentState {
-            module,
-            entry_point: Some(recipe.entries[1]),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &targets,
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
-}
-
-fn composite_pipeline(
-    device: &wgpu::Device,
-    output_format: wgpu::TextureFormat,
-) -> (wgpu::BindGroupLayout, wgpu::RenderPipeline) {
-    let group = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("stage composite"),
-        entries: &[
-            texture_entry(
-                0,
-                wgpu::ShaderStages::FRAGMENT,
-                wgpu::TextureSampleType::Float { filterable: true },
-            ),
-            sampler_entry(1, wgpu::SamplerBindingType::Filtering),
-        ],
-    });
-    let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("composite"),
-        source: wgpu::ShaderSource::Wgsl(COMPOSITE.into()),
-    });
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("stage composite"),
-        bind_group_layouts: &[Some(&group)],
-        immediate_size: 0,
-    });
-    let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("stage composite"),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module: &shader,
-            entry_point: Some("vs_composite"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &[],
-        },
-        primitive: wgpu::PrimitiveState::default(),
-        // egui's pass has neither depth nor samples unless the app asks for them.
-        depth_stencil: None,
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &shader,
-            entry_point: Some(if output_format.is_srgb() { "fs_linear" } else { "fs_encoded" }),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &[Some(wgpu::ColorTargetState {
-                format: output_format,
-                blend: None,
-                write_mask: wgpu::ColorWrites::ALL,
-            })],
-        }),
-        multiview_mask: None,
-        cache: None,
-    });
-    (group, pipeline)
 }

@@ -1,10 +1,10 @@
-//! How much is spent on a picture.
+//! The quality of a picture.
 
-/// How much light is worth its time.
+/// The quality of a picture's lighting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Quality {
-    /// Limbs melt into each other and shade each other.
+    /// Limbs blend into each other and shade each other, and the main light casts shadows.
     Full,
-    /// Every limb is lit on its own: for machines without a graphics card.
+    /// Every limb is lit on its own. For machines without a graphics card.
     Plain,
 }

@@ -1,4 +1,4 @@
-//! All stages of a device.
+//! The renderer of all stages of a device.
 
 use super::buffers::{spaced, uniform_group};
 use super::encode::StageEncoder;
@@ -14,44 +14,45 @@ use super::view::{Shown, View};
 use eframe::wgpu;
 use segue_scene::Stage;
 
-/// Draws stages. One per device; every stage on the page has an id of its own.
+/// A renderer of stages, one per device. Every stage on the page has an id of its own.
 pub(crate) struct StageRenderer {
     pipelines: Pipelines,
     fine: ConeBuffers,
     coarse: ConeBuffers,
-    /// Distance between uniform blocks in their buffers.
+    /// The alignment of uniform blocks in their buffers, bytes.
     alignment: usize,
-    largest_side: u32,
+    max_side: u32,
     quality: Quality,
     unlit: LightMap,
-    /// Made for the first body that casts a shadow.
+    /// The light map, which is made for the first body that casts a shadow.
     light: Option<LightMap>,
     skins: SkinStore,
     views: Vec<(u64, View)>,
-    /// The frame in the making; it takes turns with the one last drawn.
+    /// The frame under construction. It is swapped with the one last drawn.
     scratch: Frame,
     bytes: Vec<u8>,
 }
 
-/// What [`StageRenderer::prepare`] did.
+/// The result of [`StageRenderer::prepare`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Prepared {
     /// Whether anything was drawn.
     pub(crate) drawn: bool,
-    /// Whether nothing of it was left out; else it is to be drawn once more at once.
+    /// Whether every part was drawn. If not, the stage has to be drawn again at once.
     pub(crate) complete: bool,
-    /// Whether the picture is to be drawn once more, finer, when nothing moves any longer.
+    /// Whether the picture has to be drawn again, finely, when the stage no longer changes.
     pub(crate) to_be_refined: bool,
 }
 
-/// Pixels of a moving picture that are drawn without a graphics card: about what keeps it moving.
-const PLAIN_PIXELS: f32 = 180_000.0;
+/// The greatest number of pixels of a changing picture without a graphics card. More would make the
+/// motion stutter.
+const MAX_PLAIN_PIXELS: f32 = 180_000.0;
 
-/// A stage that was not asked for in this many frames of others gives its memory back.
+/// The number of frames of other stages after which the memory of a stage is freed.
 const FORGET_AFTER: u32 = 240;
 
 impl StageRenderer {
-    /// Makes what all stages share. `output_format` is the format of the page's target.
+    /// Makes the resources that all stages share. `output_format` is the format of the page's target.
     pub(crate) fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
@@ -65,7 +66,7 @@ impl StageRenderer {
         let limits = device.limits();
         let pipelines = Pipelines::new(device, output_format, if smooth { 4 } else { 1 });
         Self {
-            // Where there is no light map, one texel takes its place.
+            // One texel stands in for a missing light map.
             unlit: LightMap::new(device, &pipelines, 1),
             light: None,
             skins: SkinStore::default(),
@@ -73,7 +74,7 @@ impl StageRenderer {
             fine: mesh(40, 8),
             coarse: mesh(16, 4),
             alignment: limits.min_uniform_buffer_offset_alignment.max(16) as usize,
-            largest_side: limits.max_texture_dimension_2d,
+            max_side: limits.max_texture_dimension_2d,
             quality: if adapter.get_info().device_type == wgpu::DeviceType::Cpu {
                 Quality::Plain
             } else {
@@ -85,27 +86,27 @@ impl StageRenderer {
         }
     }
 
-    /// Chooses the light; by default that of the machine.
+    /// Sets the quality, which by default depends on the device.
     #[cfg(test)]
     pub(crate) fn set_quality(&mut self, quality: Quality) {
         self.quality = quality;
     }
 
-    /// Returns the stage of that id.
+    /// Returns the resources of the stage of that id.
     pub(super) fn view(&self, id: u64) -> Option<&View> {
         self.views.iter().find(|(key, _)| *key == id).map(|(_, view)| view)
     }
 
-    /// Forgets a stage and gives its memory back.
+    /// Drops a stage and frees its memory.
     #[cfg(test)]
     pub(super) fn forget(&mut self, id: u64) {
         self.views.retain(|(key, _)| *key != id);
     }
 
-    /// Draws `stage` into its own target of `size` pixels, unless nothing changed.
+    /// Draws `stage` into its own target of `size` pixels, unless nothing has changed.
     ///
-    /// Where every pixel costs ([`Quality::Plain`]), what changes is drawn smaller and stretched;
-    /// asked for again unchanged, it is drawn finely.
+    /// With [`Quality::Plain`], a changed stage is drawn smaller and stretched. When it is prepared
+    /// again without a change, it is drawn finely.
     pub(crate) fn prepare(
         &mut self,
         device: &wgpu::Device,
@@ -118,7 +119,7 @@ impl StageRenderer {
         if size.contains(&0) {
             return Prepared { drawn: false, complete: true, to_be_refined: false };
         }
-        let size = size.map(|side| side.min(self.largest_side));
+        let size = size.map(|side| side.min(self.max_side));
         for (_, view) in &mut self.views {
             view.idle += 1;
         }
@@ -156,7 +157,7 @@ impl StageRenderer {
             std::mem::swap(&mut view.drawn, &mut self.scratch);
             view.shown = shown;
             if shown == Shown::Fine && small.is_some() {
-                // The smaller frame stays the one that the next stage is compared with.
+                // The next stage is compared with the smaller frame, so that one is kept.
                 self.scratch.build(stage, size, size, self.quality);
                 std::mem::swap(&mut view.drawn, &mut self.scratch);
                 self.upload(device, queue, &mut view);
@@ -180,13 +181,13 @@ impl StageRenderer {
         Targets::new(device, &self.pipelines, size)
     }
 
-    /// The size of the smaller picture of a stage; `None` where there is no need of one.
+    /// Returns the size of the smaller picture of a stage; `None` where none is needed.
     fn coarse_size(&self, [width, height]: [u32; 2]) -> Option<[u32; 2]> {
         let pixels = width as f32 * height as f32;
-        if self.quality == Quality::Full || pixels <= PLAIN_PIXELS {
+        if self.quality == Quality::Full || pixels <= MAX_PLAIN_PIXELS {
             return None;
         }
-        let scale = (PLAIN_PIXELS / pixels).sqrt();
+        let scale = (MAX_PLAIN_PIXELS / pixels).sqrt();
         Some([width, height].map(|side| ((side as f32 * scale) as u32).max(1)))
     }
 
@@ -198,6 +199,7 @@ impl StageRenderer {
         size_of::<FigureUniform>().next_multiple_of(self.alignment)
     }
 
+    /// Uploads the frame of a stage to the device.
     fn upload(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, view: &mut View) {
         let (view_stride, figure_stride) = (self.view_stride(), self.figure_stride());
         if view.drawn.panes.iter().any(|pane| pane.lit.is_some()) && self.light.is_none() {
@@ -247,7 +249,7 @@ impl StageRenderer {
     }
 
     /// Draws a stage whose buffers are filled. Returns `false` where something is left out because
-    /// its pipeline is yet to be made.
+    /// its pipeline is not made yet.
     fn encode(&self, encoder: &mut wgpu::CommandEncoder, view: &View) -> bool {
         let stage = StageEncoder {
             pipelines: &self.pipelines,
@@ -263,7 +265,7 @@ impl StageRenderer {
         stage.encode(encoder)
     }
 
-    /// Copies the finished stage into the page; the pass' viewport is where it goes.
+    /// Copies the finished stage into the page, to the viewport of the pass.
     pub(crate) fn paint(&self, pass: &mut wgpu::RenderPass<'_>, id: u64) {
         if let Some(view) = self.view(id)
             && view.shown != Shown::Nothing

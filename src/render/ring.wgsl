@@ -10,7 +10,7 @@ struct Ring {
 
 struct Drawn {
     @builtin(position) clip: vec4f,
-    // From the middle, metres.
+    // Position relative to the centre, metres.
     @location(0) at: vec2f,
     @location(1) @interpolate(flat) color: vec4f,
     // Radius, width, fill, unused.

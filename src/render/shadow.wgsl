@@ -1,7 +1,8 @@
-// The shadow of one limb on the ground, under a wide light overhead.
+// The soft shadow of one limb on the ground, under a wide light overhead.
 //
-// The limb's outline from above, blurred by a normal distribution that widens with the height over the ground: crisp under a planted foot, a
-// breath under the head. The target's alpha starts at 1 and keeps what light is left.
+// It is the limb's outline from above, blurred by a normal distribution that widens with the height
+// above the ground: crisp under a planted foot, faint under the head. The target's alpha begins at
+// 1 and is the share of light that is left.
 
 struct Limb {
     @builtin(vertex_index) corner: u32,
@@ -9,17 +10,17 @@ struct Limb {
     @location(1) a: vec4f,
     @location(2) b: vec4f,
     @location(3) flat_axis: vec4f,
-    // How strong the shadow is, 0 to 1.
+    // The strength of the shadow, 0 to 1.
     @location(10) strength: f32,
 }
 
 struct Blot {
     @builtin(position) clip: vec4f,
-    // Along and across the limb, metres from `a`.
+    // Position along and across the limb, metres from `a`.
     @location(0) at: vec2f,
     // Length on the ground, radius of a and b, strength.
     @location(1) @interpolate(flat) size: vec4f,
-    // Width of the blur at a and b, and of an upright limb; a number of the limb's own.
+    // Width of the blur at a and b, and of an upright limb; a pseudorandom number of the limb.
     @location(2) @interpolate(flat) blur: vec4f,
 }
 
@@ -53,13 +54,13 @@ fn vs_shadow(limb: Limb) -> Blot {
     return out;
 }
 
-// Error function, to 4e-4.
+// Returns the error function, to 4e-4.
 fn erf(x: f32) -> f32 {
     let y = clamp(x, -3.0, 3.0);
     return tanh(1.1283792 * y + 0.1009 * y * y * y);
 }
 
-// A box from `low` to `high`, blurred by `sigma`, at 0.
+// Returns the value at 0 of a box from `low` to `high` that is blurred by `sigma`.
 fn blurred_box(low: f32, high: f32, sigma: f32) -> f32 {
     let scale = 0.70710678 / sigma;
     return 0.5 * (erf(high * scale) - erf(low * scale));
@@ -70,15 +71,16 @@ fn fs_shadow(in: Blot) -> @location(0) vec4f {
     let len = in.size.x;
     let t = clamp(in.at.x / max(len, 1e-5), 0.0, 1.0);
     let radius = mix(in.size.y, in.size.z, t);
-    // An upright limb darkens most through its lower part.
+    // The lower part of an upright limb darkens the ground most.
     let lying = smoothstep(0.5, 1.5, len / max(in.size.y, in.size.z));
     let sigma = mix(in.blur.z, mix(in.blur.x, in.blur.y, t), lying);
     let across = blurred_box(-radius - in.at.y, radius - in.at.y, sigma);
     let along = blurred_box(-0.85 * in.size.y - in.at.x, len + 0.85 * in.size.z - in.at.x, sigma);
-    // What is high up only dims a wide area: that much light comes around it.
+    // High limbs only dim a wide area, because light passes around them.
     let high = mix(1.0, 0.42, smoothstep(0.05, 0.45, sigma / 0.26));
     let dark = clamp(across * along, 0.0, 1.0) * high * in.size.w;
-    // Noise of the limb's own breaks up the steps of 8 bits; with one noise for all it would add up.
+    // Noise of its own for each limb hides the steps of 8 bits. The same noise for all would add
+    // up.
     let noise = dither(in.clip.xy + 17.0 * in.blur.w) * smoothstep(0.0, 3.0 / 255.0, dark);
     return vec4f(0.0, 0.0, 0.0, dark + noise);
 }

@@ -1,18 +1,19 @@
-// Skinned bodies: one mesh, moved by its joints. Solid, ghostly, and their edges.
+// Skinned bodies: one mesh, moved by its joints. Solid bodies, ghosts, and edges.
 
-// Two texels for each joint, 512 joints in a row: rotation (quaternion, w last); translation in metres, and the joint's colour as red, green and
-// blue in 0 to 255 to the base of 256.
+// Two texels for each joint, 512 joints in a row: the rotation (quaternion, w last); the
+// translation in metres, and the joint's colour as red + 256 green + 65,536 blue, each 0 to 255.
 @group(2) @binding(0) var joints: texture_2d<f32>;
 
 struct Vertex {
-    // In the bind pose, metres.
+    // Position in the bind pose, metres.
     @location(0) position: vec3f,
     @location(1) normal: vec4f,
     @location(2) joints: vec4u,
     @location(3) weights: vec4f,
     // The mesh's own colour, encoded.
     @location(4) tint: vec4f,
-    // The first joint of the figure; where its colour is from: 0 the figure, 1 its joints, 2 the mesh.
+    // The first joint of the figure; the source of its colour: 0 the figure, 1 its joints, 2 the
+    // mesh.
     @location(5) figure: vec2u,
     @location(6) color: vec4f,
 }
@@ -47,8 +48,10 @@ fn unpacked(color: f32) -> vec3f {
     return vec3f(color % 256.0, floor(color / 256.0) % 256.0, floor(color / 65536.0)) / 255.0;
 }
 
-// Linear blend: the mean of where the joints would take the point. Dual quaternions: the mean of the joints' motions (Kavan, Collins, Zara and
-// O'Sullivan, "Skinning with Dual Quaternions", algorithm 1), all in the hemisphere of the joint that does most.
+// Returns a vertex moved by its joints. Linear blend skinning takes the mean of the points to which
+// the joints move it. Dual quaternion skinning takes the mean of the joints' motions (Kavan,
+// Collins, Zara and O'Sullivan, "Skinning with Dual Quaternions", algorithm 1), all in the
+// hemisphere of the joint with the largest weight.
 fn skinned(vertex: Vertex) -> Moved {
     let dual = view.more.x > 0.5;
     var point = vec3f(0.0);
@@ -110,7 +113,8 @@ fn vs_skin(vertex: Vertex) -> Surface {
     return out;
 }
 
-// The skin, grown by the width of an edge; its back shows around the body, and where a limb passes before the trunk.
+// Draws the skin, grown by the width of an edge, so that its back shows around the body, and where
+// a limb passes in front of the trunk.
 @vertex
 fn vs_skin_edge(vertex: Vertex) -> Surface {
     let moved = skinned(vertex);
@@ -124,13 +128,14 @@ fn vs_skin_edge(vertex: Vertex) -> Surface {
     return out;
 }
 
-// As the main light sees it.
+// Draws the depths for the light map.
 @vertex
 fn vs_skin_cast(vertex: Vertex) -> @builtin(position) vec4f {
     return vec4f(on_map(skinned(vertex).world), 1.0);
 }
 
-// How much of the sky comes to a point: less where the body leans over it and near the ground that it shades.
+// Returns the share of the sky that reaches a point. It is less where the body leans over the
+// point, and near the shaded ground.
 fn sky_on_skin(world: vec3f, normal: vec3f) -> f32 {
     let low = smoothstep(0.35, 0.0, world.y) * (0.5 - 0.5 * normal.y);
     return 1.0 - 0.35 * low;
@@ -153,7 +158,7 @@ fn fs_skin_ghost(in: Surface) -> @location(0) vec4f {
     return ghost_color(in.color, in.world, normalize(in.normal));
 }
 
-// For passes that only find depths.
+// For passes that write only depths.
 @fragment
 fn fs_depth() -> @location(0) vec4f {
     return vec4f(0.0);

@@ -1,5 +1,4 @@
-//! What skinned bodies need on the GPU: each mesh once, and the joints of all figures of a stage in
-//! a texture.
+//! Skinned bodies on the GPU: each mesh once, and the joints of all figures of a stage in a texture.
 
 use super::buffers::filled_buffer;
 use super::frame::SharedMesh;
@@ -9,7 +8,7 @@ use eframe::wgpu;
 use segue_motion::skin::SkinnedMesh;
 use std::sync::{Arc, Weak};
 
-/// Joints in a row of their texture, as skin.wgsl has it.
+/// The number of joints in a row of their texture, as in skin.wgsl.
 const JOINTS_IN_ROW: usize = 512;
 
 /// A mesh in the memory of the device.
@@ -51,7 +50,7 @@ impl SkinBuffers {
     fn new(device: &wgpu::Device, queue: &wgpu::Queue, mesh: &Arc<SkinnedMesh>) -> Self {
         let buffer = |contents: &[u8], usage| filled_buffer(device, queue, "skin", contents, usage);
         let vertices = vertices(mesh);
-        // A corner that is no vertex takes its whole triangle out.
+        // A triangle with an invalid corner is left out.
         let inside = |triangle: &&[u32; 3]| {
             triangle.iter().all(|&corner| (corner as usize) < vertices.len())
         };
@@ -65,13 +64,12 @@ impl SkinBuffers {
     }
 }
 
-/// The meshes of all stages, as long as anybody keeps them.
+/// The meshes of all stages on the device, while their originals exist.
 #[derive(Default)]
 pub(super) struct SkinStore(Vec<SkinBuffers>);
 
 impl SkinStore {
-    /// Brings those meshes to the device that are not there yet, and lets go of those that are
-    /// gone.
+    /// Uploads new meshes to the device, and drops those whose originals no longer exist.
     pub(super) fn load(
         &mut self,
         device: &wgpu::Device,
@@ -86,7 +84,7 @@ impl SkinStore {
         }
     }
 
-    /// A mesh that was loaded.
+    /// Returns the buffers of a loaded mesh.
     pub(super) fn get(&self, mesh: &Arc<SkinnedMesh>) -> Option<&SkinBuffers> {
         self.0.iter().find(|buffers| buffers.mesh.as_ptr() == Arc::as_ptr(mesh))
     }
@@ -97,13 +95,13 @@ impl SkinStore {
 pub(super) struct JointTexture {
     texture: Option<wgpu::Texture>,
     pub(super) bound: Option<wgpu::BindGroup>,
-    /// The rows as they are written, the last one filled up.
+    /// The rows to write; the last one is padded.
     rows: Vec<JointTexels>,
 }
 
 impl JointTexture {
-    /// Writes them, into a larger texture where that is needed. Those that no texture holds are
-    /// left out.
+    /// Writes the joints, into a larger texture where it is needed. Joints beyond the largest texture
+    /// are left out.
     pub(super) fn write(
         &mut self,
         device: &wgpu::Device,
@@ -111,8 +109,8 @@ impl JointTexture {
         pipelines: &Pipelines,
         joints: &[JointTexels],
     ) {
-        let most = device.limits().max_texture_dimension_2d;
-        let needed = (joints.len().div_ceil(JOINTS_IN_ROW) as u32).clamp(1, most);
+        let max_rows = device.limits().max_texture_dimension_2d;
+        let needed = (joints.len().div_ceil(JOINTS_IN_ROW) as u32).clamp(1, max_rows);
         if joints.is_empty() && self.bound.is_some() {
             return;
         }
@@ -123,7 +121,7 @@ impl JointTexture {
                     label: Some("joints"),
                     size: wgpu::Extent3d {
                         width: 2 * JOINTS_IN_ROW as u32,
-                        height: needed.next_power_of_two().min(most),
+                        height: needed.next_power_of_two().min(max_rows),
                         depth_or_array_layers: 1,
                     },
                     mip_level_count: 1,

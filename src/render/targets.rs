@@ -4,17 +4,17 @@ use super::layout::{COLOR_FORMAT, DEPTH_FORMAT};
 use super::pipelines::Pipelines;
 use eframe::wgpu;
 
-/// What a stage is drawn into.
+/// The textures that a stage is drawn into.
 pub(super) struct Targets {
     pub(super) size: [u32; 2],
     /// The finished picture.
     #[cfg(test)]
     pub(super) color: wgpu::Texture,
     pub(super) color_view: wgpu::TextureView,
-    /// Several samples per pixel; `None` where the machine has but one.
+    /// The multisampled colours; `None` where the device has one sample per pixel.
     pub(super) samples: Option<wgpu::TextureView>,
     pub(super) depth: wgpu::TextureView,
-    /// The finished picture for the page.
+    /// The bind group that the page samples the finished picture with.
     pub(super) composite: wgpu::BindGroup,
 }
 

@@ -1,4 +1,4 @@
-//! One stage on the device: its targets, its buffers, and the frame that they hold.
+//! A stage on the device: its targets, its buffers, and the frame that they hold.
 
 use super::buffers::GrowingBuffer;
 use super::frame::Frame;
@@ -6,14 +6,15 @@ use super::skins::JointTexture;
 use super::targets::Targets;
 use eframe::wgpu;
 
-/// What the renderer keeps of one stage.
+/// The resources of one stage.
 pub(super) struct View {
     pub(super) targets: Targets,
-    /// A smaller picture, for what moves on a machine that draws in software.
+    /// The targets of a smaller picture, for stages that change on a machine that draws in
+    /// software.
     pub(super) coarse: Option<Targets>,
     pub(super) drawn: Frame,
     pub(super) shown: Shown,
-    /// Whether nothing was left out of it.
+    /// Whether every part of the frame was drawn.
     pub(super) complete: bool,
     pub(super) limbs: GrowingBuffer,
     pub(super) skins: GrowingBuffer,
@@ -24,7 +25,7 @@ pub(super) struct View {
     pub(super) figure_uniforms: GrowingBuffer,
     pub(super) views_bound: Option<wgpu::BindGroup>,
     pub(super) figures_bound: Option<wgpu::BindGroup>,
-    /// Frames since it was last asked for.
+    /// The number of frames since it was last drawn.
     pub(super) idle: u32,
 }
 
@@ -39,7 +40,7 @@ pub(super) enum Shown {
 }
 
 impl View {
-    /// Returns the targets that hold, or are to hold, the picture that is shown.
+    /// Returns the targets of the shown picture.
     pub(super) fn current(&self) -> &Targets {
         match &self.coarse {
             Some(coarse) if self.shown == Shown::Coarse => coarse,

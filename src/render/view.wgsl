@@ -1,37 +1,39 @@
-// What every shader of the stage shares. Colours come in and go out sRGB-encoded; light is computed linearly in between.
+// The uniforms and functions of all shaders of the stage. Colours come in and go out sRGB-encoded;
+// light is computed linearly in between.
 
 struct View {
     clip_from_world: mat4x4f,
-    // Where the camera stands; w is 1 for an orthographic lens.
+    // Position of the camera; w is 1 for an orthographic lens.
     eye: vec4f,
     // World vectors of half the picture's width and height, at depth 1 for a perspective lens.
     right: vec4f,
     up: vec4f,
-    // Where the camera looks, unit; w is the nearest depth.
+    // Viewing direction of the camera, unit; w is the depth of the near plane.
     forward: vec4f,
-    // The pane in the target: left, top, width, height, pixels.
+    // Rectangle of the pane in the target: left, top, width, height, pixels.
     viewport: vec4f,
-    // Towards the main light, unit; w is the number of pixels per point.
+    // Direction towards the main light, unit; w is the number of pixels per point.
     key: vec4f,
     background_top: vec4f,
     background_bottom: vec4f,
     // w is the radius of the lit part, metres.
     floor: vec4f,
-    // Middle of the lit part; w is how dark a shadow gets.
+    // Centre of the lit part; w is the darkness of shadows.
     focus: vec4f,
     grid: vec4f,
     edge: vec4f,
     // Width of edges in pixels, darkening of rims, 1 for two flat tones, light on rims from behind.
     style: vec4f,
-    // Middle of what the light map shows; w is half its width, metres.
+    // Centre of the light map's box; w is half its width, metres.
     light_center: vec4f,
-    // The map's directions, unit: to its right, w is half its depth in metres; up, w is 1 where there is a map.
+    // The map's directions, unit: to its right, with half its depth in metres as w; up, with w 1
+    // where there is a map.
     light_right: vec4f,
     light_up: vec4f,
     // The pane's part of the map: left, top, width, height, 0 to 1.
     light_tile: vec4f,
-    // Width of a texel in metres; how fast the edge of a shadow widens with distance, and the widest it gets, metres; how much of the light on
-    // the ground is the main one's.
+    // Width of a texel in metres; widening of a shadow's edge with distance, metres per metre;
+    // greatest width of the edge, metres; share of the main light in the light on the ground.
     light_tile_metres: vec4f,
     // 1 for dual quaternions; width of a cell of the grid, metres; unused, unused.
     more: vec4f,
@@ -48,18 +50,19 @@ fn to_srgb(c: vec3f) -> vec3f {
     return select(1.055 * pow(max(x, vec3f(1e-6)), vec3f(1.0 / 2.4)) - 0.055, x * 12.92, x <= vec3f(0.0031308));
 }
 
-// World metres per pixel at a point.
+// Returns the metres per pixel at a point of the world.
 fn pixel_size(world: vec3f) -> f32 {
     let depth = select(dot(world - view.eye.xyz, view.forward.xyz), 1.0, view.eye.w > 0.5);
     return 2.0 * max(depth, view.forward.w) * length(view.up.xyz) / view.viewport.w;
 }
 
-// Unit vector from a point to the camera.
+// Returns the unit vector from a point to the camera.
 fn towards_eye(world: vec3f) -> vec3f {
     return normalize(select(view.eye.xyz - world, -view.forward.xyz, view.eye.w > 0.5));
 }
 
-// Even noise of a pixel, within half a step of 8 bits: it breaks up bands and leaves exact colours exact.
+// Returns uniform noise for a pixel, within half a step of 8 bits. It hides bands, and leaves exact
+// colours exact.
 fn dither(pixel: vec2f) -> f32 {
     return (fract(52.9829189 * fract(dot(floor(pixel), vec2f(0.06711056, 0.00583715)))) - 0.5) * (0.96 / 255.0);
 }

@@ -5,11 +5,11 @@ use super::light::{self, LightBox, MAP_SIZE};
 use glam::Vec4;
 use segue_scene::{Lens, Look, Pane, Skinning, Stage, Viewport};
 
-/// The main light's radius over its distance: how much wider the edge of a shadow gets with every
-/// metre.
+/// The ratio of the main light's radius to its distance, which is the widening of a shadow's edge in
+/// metres per metre.
 const SPREAD: f32 = 0.055;
-/// The widest that the edge of a shadow gets to either side, metres.
-const WIDEST_M: f32 = 0.13;
+/// The greatest width of a shadow's edge to either side, metres.
+const MAX_SPREAD_M: f32 = 0.13;
 
 /// Returns the uniform block of a pane, without its light. `stretch` scales widths of lines.
 pub(super) fn view_uniform(
@@ -38,8 +38,8 @@ pub(super) fn view_uniform(
         key: key.extend(scale).to_array(),
         background_top: look.background_top,
         background_bottom: look.background_bottom,
-        // From far the light falls on more of the ground: it is the middle of the picture that is
-        // lit.
+        // The lit part of the ground grows with the distance of the camera, so that it fills the
+        // middle of the picture.
         floor: Vec4::from(look.floor)
             .with_w(look.floor_radius.max(0.55 * camera.distance).max(0.1))
             .to_array(),
@@ -73,7 +73,7 @@ pub(super) fn add_light(view: &mut ViewUniform, pane: &Pane, look: &Look, tile: 
     view.light_up = fit.up.extend(1.0).to_array();
     view.light_tile =
         [tile.x, tile.y, tile.width, tile.height].map(|texels| texels as f32 / MAP_SIZE as f32);
-    let [spread, widest] = if look.flat { [0.0, 0.0] } else { [SPREAD, WIDEST_M] };
-    view.light_tile_metres = [texel, spread, widest, look.key_shadow];
+    let [spread, max_spread] = if look.flat { [0.0, 0.0] } else { [SPREAD, MAX_SPREAD_M] };
+    view.light_tile_metres = [texel, spread, max_spread, look.key_shadow];
     true
 }

@@ -1,4 +1,4 @@
-//! What can be said of a picture to the pixel, and what drawing it takes.
+//! Tests of pictures to the pixel, and measurements of the time to draw them.
 
 use super::{A, B, actors, ball, gpu, gpu_for, stage};
 use crate::render::frame::Frame;
@@ -9,9 +9,8 @@ use glam::Vec3;
 use segue_scene::{Camera, Lens, Look, Pane, Stage, Viewport, rgb};
 use std::time::Instant;
 
-/// Draws without a graphics card what moves, and then what stands still.
 #[test]
-fn in_software_what_moves_is_coarse_and_what_stands_is_fine() {
+fn stage_in_software_is_coarse_in_motion_and_fine_at_rest() {
     let Some(mut gpu) = gpu() else { return };
     let actors = actors();
     let size = [960, 600];
@@ -30,7 +29,7 @@ fn in_software_what_moves_is_coarse_and_what_stands_is_fine() {
     stage.panes[0].camera.yaw += 0.1;
     assert_eq!(prepared(&stage), (true, true));
 
-    // The coarse frame shows the same panes in the same places.
+    // The coarse frame has the same panes at the same positions.
     let (mut fine, mut coarse) = (Frame::default(), Frame::default());
     fine.build(&stage, size, size, Quality::Plain);
     coarse.build(&stage, size, [480, 300], Quality::Plain);
@@ -44,14 +43,14 @@ fn in_software_what_moves_is_coarse_and_what_stands_is_fine() {
 }
 
 #[test]
-fn a_stage_without_size_or_with_a_pane_outside_is_fine() {
+fn stage_without_size_or_with_a_pane_outside_is_drawn() {
     let Some(mut gpu) = gpu() else { return };
     let actors = actors();
     let mut stage = stage(&actors, [64, 64], 1, false, 1.0);
     assert!(render_to_image(&mut gpu.renderer, &gpu.device, &gpu.queue, &stage, [0, 64]).is_err());
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     assert!(!gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 1, &stage, [0, 0]).drawn);
-    // What did not change is not drawn again; what changed in size or content is.
+    // An unchanged stage is not drawn again; one of another size or content is.
     assert!(gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 1, &stage, [64, 64]).drawn);
     assert!(
         !gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 1, &stage, [64, 64]).drawn
@@ -60,7 +59,7 @@ fn a_stage_without_size_or_with_a_pane_outside_is_fine() {
     stage.panes[0].camera.yaw += 0.1;
     assert!(gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 1, &stage, [65, 64]).drawn);
     gpu.queue.submit([encoder.finish()]);
-    // Panes that reach out of the stage, that are empty, and limbs that are no numbers.
+    // Panes that extend beyond the stage, empty panes, and limbs that are not finite.
     stage.panes[0].viewport = Viewport { x: 40, y: 40, width: 500, height: 500 };
     stage.panes[0].limbs[0].a = Vec3::NAN;
     stage.panes[0].limbs[1].radius_a = f32::INFINITY;
@@ -79,7 +78,7 @@ fn a_stage_without_size_or_with_a_pane_outside_is_fine() {
 }
 
 #[test]
-fn a_ghost_shows_only_its_front_and_is_hidden_by_the_solid_before_it() {
+fn ghost_shows_its_front_and_is_hidden_by_a_solid_body_before_it() {
     let Some(mut gpu) = gpu() else { return };
     let camera = Camera {
         target: Vec3::Y * 2.0,
@@ -122,19 +121,19 @@ fn a_ghost_shows_only_its_front_and_is_hidden_by_the_solid_before_it() {
         &[(0..3, true)],
     );
     assert_eq!(one, stacked);
-    // A second ghost behind it does.
+    // A second ghost behind it adds its colour.
     let two = middle(
         vec![ball(at(0.0), 0.5, red), ball(at(-3.0), 0.5, red)],
         &[(0..1, true), (1..2, true)],
     );
     assert!(two[0] > one[0] + 20, "{two:?} over {one:?}");
-    // In whichever order they come.
+    // The order of the ghosts does not matter.
     let swapped = middle(
         vec![ball(at(-3.0), 0.5, red), ball(at(0.0), 0.5, red)],
         &[(0..1, true), (1..2, true)],
     );
     assert_eq!(two, swapped);
-    // A solid before it hides it; a solid behind it shines through.
+    // A solid body in front hides it; one behind it shines through.
     let white = [1.0, 1.0, 1.0, 1.0];
     let alone = middle(vec![ball(at(2.0), 0.5, white)], &[(0..1, false)]);
     let hidden = middle(
@@ -150,7 +149,7 @@ fn a_ghost_shows_only_its_front_and_is_hidden_by_the_solid_before_it() {
 }
 
 #[test]
-fn a_ball_is_round_and_as_large_as_the_camera_says() {
+fn ball_is_round_and_has_the_size_of_its_projection() {
     let Some(mut gpu) = gpu() else { return };
     let camera = Camera {
         target: Vec3::Y * 4.0,
@@ -189,7 +188,7 @@ fn a_ball_is_round_and_as_large_as_the_camera_says() {
 }
 
 #[test]
-fn the_page_gets_the_stage_pixel_by_pixel_in_both_kinds_of_targets() {
+fn page_gets_the_stage_pixel_by_pixel_in_encoded_and_linear_targets() {
     for format in [wgpu::TextureFormat::Rgba8Unorm, wgpu::TextureFormat::Rgba8UnormSrgb] {
         let Some(mut gpu) = gpu_for(format) else {
             return;
@@ -280,7 +279,7 @@ fn time_to_build_and_encode() {
                 .drawn
         );
         prepare += start.elapsed().as_secs_f64();
-        // Without submitting: this measures the processor's side alone.
+        // Nothing is submitted, because this measures only the processor's time.
         drop(encoder);
     }
     let limbs: usize = stage.panes.iter().map(|p| p.limbs.len()).sum();

@@ -1,4 +1,4 @@
-//! The main light and its shadow.
+//! Tests of the main light and its shadow.
 
 use super::{ball, colors, gpu, options, staged};
 use crate::render::render_to_image;
@@ -6,8 +6,8 @@ use glam::Vec3;
 use segue_scene::{Camera, Director, Figure, Lens, Limb, Look, Pane, Stage, Viewport};
 use segue_session::{Command, PlaybackCommand, Session};
 
-/// Balls seen from straight above, 1 cm to the pixel, x to the right and z downwards, the origin in
-/// the middle.
+/// Returns a stage with balls seen from straight above: 1 cm per pixel, x to the right, z down, and
+/// the origin in the middle.
 fn from_above(balls: &[Limb], shadow: f32) -> Stage {
     let mut camera = Camera {
         target: Vec3::ZERO,
@@ -37,10 +37,10 @@ fn from_above(balls: &[Limb], shadow: f32) -> Stage {
 const SIZE: u32 = 400;
 
 #[test]
-fn a_shadow_lies_where_the_light_says_crisp_below_what_is_low() {
+fn shadow_follows_the_light_and_is_crisp_below_low_bodies() {
     let Some(mut gpu) = gpu() else { return };
     let key = crate::render::light::key_direction(Vec3::X, 0.0);
-    // Red at a place on the ground: how much light comes to it.
+    // The red channel at a point of the ground, as the measure of its light.
     let mut light = |height: f32, along: &[f32]| -> Vec<i32> {
         let stage = from_above(&[ball(Vec3::new(0.0, height, 0.0), 0.2, [1.0; 4])], 1.0);
         let image = gpu.draw(&format!("light-ball-{height}"), &stage, [SIZE, SIZE]);
@@ -57,8 +57,8 @@ fn a_shadow_lies_where_the_light_says_crisp_below_what_is_low() {
     };
     let far = light(1.3, &[0.0, 0.8]);
     assert!(far[0] < far[1] - 40, "in the shadow {} and beside it {}", far[0], far[1]);
-    // The ball's shadow is 0.2 m / sin(height of the light) long to its edge. From there on it is
-    // light at once when the ball is low, not so when it is high.
+    // The edge of the ball's shadow is at 0.2 m / sin(elevation of the light). Beyond it, the ground
+    // is lit at once when the ball is low, and gradually when it is high.
     let edge = 0.2 / key.y;
     let reach = [edge - 0.05, edge + 0.05];
     let (low, high) = (light(0.45, &reach), light(1.3, &reach));
@@ -70,7 +70,7 @@ fn a_shadow_lies_where_the_light_says_crisp_below_what_is_low() {
 }
 
 #[test]
-fn a_body_does_not_shade_what_faces_the_light() {
+fn side_of_a_body_towards_the_light_is_not_shaded() {
     let Some(mut gpu) = gpu() else { return };
     let key = crate::render::light::key_direction(Vec3::X, 0.0);
     let (center, radius) = (Vec3::new(0.0, 0.9, 0.0), 0.8);
@@ -98,7 +98,7 @@ fn a_body_does_not_shade_what_faces_the_light() {
 }
 
 #[test]
-fn a_figure_on_all_stages() {
+fn figure_is_drawn_in_every_look() {
     let Some(mut gpu) = gpu() else { return };
     let size = [1440, 700];
     let shown: Vec<(usize, Viewport)> =
@@ -134,7 +134,7 @@ fn a_figure_on_all_stages() {
             );
             let image = gpu.draw(&format!("stage-{name}-{scene}"), &stage, size);
             if name == "paper" {
-                // White stays white to the corner.
+                // The background is white up to the corner.
                 assert_eq!(image.pixel(4, 4), Some([255; 4]));
             }
         }
@@ -142,7 +142,7 @@ fn a_figure_on_all_stages() {
 }
 
 #[test]
-fn a_lecture_hall_sees_a_foot_that_slides() {
+fn sliding_foot_is_marked_in_the_projector_look() {
     let Some(mut gpu) = gpu() else { return };
     let size = [1920, 1080];
     let shown = [(0, Viewport { width: size[0], height: size[1], ..Viewport::default() })];
@@ -159,7 +159,7 @@ fn a_lecture_hall_sees_a_foot_that_slides() {
         let stage =
             staged(&mut Director::default(), &session, &options(&shown, look, &colors), 0.0);
         let ring = stage.panes[0].rings.iter().find(|ring| ring.color == colors.bad)?;
-        // It is heavier than that of a foot that stands.
+        // The ring is heavier than that of a planted foot.
         assert!(ring.fill > 0.2 && ring.width > 0.02);
         Some(stage)
     };

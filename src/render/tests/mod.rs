@@ -1,5 +1,5 @@
-//! Pictures from a device without a window: run with `cargo test --bin segue render` and look at
-//! `target/stage/*.png`.
+//! Tests that draw pictures on a device without a window. `cargo test --bin segue render` leaves them
+//! in `target/stage/*.png`.
 
 mod exact;
 mod light;
@@ -24,7 +24,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// A ball of a colour.
+/// Returns a ball of a colour.
 fn ball(center: Vec3, radius: f32, color: Color) -> Limb {
     Limb {
         a: center,
@@ -57,7 +57,7 @@ fn staged(
     director.stage(session, options, 0.0)
 }
 
-/// The colours of the dark theme, or of the light one.
+/// Returns the colours of the dark theme (0) or of the light one (1).
 fn colors(theme: usize) -> Colors {
     Colors {
         a: rgb(A[theme]),
@@ -77,7 +77,7 @@ struct Gpu {
 }
 
 impl Gpu {
-    /// Draws as on a machine with a graphics card, and keeps the picture.
+    /// Draws with full quality, and saves the picture.
     fn draw(&mut self, name: &str, stage: &Stage, size: [u32; 2]) -> Image {
         self.renderer.set_quality(Quality::Full);
         let start = Instant::now();
@@ -91,13 +91,13 @@ impl Gpu {
     }
 }
 
-/// `None` where the machine has nothing to draw with.
+/// Returns a device to draw with; `None` where the machine has none.
 fn gpu() -> Option<Gpu> {
     gpu_for(wgpu::TextureFormat::Bgra8Unorm)
 }
 
 fn gpu_for(output: wgpu::TextureFormat) -> Option<Gpu> {
-    // `WGPU_BACKEND=gl` draws as WebGL does.
+    // `WGPU_BACKEND=gl` selects the backend that resembles WebGL.
     let instance =
         wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
     let options = wgpu::RequestAdapterOptions::default();
@@ -130,7 +130,8 @@ const A: [u32; 2] = [0xf2_a3_5e, 0xd9_79_2a];
 const B: [u32; 2] = [0x5f_a8_f5, 0x2f_7f_d6];
 const RESULT: [u32; 2] = [0x58_d6_a9, 0x16_9d_72];
 
-/// A walker with two ghosts behind and two runners before, paths on the ground, and a planted foot.
+/// Returns a pane with a walker, two ghosts behind and two runners in front, paths on the ground, and
+/// a planted foot.
 fn blend_pane(actors: &Actors, viewport: Viewport, light: bool, frame: usize) -> Pane {
     let theme = usize::from(light);
     let look = if light { Look::LIGHT } else { Look::DARK };

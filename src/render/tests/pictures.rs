@@ -1,4 +1,4 @@
-//! Bodies of limbs, to be looked at.
+//! Pictures of bodies made of limbs.
 
 use super::{actors, blend_pane, gpu, stage};
 use glam::Vec3;
@@ -9,7 +9,7 @@ use segue_scene::{
 };
 
 #[test]
-fn three_panes_in_both_themes_and_on_a_phone() {
+fn three_panes_are_drawn_in_both_themes_and_on_a_phone() {
     let Some(mut gpu) = gpu() else { return };
     let actors = actors();
     for (theme, light) in [("dark", false), ("light", true)] {
@@ -18,7 +18,7 @@ fn three_panes_in_both_themes_and_on_a_phone() {
             &stage(&actors, [1440, 900], 3, light, 1.0),
             [1440, 900],
         );
-        // The palette comes out exactly.
+        // The colours of the palette are exact.
         let expected = if light { [0xee, 0xf0, 0xf4, 0xff] } else { [0x0f, 0x11, 0x15, 0xff] };
         assert_eq!(image.pixel(20, 0), Some(expected));
         assert_eq!(image.pixel(1300, 0), Some(expected));
@@ -27,7 +27,7 @@ fn three_panes_in_both_themes_and_on_a_phone() {
 }
 
 #[test]
-fn the_mannequin_from_all_sides() {
+fn mannequin_is_drawn_from_all_sides() {
     let Some(mut gpu) = gpu() else { return };
     let actors = actors();
     let size = [1800, 1100];
@@ -60,7 +60,7 @@ fn the_mannequin_from_all_sides() {
     }
 }
 
-/// A four-legged animal that no role fits.
+/// Returns the skeleton of a four-legged animal, whose joints have no roles.
 fn dog() -> Skeleton {
     let mut joints: Vec<Joint> = Vec::new();
     let mut add = |name: &str, parent: Option<usize>, offset: [f32; 3]| {
@@ -91,7 +91,7 @@ fn dog() -> Skeleton {
 }
 
 #[test]
-fn from_above_close_up_and_other_bodies() {
+fn bodies_are_drawn_from_above_close_up_and_without_roles() {
     let Some(mut gpu) = gpu() else { return };
     let actors = actors();
     for light in [false, true] {

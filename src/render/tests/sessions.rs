@@ -1,4 +1,4 @@
-//! What a session puts on the stage, to be looked at.
+//! Pictures of the stages of sessions.
 
 use super::{colors, gpu, options, staged};
 use segue_motion::path::{PathEdit, Pins};
@@ -7,7 +7,7 @@ use segue_session::{Command, Key, List, Session};
 use std::sync::Arc;
 
 #[test]
-fn the_chosen_joint_is_marked_over_the_body() {
+fn chosen_joint_is_marked_over_the_body() {
     let Some(mut gpu) = gpu() else { return };
     let size = [700, 600];
     let shown = [(0, Viewport { width: size[0], height: size[1], ..Viewport::default() })];
@@ -32,7 +32,7 @@ fn the_chosen_joint_is_marked_over_the_body() {
 }
 
 #[test]
-fn a_layered_body_shows_whose_limbs_are_whose() {
+fn limbs_of_a_layered_body_have_the_colours_of_their_clips() {
     let Some(mut gpu) = gpu() else { return };
     let size = [1440, 620];
     for (theme, look) in [Look::DARK, Look::LIGHT].into_iter().enumerate() {
@@ -69,7 +69,7 @@ fn a_layered_body_shows_whose_limbs_are_whose() {
 }
 
 #[test]
-fn registered_clips_walk_beside_the_result_and_a_pair_stands_in_its_place() {
+fn registered_clips_are_drawn_beside_the_result() {
     let Some(mut gpu) = gpu() else { return };
     let (size, look) = ([1400, 560], Look::DARK);
     let colors = Colors { ghost_alpha: 0.42, ..colors(0) };
@@ -99,7 +99,7 @@ fn registered_clips_walk_beside_the_result_and_a_pair_stands_in_its_place() {
 }
 
 #[test]
-fn a_path_lies_on_the_stage_with_its_points_and_those_who_play_along() {
+fn path_is_drawn_with_its_points_and_extra_characters() {
     let Some(mut gpu) = gpu() else { return };
     let size = [1000, 640];
     let camera = "follow=off&camera_pitch=34&camera_distance=11&pan_z=2.5";
@@ -146,7 +146,7 @@ fn a_path_lies_on_the_stage_with_its_points_and_those_who_play_along() {
 }
 
 #[test]
-fn a_driven_character_has_its_ways_on_the_ground_a_ghost_and_a_crowd() {
+fn driven_character_is_drawn_with_its_paths_a_ghost_and_a_crowd() {
     let Some(mut gpu) = gpu() else { return };
     let size = [1000, 640];
     for (theme, look) in [Look::DARK, Look::LIGHT].into_iter().enumerate() {

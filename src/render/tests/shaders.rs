@@ -1,9 +1,11 @@
-//! What every shader must be.
+//! Validation of every shader.
 
-use crate::render::pipelines::{COMPOSITE, GROUND, KEY_SHADOW, LIMB, LINE, RING, SHADOW, SKIN};
+use crate::render::pipelines::shaders::{
+    COMPOSITE, GROUND, KEY_SHADOW, LIMB, LINE, RING, SHADOW, SKIN,
+};
 use eframe::wgpu::naga;
 
-/// Every entry point can be said in the shading language of WebGL 2.
+/// Asserts that every entry point can be translated to the shading language of WebGL 2.
 fn translates_to_webgl(name: &str, module: &naga::Module, info: &naga::valid::ModuleInfo) {
     use naga::back::glsl;
     for entry in &module.entry_points {
@@ -31,7 +33,7 @@ fn translates_to_webgl(name: &str, module: &naga::Module, info: &naga::valid::Mo
 }
 
 #[test]
-fn every_shader_is_valid() {
+fn every_shader_is_valid_and_translates_to_webgl() {
     for (name, source) in [
         ("limb", LIMB),
         ("skin", SKIN),
@@ -44,7 +46,7 @@ fn every_shader_is_valid() {
     ] {
         let module = naga::front::wgsl::parse_str(source)
             .unwrap_or_else(|e| panic!("{name}.wgsl: {}", e.emit_to_string(source)));
-        // No capabilities beyond the plain ones.
+        // No optional capabilities are allowed.
         let mut validator = naga::valid::Validator::new(
             naga::valid::ValidationFlags::all(),
             naga::valid::Capabilities::empty(),

@@ -1,4 +1,4 @@
-//! Bodies in skins.
+//! Tests of bodies in skins.
 
 use super::{colors, gpu, options, staged};
 use crate::render::{Quality, frame::Frame, render_to_image};
@@ -9,8 +9,7 @@ use segue_session::{Command, PlaybackCommand, Session};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// A rod along x, from -0.5 m to 0.5 m about the height of 1 m, that one joint moves at one end and
-/// another at the other.
+/// Returns a rod along x from -0.5 m to 0.5 m at a height of 1 m, with a joint at each end.
 fn rod() -> SkinnedMesh {
     const SIDES: u32 = 24;
     const RINGS: u32 = 40;
@@ -70,14 +69,14 @@ fn stage_of(mesh: &Arc<SkinnedMesh>, joints: &[RigidTransform], skinning: Skinni
 const SIZE: u32 = 240;
 
 #[test]
-fn the_gpu_skins_as_the_plain_sums_do() {
+fn gpu_skinning_agrees_with_the_cpu() {
     let Some(mut gpu) = gpu() else { return };
     let mesh = Arc::new(rod());
     let twist = RigidTransform {
         rotation: Quat::from_rotation_z(0.6) * Quat::from_rotation_x(2.8),
         translation: Vec3::new(0.3, 0.1, -0.2),
     };
-    // The same rotation, said by the quaternion on the other side.
+    // The same rotation as the negated quaternion.
     let first = RigidTransform {
         rotation: -Quat::from_rotation_y(0.3),
         translation: Vec3::new(-0.1, 0.0, 0.05),
@@ -117,7 +116,7 @@ fn the_gpu_skins_as_the_plain_sums_do() {
 }
 
 #[test]
-fn joints_that_are_none_and_lists_that_do_not_fit_are_drawn_somehow() {
+fn skins_with_invalid_joints_and_lists_are_drawn() {
     let Some(mut gpu) = gpu() else { return };
     let mut odd = rod();
     odd.joints[3] = [900, 2, 65_535, 7];
@@ -147,7 +146,7 @@ fn session(link: &str) -> Session {
 }
 
 #[test]
-fn a_twisted_forearm_in_both_ways_of_skinning() {
+fn twisted_forearm_is_drawn_with_both_kinds_of_skinning() {
     let Some(mut gpu) = gpu() else { return };
     let size = [1200, 700];
     let session = session(
@@ -167,7 +166,7 @@ fn a_twisted_forearm_in_both_ways_of_skinning() {
 }
 
 #[test]
-fn statures() {
+fn figures_of_other_heights_are_drawn() {
     let Some(mut gpu) = gpu() else { return };
     let size = [1400, 560];
     let viewports: Vec<Viewport> = Viewport::columns(size[0], size[1], 4, 1).collect();
@@ -185,8 +184,8 @@ fn statures() {
             &options(&[(0, viewport)], Look::LIGHT, &colors(1)),
             0.0,
         );
-        // The world about a figure of 60 % is shown smaller by as much: from so much farther off,
-        // and with wider cells.
+        // The world around a figure of 60 % height appears smaller by as much: the camera is farther
+        // away, and the cells of the grid are wider.
         let height = if stature == "figure_height=0.6" { 0.6 } else { 1.0 };
         assert!(
             (stage.panes[0].camera.distance * height - 4.8).abs() < 1e-4
@@ -199,7 +198,7 @@ fn statures() {
 }
 
 #[test]
-fn a_hundred_characters() {
+fn hundred_characters_are_drawn_at_once() {
     const ROUNDS: u32 = 60;
     let Some(mut gpu) = gpu() else { return };
     let size = [1440, 900];
@@ -223,7 +222,7 @@ fn a_hundred_characters() {
             gpu.device.create_command_encoder(&eframe::wgpu::CommandEncoderDescriptor::default());
         gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 5, &stage, size);
         if round == 0 {
-            // One draw for all of them.
+            // All of them are one draw.
             assert_eq!(
                 (stage.panes[0].figures.len(), frame.solid_skins.len(), frame.meshes.len()),
                 (100, 1, 1)
