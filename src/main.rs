@@ -40,8 +40,7 @@ fn main() -> eframe::Result {
     )
 }
 
-/// The page's modules start the app, through the `SegueHandle` of [`web_api`]; here is only what
-/// comes before.
+/// Sets up logging. The page's modules start the app, through the `SegueHandle` of [`web_api`].
 #[cfg(target_arch = "wasm32")]
 fn main() {
     eframe::WebLogger::init(log::LevelFilter::Warn).ok();

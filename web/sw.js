@@ -1,36 +1,38 @@
-// Keeps the page for visits without a network. `cargo xtask seal` fills in what this build is called and consists of.
+// The service worker: it serves the page without a network. `cargo xtask seal` fills in the name
+// and the files of the build.
 //
-// One worker serves one build, whole: a page that it has begun gets everything else from the same build. A newer worker
-// waits until no page of the older one is open; a reload of the only page counts as that.
+// One worker serves one complete build: all files of a page come from the same build. A newer
+// worker waits until no page of the older one is open, or the only one is reloaded.
 //
-// What is not of the build is a host's own, such as lessons and takes beside the page: the network gives it, and a copy of it
-// is there only for visits without one. What other pages of the host ask for is theirs alone.
+// Files that are not part of the build belong to the host, such as lessons and takes beside the
+// page. They come from the network, and copies of them serve visits without one. Requests of other
+// pages of the host are not handled.
 
 const BUILD = "BUILD";
-/** What the page begins with. */
+/** The files that the page starts with. */
 const FILES = [/* FILES */];
-/** What is fetched when somebody asks for it, and kept from then on. */
+/** The files that are fetched on request, and cached from then on. */
 const LATER = [/* LATER */];
 
 const BASE = new URL("./", self.location);
 const PREFIX = `segue ${BASE.pathname} `; // several pages may live on one host
 const CACHE = PREFIX + BUILD;
-/** Copies of what lies beside the page, whatever build it is of. */
+/** The cache of files beside the page, independent of the build. */
 const BESIDE = `${PREFIX}beside`;
 
 const addressOf = (name) => new URL(name, BASE).href;
 const PAGE = addressOf("index.html");
 const OF_BUILD = new Set([...FILES, ...LATER].map(addressOf));
 
-self.addEventListener("install", (event) => event.waitUntil(keep()));
-self.addEventListener("activate", (event) => event.waitUntil(begin()));
+self.addEventListener("install", (event) => event.waitUntil(install()));
+self.addEventListener("activate", (event) => event.waitUntil(activate()));
 self.addEventListener("message", (event) => {
   if (event.data === "begin") self.skipWaiting();
 });
 self.addEventListener("fetch", (event) => {
   const { request } = event;
   if (request.method !== "GET") return;
-  // The query is part of what is asked for, but for the page itself: there it is the state.
+  // The query is a part of the address, except for the page, where it is the state.
   const address = withoutHash(request.url);
   if (request.mode === "navigate") {
     if (isPage(request.url)) event.respondWith(page(request));
@@ -50,19 +52,20 @@ function isPage(url) {
   return origin === BASE.origin && (pathname === BASE.pathname || origin + pathname === PAGE);
 }
 
-async function keep() {
+async function install() {
   const cache = await caches.open(CACHE);
-  // Asked for anew, though not transferred again when nothing has changed: a browser's own copy may be of another build.
+  // Files are revalidated, because those in the browser's cache may be of another build.
   await cache.addAll(FILES.map((name) => new Request(addressOf(name), { cache: "no-cache" })));
   const html = await (await cache.match(PAGE)).text();
-  // All other names change with what is in them. If the page is of another build, the host is in the middle of an update.
+  // The names of all other files change with their content. A page of another build means that the
+  // host is being updated.
   if (!html.includes(`content="${BUILD}"`)) {
     await caches.delete(CACHE);
     throw new Error("the page is of another build; next time");
   }
 }
 
-async function begin() {
+async function activate() {
   for (const name of await caches.keys()) {
     if (name.startsWith(PREFIX) && name !== CACHE && name !== BESIDE) await caches.delete(name);
   }
@@ -87,7 +90,7 @@ async function file(request) {
   return response;
 }
 
-/** Something that is not of the build. */
+/** Answers a request for a file that is not part of the build. */
 async function beside({ request, clientId }) {
   const client = await self.clients.get(clientId);
   if (!client || !isPage(client.url)) return fetch(request);

@@ -1,4 +1,4 @@
-//! The worker of the page that reads files: the part of the motion core that does, and nothing of
+//! The worker that reads files for the page. It contains the readers of segue-formats, and nothing of
 //! the app. `web/js/reader.js` calls it.
 
 #[cfg(target_arch = "wasm32")]
@@ -8,8 +8,9 @@ mod worker {
     use wasm_bindgen::JsValue;
     use wasm_bindgen::prelude::wasm_bindgen;
 
-    /// The worker's part: reads a file, whose SHA-256 the browser may know, and hands its report
-    /// out, first the head, then the pieces.
+    /// Reads a file and hands over its report, first the head, then the pieces. `sha256` is that of
+    /// the browser, where it has one. `progress` gets the number of bytes read; an exception in it
+    /// stops the reading.
     #[wasm_bindgen(js_name = readFile)]
     #[expect(unreachable_pub, reason = "called from JavaScript")]
     pub fn read_file(

@@ -1,10 +1,12 @@
-// The page's public object, `await window.segueReady`, around what the app exports. `docs/api.md` documents it.
+// The page's public object, `await window.segueReady`, around the app's `SegueHandle`.
+// `docs/api.md` documents it.
 
 const EVENTS = ["change", "error", "progress"];
 
 /**
  * @param handle the app's `SegueHandle`
- * @param life what the page knows of it: `stopped()` says why it no longer runs, `onLost()` is told that its graphics device is gone
+ * @param app `stopped()` returns the reason why the app no longer runs, `onLost()` is called when
+ *   its graphics device is lost
  */
 export function makeApi(handle, { stopped, onLost }) {
   const listeners = new Map(EVENTS.map((event) => [event, new Set()]));
@@ -14,12 +16,12 @@ export function makeApi(handle, { stopped, onLost }) {
       try {
         listener(detail);
       } catch (error) {
-        console.error(error); // one listener's mistake is not the app's, nor the next listener's
+        console.error(error); // a failing listener must not stop the app or other listeners
       }
     }
   });
 
-  /** Calls the app, and makes one kind of error of whatever it throws. */
+  /** Calls the app, and converts everything that it throws to an Error. */
   const call = (method, ...args) => {
     if (stopped()) throw new Error(`Segue has stopped: ${stopped()}`);
     try {
@@ -78,9 +80,10 @@ export function makeApi(handle, { stopped, onLost }) {
   });
 }
 
-// What a call is given is checked here: the app's own bindings would take the memory of anything that is no string for one.
+// Arguments are checked here, because the app's bindings would read the memory of any value as a
+// string.
 
-/** What was found, in a few words. */
+/** Returns a short description of a value. */
 function named(value) {
   if (typeof value === "string") return `\`${value.length > 60 ? `${value.slice(0, 60)}…` : value}\``;
   if (value === undefined) return "nothing";
@@ -99,7 +102,7 @@ function number(key, value) {
   return value;
 }
 
-/** A flat copy of keys and values; which of them fit the app itself says. */
+/** Returns a flat copy of keys and values. The app checks whether they fit. */
 function asValues(values) {
   if (typeof values !== "object" || values === null || Array.isArray(values)) {
     throw new TypeError(`set: found ${named(values)}, expected an object of keys and values, as in { blend_window: 24 }`);

@@ -1,28 +1,34 @@
-// Starts the app: downloads and compiles the WebAssembly, hands it the canvas, and settles `window.segueReady`.
+// Starts the app: downloads and compiles the WebAssembly, hands it the canvas, and settles
+// `window.segueReady`.
 //
-// What this expects of the app (the wasm-bindgen module): a class `SegueHandle` with
+// The app (the wasm-bindgen module) must have a class `SegueHandle` with
 //   static start(canvas, newReader) -> Promise<SegueHandle>   the app runs on this canvas; newReader makes a worker for files
 //   firstFrame() -> Promise                        its first frame is on screen
-//   restart(canvas) -> Promise                     the graphics context was lost: go on, on this fresh canvas
-//   isEmbedded()                                  whether the link says so: the frame then answers the page around it, and stores nothing
+//   restart(canvas) -> Promise                     continues on a new canvas after the graphics context was lost
+//   isEmbedded()                                   whether the link says so; the page then answers the one around it, and
+//                                                  stores nothing
 //   hasPanicked(), panicSummary()                  callable at any time, also in the middle of another call
 //   setListener((event, detail) => …)              "change", "error", "progress" for the public API, and "lost" when
-//                                                  the app itself learns that its graphics device is gone
-// and what api.js calls. Every method borrows the handle shared: after a panic inside an exclusive one, wasm-bindgen
-// would refuse all others, panicSummary among them.
+//                                                  the graphics device of the app is lost
+// and the methods that api.js calls. Every method borrows the handle shared: after a panic inside
+// an exclusive one, wasm-bindgen would refuse all others, panicSummary among them.
 
 import { makeApi } from "./api.js";
 import { answerParent } from "./embed.js";
 import { showDownloadFailed, showLost, showNoMemory, showPanic, showStartFailed, showUnsupported } from "./panels.js";
 
 const PANIC_POLL_MS = 500;
-/** A trap without a panic, while so much memory is held, comes from an allocation that failed. */
-const MUCH_MEMORY = 1 << 30;
-/** How long to wait before each attempt to replace a graphics device: one that dies at once is given time. */
+/** The memory from which on a trap without a panic is taken for a failed allocation, bytes. */
+const MIN_EXHAUSTED_BYTES = 1 << 30;
+/**
+ * The pause before each attempt to replace a lost graphics device; a device may need time to
+ * recover.
+ */
 const REPLACE_AFTER_MS = [0, 100, 300, 1000, 3000];
 
 async function start(jsUrl, wasmUrl) {
-  // Only what costs nothing is asked before the start; a real look at the graphics waits until the start has failed.
+  // Only a cheap test precedes the start. The graphics are tested thoroughly when the start has
+  // failed.
   if (!navigator.gpu && !window.WebGL2RenderingContext) {
     showUnsupported();
     throw new Error("Neither WebGPU nor WebGL2 is available");
@@ -46,52 +52,58 @@ async function start(jsUrl, wasmUrl) {
     throw new Error("The WebAssembly module exports no SegueHandle");
   }
 
-  const life = new Life(memory);
+  const app = new RunningApp(memory);
   try {
-    life.handle = await Promise.race([SegueHandle.start(canvas(), newReader), life.trapped]);
-    life.watch();
-    await Promise.race([life.handle.firstFrame(), life.trapped]);
+    app.handle = await Promise.race([SegueHandle.start(canvas(), newReader), app.trapped]);
+    app.watch();
+    await Promise.race([app.handle.firstFrame(), app.trapped]);
   } catch (reason) {
-    const text = life.handle ? life.panicText(reason) : String(reason?.message ?? reason);
+    const text = app.handle ? app.panicText(reason) : String(reason?.message ?? reason);
     if (reason instanceof WebAssembly.RuntimeError) {
-      showPanic(text, life.facts());
+      showPanic(text, app.facts());
     } else if (!(await hasGraphics())) {
       showUnsupported();
     } else {
-      showStartFailed(text, life.facts());
+      showStartFailed(text, app.facts());
     }
     throw new Error(`Segue could not start: ${text}`, { cause: reason });
   }
 
   loaded();
-  const api = makeApi(life.handle, { stopped: () => life.stopped, onLost: () => life.rebuild() });
+  const api = makeApi(app.handle, { stopped: () => app.stopped, onLost: () => app.rebuild() });
   window.segue = api;
-  answerParent(api, life.handle.isEmbedded());
-  keepForLater();
+  answerParent(api, app.handle.isEmbedded());
+  registerServiceWorker();
   // After the first frame, so that nothing waits for it.
-  import("./outline.js").then(({ Outline }) => new Outline(life.handle, canvas), (reason) => console.error(reason));
+  import("./outline.js").then(({ Outline }) => new Outline(app.handle, canvas), (reason) => console.error(reason));
   return api;
 }
 
-/** From the second visit on the page comes without a network; see sw.js. A build that is worked on has no name and keeps nothing. */
-function keepForLater() {
+/**
+ * Registers sw.js, which serves the page without a network. A development build has no name, and
+ * registers nothing.
+ */
+function registerServiceWorker() {
   if (!document.querySelector('meta[name="build"]')) return;
-  // Not while the page begins: the files come a second time, from the browser's own copy where it has one.
-  const keep = () => navigator.serviceWorker?.register(new URL("sw.js", document.baseURI)).catch((reason) => console.info(reason));
-  (window.requestIdleCallback ?? setTimeout)(keep);
+  // After the start of the page, because all files are requested again, from the browser's cache
+  // where it has them.
+  const register = () => navigator.serviceWorker?.register(new URL("sw.js", document.baseURI)).catch((reason) => console.info(reason));
+  (window.requestIdleCallback ?? setTimeout)(register);
 }
 
-/** A worker that reads files; see reader.js. */
+/** Makes a worker that reads files; see reader.js. */
 const newReader = () => new Worker(new URL("./reader.js", import.meta.url), { type: "module" });
 
-/** Fetches the module and moves the bar as its bytes arrive. */
+/** Fetches the module, and moves the progress bar as its bytes arrive. */
 async function download(url) {
   const response = await fetch(url);
   if (!response.ok) throw new Error(`${url} answered ${response.status}`);
-  // The length is that of what travels, the bytes read are unpacked; these are how far this module packs.
+  // The stated length is that of the compressed bytes, and the bytes read are uncompressed. These
+  // are the ratios for this module.
   const packed = { br: 3.6, gzip: 2.9 }[response.headers.get("content-encoding")] ?? 1;
   const total = Number(response.headers.get("content-length")) * packed || 8e6;
-  // A clone is read for the count, for the browser keeps compiled code only of a response that it got itself.
+  // A clone is read to count the bytes, because the browser caches compiled code only of a response
+  // that it reads itself.
   followBytes(response.clone().body, total).catch(() => {});
   return response;
 }
@@ -121,10 +133,10 @@ async function hasGraphics() {
   return Boolean(document.createElement("canvas").getContext("webgl2"));
 }
 
-/** One life of the app, from its start to its panic. */
-class Life {
+/** The running app, from its start to its panic. */
+class RunningApp {
   handle = undefined;
-  /** Why it no longer runs, if it does not. */
+  /** The reason why it no longer runs; undefined while it does. */
   stopped = undefined;
   #memory;
   #restarting = false;
@@ -133,7 +145,7 @@ class Life {
   /** @param memory the app's `WebAssembly.Memory` */
   constructor(memory) {
     this.#memory = memory;
-    // A panic in a callback surfaces only here: as a trap, outside of any call of ours.
+    // A panic in a callback surfaces only here, as a trap outside of any call of this script.
     this.trapped = new Promise((_, reject) => {
       window.addEventListener("error", ({ error }) => {
         if (!(error instanceof WebAssembly.RuntimeError)) return;
@@ -147,10 +159,10 @@ class Life {
       });
     });
     this.trapped.catch(() => {});
-    this.#guard(canvas());
+    this.#watchContext(canvas());
   }
 
-  /** From here on the handle exists: look after it. */
+  /** Starts to watch for panics. Call it when the handle exists. */
   watch() {
     const timer = setInterval(() => {
       this.#check();
@@ -159,32 +171,32 @@ class Life {
   }
 
   panicText(fallback) {
-    // Which package and line is of use, not where it lay on the machine that compiled it.
+    // The package and the line matter, not the folder on the machine that compiled it.
     const summary = this.#summary()?.replace(/^panicked at .*\/registry\/src\/[^/]+\//, "panicked at ");
     return summary ?? String(fallback?.message ?? fallback ?? "The app stopped without a word.");
   }
 
-  /** What the app says of its panic, where there was one. */
+  /** Returns the app's summary of its panic; undefined where there was none. */
   #summary() {
     try {
       const summary = this.handle.panicSummary();
       return summary ? String(summary) : undefined;
     } catch {
-      return undefined; // what trapped can be past answering
+      return undefined; // an app that has trapped may be unable to answer
     }
   }
 
   facts() {
-    const ask = (question) => {
+    const attempt = (call) => {
       try {
-        return question();
+        return call();
       } catch {
         return undefined;
       }
     };
     return {
-      version: ask(() => this.handle?.version()),
-      backend: ask(() => this.handle?.stats()?.backend),
+      version: attempt(() => this.handle?.version()),
+      backend: attempt(() => this.handle?.stats()?.backend),
     };
   }
 
@@ -199,18 +211,22 @@ class Life {
     if (!panicked) return;
     this.stopped = this.panicText(trap);
     const bytes = this.#memory?.buffer.byteLength ?? 0;
-    if (trap && bytes >= MUCH_MEMORY && !this.#summary()) showNoMemory(bytes, this.stopped, this.facts());
+    if (trap && bytes >= MIN_EXHAUSTED_BYTES && !this.#summary()) showNoMemory(bytes, this.stopped, this.facts());
     else showPanic(this.stopped, this.facts());
   }
 
-  #guard(element) {
+  #watchContext(element) {
     element.addEventListener("webglcontextlost", (event) => {
       event.preventDefault();
       if (element === canvas()) this.rebuild();
     });
   }
 
-  /** The graphics context is gone. A canvas keeps the kind of context it once had, so the app moves to a new one, again and again where that is lost, too. */
+  /**
+   * Moves the app to a new canvas after the graphics context was lost, repeatedly where the new one
+   * is lost as well. A canvas keeps the kind of its first context, so the old one cannot be used
+   * again.
+   */
   async rebuild() {
     this.#lostMeanwhile = true;
     if (this.#restarting || this.stopped || !this.handle) return;
@@ -233,7 +249,7 @@ class Life {
     const old = canvas();
     const fresh = old.cloneNode(false);
     old.replaceWith(fresh);
-    this.#guard(fresh);
+    this.#watchContext(fresh);
     await this.handle.restart(fresh);
     canvas().focus();
   }
@@ -241,7 +257,7 @@ class Life {
 
 if (document.documentElement.lang === "zh-Hant") document.getElementById("loading").setAttribute("aria-label", "Segue 載入中");
 
-// The page names the two files of the app beside this script (Trunk.toml).
+// Trunk.toml writes the names of the app's two files into this script's element.
 const { js, wasm } = document.querySelector("script[data-wasm]").dataset;
 start(js, wasm).then(window.segueSettle.resolve, (reason) => {
   window.segueSettle.reject(reason);

@@ -1,17 +1,20 @@
-// The API for whoever frames the page with `embed=1`: the same calls and events, through postMessage.
+// The API for a page that frames this one with `embed=1`: the same calls and events, through
+// postMessage.
 //
 //   to the frame      { segue: 1, id, call: "set", args: [{ half_life: 0.2 }] }      any method of the API but `on`; `args` may be left out
 //   back              { segue: 1, id, result }   or   { segue: 1, id, error: "text" }
 //   from the frame    { segue: 1, event: "ready", detail: { version } }              once; calls made before it wait for it
 //                     { segue: 1, event, detail }                                    "change", "error", "progress"
 //
-// Only the framing window is listened to. Who may frame the page its host says with the header `frame-ancestors`; who may
-// drive it, and be told of it, stands in the page (<meta name="embedders">) for hosts that can set no header.
+// Messages of other windows are ignored. The host of the page restricts framing with the header
+// `frame-ancestors`. The origins that may drive the page and get its events are in the page (<meta
+// name="embedders">), for hosts that cannot set headers.
 
 const EVENTS = ["change", "error", "progress"];
 
 const isFramed = window.parent !== window;
-// Whether the link says so, as the app reads it: by the same reading it opens no storage. One that answers must have none.
+// Whether the link says so, by the app's own parser, because a page that answers must have no
+// storage.
 let isEmbedded = false;
 const embedders = (document.querySelector('meta[name="embedders"]')?.content ?? "*").split(/\s+/).filter(Boolean);
 const mayDrive = (origin) => embedders.includes("*") || embedders.includes(origin);
@@ -34,15 +37,15 @@ async function receive({ source, origin, data }) {
 }
 
 /**
- * Starts to answer the framing window, and to tell it of events.
+ * Starts to answer the framing window, and to send it events.
  * @param api the public object
  * @param embedded whether the app's link says that it is embedded
  */
 export function answerParent(api, embedded) {
   isEmbedded = isFramed && embedded;
   if (!isEmbedded) return;
-  // A message with the wrong origin does not arrive.
-  const tell = (event, detail) => embedders.forEach((origin) => window.parent.postMessage({ segue: 1, event, detail }, origin));
-  for (const event of EVENTS) api.on(event, (detail) => tell(event, detail));
-  tell("ready", { version: api.version });
+  // The browser drops messages whose target has another origin.
+  const post = (event, detail) => embedders.forEach((origin) => window.parent.postMessage({ segue: 1, event, detail }, origin));
+  for (const event of EVENTS) api.on(event, (detail) => post(event, detail));
+  post("ready", { version: api.version });
 }

@@ -1,10 +1,11 @@
-// What exists from the first moment on: no module, so that it runs before anything else of the page.
+// The first script of the page. It is no module, so that it runs before everything else.
 
-// Whoever embeds or drives the page awaits it.
+// A promise of the page's API, for pages that embed or drive this one.
 window.segueReady = new Promise((resolve, reject) => { window.segueSettle = { resolve, reject }; });
-window.segueReady.catch(() => {}); // the page itself tells of a failure in a panel; it is no unhandled rejection
+window.segueReady.catch(() => {}); // a panel shows a failure, so it is not an unhandled rejection
 
-// The language that the link asks for, else the reader's; the app sets it again to the one that it speaks.
+// Sets the language of the link, or that of the browser. The app sets it again when it shows
+// another.
 document.documentElement.lang = ((asked) => {
   const chinese = (tag) => /^zh\b.*\b(hant|tw|hk|mo)\b/i.test(tag);
   const known = asked === "en" || asked === "zh-Hant" ? asked : navigator.languages.find((tag) => /^en\b/i.test(tag) || chinese(tag));

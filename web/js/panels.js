@@ -1,4 +1,5 @@
-// What the page says when the app cannot: plain HTML over whatever is left of the picture, in the language of the page.
+// Panels for failures of the app: plain HTML over the rest of the picture, in the language of the
+// page.
 
 const ENGLISH = {
   unsupported: "This browser offers neither WebGPU nor WebGL2",
@@ -38,7 +39,7 @@ const CHINESE = {
   copied: "已複製",
 };
 
-/** The words of the page's language, which the app may have changed meanwhile. */
+/** Returns the texts in the page's language, which the app may have changed. */
 const words = () => (document.documentElement.lang === "zh-Hant" ? CHINESE : ENGLISH);
 
 export function showUnsupported() {
@@ -61,7 +62,7 @@ export function showPanic(summary, facts) {
   show({ title: words().panic, text: words().panicText, detail: summary, buttons: [[words().reload, reload], copyReport(summary, facts)] });
 }
 
-/** An allocation failed. `bytes` is how much memory there is. */
+/** Shows that an allocation has failed. `bytes` is the size of the memory. */
 export function showNoMemory(bytes, summary, facts) {
   const text = words().memoryText.replace("{}", Math.round(bytes / 1e6));
   show({ title: words().memory, text, buttons: [[words().reload, reload], copyReport(summary, facts)] });
@@ -69,7 +70,7 @@ export function showNoMemory(bytes, summary, facts) {
 
 const copyReport = (text, facts) => [words().report, (button) => copy(report(text, facts), button)];
 
-/** The link holds the state, so the same address is the same state. */
+/** Reloads the page. The address holds the state. */
 function reload() {
   window.location.reload();
 }
@@ -93,13 +94,14 @@ async function copy(text, button) {
     button.textContent = words().copied;
     return;
   }
-  // No clipboard here (an insecure address, or a frame without the permission): show it, selected, to copy by hand.
+  // Without a clipboard (an insecure address, or a frame without the permission), the text is shown
+  // and selected.
   const detail = button.closest(".panel").querySelector("pre");
   detail.textContent = text;
   window.getSelection().selectAllChildren(detail);
 }
 
-/** Shows one panel at a time: the first word is the cause, what follows is its wake. */
+/** Shows a panel, unless one is shown already: the first failure is the cause of later ones. */
 function show({ title, text, detail, buttons = [] }) {
   document.getElementById("loading")?.remove();
   if (document.querySelector(".veil")) return;

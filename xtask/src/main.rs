@@ -18,9 +18,9 @@ use shell::{Result, fail};
 
 const HELP: &str = "\
 cargo xtask serve [--port N] [--dev] [--no-build]
-    Builds Segue in release mode (and adds Rust's web target where it is missing) and serves it on 127.0.0.1 (port 8080 unless told; 0 picks a free one).
-    --dev       build without optimising (for a rebuild on every save use `trunk serve`)
-    --no-build  serve dist/ as it is
+    Builds Segue in release mode (and adds Rust's web target where it is missing) and serves it on 127.0.0.1 (port 8080 by default; 0 picks a free one).
+    --dev       builds without optimising (for a rebuild on every save use `trunk serve`)
+    --no-build  serves dist/ as it is
 
 cargo xtask serve --dist
     Only writes the deployable folder dist/, each file precompressed beside itself (.br and .gz).
@@ -35,13 +35,13 @@ cargo xtask test [PART …]
     browser     that build in Chromium, on WebGL2 and on WebGPU
 
 cargo xtask fuzz [TARGET …] [--minutes N] [--seed S]
-    Feeds the readers of outside bytes with random ones (20 minutes each unless told), with a nightly compiler and cargo-fuzz.
+    Feeds the readers of outside bytes with random ones (20 minutes each by default), with a nightly compiler and cargo-fuzz.
     Targets are the files of fuzz/fuzz_targets and `page`; all of them unless some are named. What breaks one is left in fuzz/artifacts.
     page        feeds the built page in Chromium with links, calls, messages, lessons and parameters; the same seed makes the same input
 
 cargo xtask quality [--data FOLDER | --synth N] [--pairs N] [--seed S] [--json FILE]
     Reads every motion file below a folder (BVH, AMC beside their ASF, GLB, zip), or synthesises N clips, and draws N pairs of the same rig, N of
-    different rigs (8 unless told) and half as many sets of four takes of one rig. Every lab and every method of it is tried on them as a user opens it,
+    different rigs (8 by default) and half as many sets of four takes of one rig. Every lab and every method of it is tried on them as a user opens it,
     without and with planted feet. Prints tables in Markdown: results, refusals with their sentences, panics, spins, flashes, root jumps and skating beside
     the sources'. Fails where a result is worse than its sources beyond the bounds: pairs whose best windows are closer than 12 cm, and Match, have no
     spin, flash or root jump of their own, and with planted feet skate no more than the worse source; nothing panics, is not finite, or is refused without
@@ -58,7 +58,7 @@ cargo xtask docs
     Writes the table of docs/parameters.md from the program's parameters.
 
 cargo xtask seal
-    What Trunk calls at the end of a build: gives the page's scripts a name of their own and tells the service worker what there is.
+    Ends a build of Trunk, which calls it: names the page's scripts by their content, and writes the list of files into the service worker.
 
 cargo xtask help
 ";

@@ -1,5 +1,6 @@
-// Writes FILE.br and FILE.gz beside every file of a folder that gets smaller by it, and prints what the first visit
-// downloads. Called by `cargo xtask serve --dist` with the folder and a cache folder, where results are kept by content.
+// Writes FILE.br and FILE.gz beside every file of a folder that becomes smaller, and prints the
+// size of the first visit. Called by `cargo xtask serve --dist` with the folder and a cache folder,
+// where results are kept by content.
 
 import { createHash } from "node:crypto";
 import { existsSync } from "node:fs";
@@ -10,7 +11,7 @@ import zlib from "node:zlib";
 
 const [folder, cache] = process.argv.slice(2);
 const PACKED = /\.(br|gz|png|jpe?g|webp)$/;
-/** Fetched only when someone asks for it. */
+/** The files that are fetched only on request. */
 const LATER = /^(samples|lessons|lang|js-\w+\/read)\//;
 
 const brotli = promisify(zlib.brotliCompress);

@@ -11,12 +11,12 @@ const WASM_TARGET: &str = "wasm32-unknown-unknown";
 
 /// Checks that Trunk and wasm-bindgen are installed in the versions that build this page. Only
 /// `trunk serve` needs them.
-pub fn trunk() -> std::result::Result<(), String> {
+pub fn trunk() -> Result<()> {
     for (program, version) in [("trunk", TRUNK.to_owned()), ("wasm-bindgen", wasm_bindgen()?)] {
         match output(program, &["--version"]) {
             Some(text) if text.split_whitespace().nth(1) == Some(&version) => {}
-            Some(text) => return Err(format!("{text} is installed, not {version}")),
-            None => return Err(format!("{program} {version} is not installed")),
+            Some(text) => return fail(format!("{text} is installed, not {version}")),
+            None => return fail(format!("{program} {version} is not installed")),
         }
     }
     Ok(())
@@ -105,14 +105,12 @@ fn has_wasm_target() -> bool {
 }
 
 /// Returns the version of wasm-bindgen in Cargo.lock.
-fn wasm_bindgen() -> std::result::Result<String, String> {
-    let lock = fs::read_to_string(root().join("Cargo.lock")).map_err(|error| error.to_string())?;
+fn wasm_bindgen() -> Result<String> {
+    let lock = fs::read_to_string(root().join("Cargo.lock"))?;
     let entry = lock.split_once("name = \"wasm-bindgen\"\nversion = \"");
     let version = entry.and_then(|(_, rest)| rest.split('"').next());
-    version.map_or_else(
-        || Err("Cargo.lock holds no wasm-bindgen".to_owned()),
-        |version| Ok(version.to_owned()),
-    )
+    version
+        .map_or_else(|| fail("Cargo.lock holds no wasm-bindgen"), |version| Ok(version.to_owned()))
 }
 
 fn apt(packages: &[&str]) -> Result<()> {
