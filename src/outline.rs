@@ -67,8 +67,13 @@ impl Outline {
         let Some(key) = key_of(name).or(physical_key) else {
             return;
         };
-        let event = Event::Key { key, physical_key, pressed, repeat: false, modifiers };
-        self.tree().events.push(event);
+        let mut tree = self.tree();
+        tree.events.push(Event::Key { key, physical_key, pressed, repeat: false, modifiers });
+        // A field may have taken the focus in the meantime: what is typed is text to it.
+        let is_text = name.chars().count() == 1 && !modifiers.command && !modifiers.alt;
+        if pressed && is_text {
+            tree.events.push(Event::Text(name.to_owned()));
+        }
     }
 
     /// Says whether an element of the tree has the keyboard. egui then counts as focused, although
@@ -294,7 +299,7 @@ impl Found<'_> {
 
     /// Returns the element of a node, but for its number; none for a node that tells nothing.
     fn element(&self, node: &Node, children: Vec<u32>) -> Option<Element> {
-        let is_text = node.role() == Role::Label;
+        let is_text = matches!(node.role(), Role::Label | Role::Heading);
         let name = if is_text { node.value().or(node.label()) } else { node.label() };
         let name = name.map_or_else(|| self.labels(node), str::to_owned);
         // A container that has nothing but a hint stands for what lies in it.
@@ -642,6 +647,17 @@ mod tests {
         outline.press("Dead", "Nowhere", true, Modifiers::NONE);
         frame(&ctx, &mut show);
         assert_eq!(clicks, 1);
+    }
+
+    #[test]
+    fn letters_of_an_element_are_text_unless_they_are_a_command() {
+        let outline = Outline::default();
+        outline.press("7", "Digit7", true, Modifiers::NONE);
+        outline.press("7", "Digit7", false, Modifiers::NONE);
+        outline.press("c", "KeyC", true, Modifiers::COMMAND);
+        let texts = |event: &&Event| matches!(event, Event::Text(_));
+        let texts: Vec<Event> = outline.tree().events.iter().filter(texts).cloned().collect();
+        assert_eq!(texts, [Event::Text("7".into())]);
     }
 
     #[test]

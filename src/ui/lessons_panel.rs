@@ -8,7 +8,7 @@ use super::out::{Action, Out};
 use super::state::UiState;
 use super::text;
 use super::theme::{Type, palette_of, radius, space, theme_of};
-use eframe::egui::{Align, Frame, Layout as Flow, Margin, RichText, ScrollArea, Ui};
+use eframe::egui::{Align, Frame, Layout as Flow, Margin, RichText, Role, ScrollArea, Ui};
 use prose::{blocks_ui, spans_ui};
 use segue_session::lesson::{Block, CONTENTS, Page, Try};
 use segue_session::{Command, Key, Lesson, LessonPage, Session, Value};
@@ -206,7 +206,9 @@ fn try_ui(label: &str, query: &str, session: &Session, out: &mut Out, ui: &mut U
 
 fn title_ui(title: &str, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
-    ui.label(RichText::new(tr(title, ui)).font(theme.font(Type::Heading)).color(palette.text));
+    let words = RichText::new(tr(title, ui)).font(theme.font(Type::Heading)).color(palette.text);
+    let title = ui.label(words);
+    ui.ctx().accesskit_node_builder(title.id, |node| node.set_role(Role::Heading));
     ui.add_space(space::XS);
 }
 

@@ -1,21 +1,141 @@
 // What the page does for those who do not see it, want little motion, or hand it in.
 
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { fileURLToPath } from "node:url";
 import { onBackend, onBothBackends } from "./harness.mjs";
 import { until } from "./help.mjs";
 
-// Fails when what is drawn on the canvas is not told to screen readers.
-onBackend("webgl2", "a screen reader hears what has the focus and what was done", async ({ open }) => {
-  const { page } = await open("lab=blend&play=off", { viewport: [960, 640] });
-  const spoken = () => page.evaluate(() => document.getElementById("spoken").textContent);
-  const heard = new Set();
-  for (let press = 0; press < 3; press++) {
-    await page.keyboard.press("Tab");
-    heard.add(await until("something new is said", async () => {
-      const said = await spoken();
-      return !heard.has(said) && said;
-    }));
+const LABS = ["view", "make", "blend", "transition", "speed", "loop", "layers", "register", "path", "graph", "match", "in_place"];
+const AXE = readFileSync(fileURLToPath(import.meta.resolve("axe-core/axe.min.js")), "utf8");
+
+/** Waits until the page's elements hold still: some are there, and no more come. */
+async function elements(page) {
+  let before = -1;
+  await until("the elements are told", async () => {
+    const now = await page.evaluate(() => document.querySelectorAll("#outline [data-number]").length);
+    const still = now > 0 && now === before;
+    before = now;
+    if (!still) await page.waitForTimeout(300);
+    return still;
+  });
+}
+
+/** The element with the focus: its role and its name. */
+const focused = (page) => page.evaluate(() => {
+  const { id, localName, role, ariaLabel, textContent } = document.activeElement;
+  return { what: id || role || localName, name: ariaLabel ?? textContent };
+});
+
+/** What axe-core finds wrong that keeps somebody from using the page. */
+const faults = (page) => page.evaluate(async (axe) => {
+  if (!window.axe) (0, eval)(axe);
+  const { violations } = await window.axe.run(document, { resultTypes: ["violations"] });
+  return violations.filter(({ impact }) => impact === "serious" || impact === "critical").map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join("\n")}`);
+}, AXE);
+
+// Fails when something that can be worked has no name for a screen reader, or no role, in any lab.
+onBackend("webgl2", "every widget of every lab is an element with a role and a name", async ({ open }) => {
+  const { page, segue } = await open("play=off", { viewport: [1280, 800] });
+  const client = await page.context().newCDPSession(page);
+  for (const lab of [...LABS, "lesson"]) {
+    await segue("set", lab === "lesson" ? { lab: "blend", lesson: "half_life" } : { lab });
+    await until(`${lab} is computed`, async () => (await segue("stats")).jobs.length === 0);
+    await elements(page);
+    assert.deepEqual(await faults(page), [], lab);
+    const { nodes } = await client.send("Accessibility.getFullAXTree");
+    const worked = nodes.filter(({ ignored, properties = [] }) => !ignored && properties.some(({ name, value }) => name === "focusable" && value.value));
+    const nameless = worked.filter(({ role, name }) => role.value !== "RootWebArea" && !name?.value);
+    assert.deepEqual(nameless.map(({ role }) => role.value), [], lab);
+    const roles = new Set(worked.map(({ role }) => role.value));
+    for (const role of ["tab", "button"]) assert.ok(roles.has(role), `${lab}: ${[...roles]}`);
+    const parts = await page.evaluate(() => [...document.getElementById("outline").children].map(({ role, ariaLabel }) => `${role} ${ariaLabel}`));
+    for (const part of ["banner Top bar", "main Stage", "region Timeline"]) assert.ok(parts.includes(part), `${lab}: ${parts}`);
   }
+});
+
+// Fails when Tab begins somewhere in the middle, goes another way than one reads, or loses a press while a frame takes long.
+onBothBackends("Tab goes the way one reads, and the first stop skips to the parameters", async ({ open }) => {
+  const { page } = await open("lab=blend&play=off", { viewport: [1280, 800] });
+  await elements(page);
+  await page.keyboard.press("Tab");
+  assert.deepEqual(await focused(page), { what: "skip", name: "Skip to the parameters" });
+  await page.keyboard.press("Tab");
+  assert.deepEqual(await focused(page), { what: "tab", name: "View" });
+  // As fast as the keyboard gives them: twenty presses are twenty stops.
+  const stops = await page.evaluate(() => [...document.querySelectorAll("#outline [tabindex='0']")].map((element) => element.dataset.number));
+  for (let press = 0; press < 20; press++) await page.keyboard.press("Tab");
+  assert.equal(await page.evaluate(() => document.activeElement.dataset.number), stops[20]);
+  for (let press = 0; press < 21; press++) await page.keyboard.press("Shift+Tab");
+  assert.equal((await focused(page)).what, "skip");
+  await page.keyboard.press("Enter");
+  assert.equal(await page.evaluate(() => document.activeElement.closest("[role=form]").ariaLabel), "Parameters");
+  const order = await page.evaluate(() => [...document.getElementById("outline").children].map(({ ariaLabel }) => ariaLabel));
+  assert.deepEqual(order.filter(Boolean), ["Top bar", "Library", "Stage", "Parameters", "Timeline"]);
+});
+
+// Fails when the focus of an element is not that of the widget, its keys are lost, or an action of a screen reader does nothing.
+onBothBackends("an element is worked by keys and by a screen reader", async ({ open }) => {
+  const { page, segue } = await open("lab=blend&blend_window=30&play=off", { viewport: [1280, 800] });
+  await elements(page);
+  const params = (key, value) => until(`${key} is ${value}`, async () => (await segue("params"))[key] === value);
+  const slider = page.getByRole("slider", { name: "Blend window", exact: true });
+  await slider.focus();
+  await page.keyboard.press("ArrowRight");
+  await params("blend_window", 31);
+  await until("the element follows", async () => (await slider.inputValue()) === "31");
+  // As a screen reader sets it.
+  await slider.evaluate((element) => { element.value = 12; element.dispatchEvent(new Event("input", { bubbles: true })); });
+  await params("blend_window", 12);
+  await page.getByRole("switch", { name: "Foot lock" }).evaluate((element) => element.click());
+  await params("foot_lock", true);
+  await until("the switch is on", async () => (await page.getByRole("switch", { name: "Foot lock" }).getAttribute("aria-checked")) === "true");
+  await page.getByRole("tab", { name: "View" }).focus();
+  await page.keyboard.press("Enter");
+  await params("lab", "view");
+  await until("the tab is selected", async () => (await page.getByRole("tab", { name: "View" }).getAttribute("aria-selected")) === "true");
+});
+
+// Fails when a number cannot be typed without a mouse.
+onBackend("webgl2", "a number is typed by keyboard alone", async ({ open }) => {
+  const { page, segue } = await open("lab=blend&blend_window=30&play=off", { viewport: [1280, 800] });
+  await elements(page);
+  await page.getByRole("button", { name: "Blend window: Click to type a value" }).focus();
+  await page.keyboard.press("Enter");
+  await until("the number is edited", () => page.evaluate(() => document.activeElement.matches("input[type=text]")));
+  await page.keyboard.press("Control+a");
+  await page.keyboard.type("18");
+  await page.keyboard.press("Enter");
+  await until("it is 18", async () => (await segue("params")).blend_window === 18);
+});
+
+// Fails when a lesson cannot be read, or gone through, without seeing it.
+onBothBackends("a lesson is read from start to end by keyboard alone", async ({ open }) => {
+  const { page, segue } = await open("play=off", { viewport: [1280, 800] });
+  await elements(page);
+  const press = async (role, name) => {
+    await until(`${name} is there`, async () => (await page.getByRole(role, { name }).count()) > 0);
+    await page.getByRole(role, { name }).first().focus();
+    await page.keyboard.press("Enter");
+  };
+  const words = () => page.evaluate(() => document.querySelector("#outline [aria-label='Lesson']")?.textContent ?? "");
+  await press("button", "Lessons");
+  await until("the contents are there", async () => (await segue("params")).lesson === "contents");
+  await until("they can be read", async () => (await words()).length > 0 || (await page.getByRole("complementary", { name: "Lesson" }).count()) > 0);
+  const read = new Set();
+  await segue("set", { lesson: "blend_window" });
+  for (let pages = 0; pages < 30; pages++) {
+    const { lesson } = await segue("params");
+    if (read.has(lesson) || lesson === "contents") break;
+    await until(`${lesson} can be read`, async () => (await words()).length > 200);
+    read.add(lesson);
+    const next = page.getByRole("button", { name: "Next", exact: true });
+    if ((await next.count()) === 0) break;
+    await next.first().focus();
+    await page.keyboard.press("Enter");
+    await until("the page is turned", async () => (await segue("params")).lesson !== lesson);
+  }
+  assert.ok(read.size > 3, [...read].join());
 });
 
 // Fails when the page moves by itself although the system is set to little motion.
