@@ -1,4 +1,4 @@
-// What the page does for those who do not see it, want little motion, or hand it in.
+// Tests of access: screen readers, reduced motion, and reports.
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
@@ -9,7 +9,7 @@ import { until } from "./help.mjs";
 const LABS = ["view", "make", "blend", "transition", "speed", "loop", "layers", "register", "path", "graph", "match", "in_place"];
 const AXE = readFileSync(fileURLToPath(import.meta.resolve("axe-core/axe.min.js")), "utf8");
 
-/** Waits until the page's elements hold still: some are there, and no more come. */
+/** Waits until there are elements and their number no longer changes. */
 async function elements(page) {
   let before = -1;
   await until("the elements are told", async () => {
@@ -21,21 +21,21 @@ async function elements(page) {
   });
 }
 
-/** The element with the focus: its role and its name. */
+/** Returns the role and the name of the focused element. */
 const focused = (page) => page.evaluate(() => {
   const { id, localName, role, ariaLabel, textContent } = document.activeElement;
   return { what: id || role || localName, name: ariaLabel ?? textContent };
 });
 
-/** What axe-core finds wrong that keeps somebody from using the page. */
+/** Returns the serious and critical violations that axe-core finds. */
 const faults = (page) => page.evaluate(async (axe) => {
   if (!window.axe) (0, eval)(axe);
   const { violations } = await window.axe.run(document, { resultTypes: ["violations"] });
   return violations.filter(({ impact }) => impact === "serious" || impact === "critical").map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join("\n")}`);
 }, AXE);
 
-// Fails when something that can be worked has no name for a screen reader, or no role, in any lab.
-onBackend("webgl2", "every widget of every lab is an element with a role and a name", async ({ open }) => {
+// Fails when a control of any lab has no name or no role for screen readers.
+onBackend("webgl2", "widget of every lab is an element with a role and a name", async ({ open }) => {
   const { page, segue } = await open("play=off", { viewport: [1280, 800] });
   const client = await page.context().newCDPSession(page);
   for (const lab of [...LABS, "lesson"]) {
@@ -54,8 +54,9 @@ onBackend("webgl2", "every widget of every lab is an element with a role and a n
   }
 });
 
-// Fails when Tab begins somewhere in the middle, goes another way than one reads, or loses a press while a frame takes long.
-onBothBackends("Tab goes the way one reads, and the first stop skips to the parameters", async ({ open }) => {
+// Fails when Tab does not begin at the first element, leaves the reading order, or loses a press
+// during a slow frame.
+onBothBackends("Tab follows the reading order, and its first stop skips to the parameters", async ({ open }) => {
   const { page } = await open("lab=blend&play=off", { viewport: [1280, 800] });
   await elements(page);
   await page.keyboard.press("Tab");
@@ -74,8 +75,9 @@ onBothBackends("Tab goes the way one reads, and the first stop skips to the para
   assert.deepEqual(order.filter(Boolean), ["Top bar", "Library", "Stage", "Parameters", "Timeline"]);
 });
 
-// Fails when the focus of an element is not that of the widget, its keys are lost, or an action of a screen reader does nothing.
-onBothBackends("an element is worked by keys and by a screen reader", async ({ open }) => {
+// Fails when the focus of an element does not reach its widget, its keys are lost, or an action of
+// a screen reader has no effect.
+onBothBackends("element passes keys and actions of screen readers to its widget", async ({ open }) => {
   const { page, segue } = await open("lab=blend&blend_window=30&play=off", { viewport: [1280, 800] });
   await elements(page);
   const params = (key, value) => until(`${key} is ${value}`, async () => (await segue("params"))[key] === value);
@@ -97,7 +99,7 @@ onBothBackends("an element is worked by keys and by a screen reader", async ({ o
 });
 
 // Fails when a number cannot be typed without a mouse.
-onBackend("webgl2", "a number is typed by keyboard alone", async ({ open }) => {
+onBackend("webgl2", "number of a slider is typed by keyboard alone", async ({ open }) => {
   const { page, segue } = await open("lab=blend&blend_window=30&play=off", { viewport: [1280, 800] });
   await elements(page);
   await page.getByRole("button", { name: "Blend window: Click to type a value" }).focus();
@@ -109,8 +111,8 @@ onBackend("webgl2", "a number is typed by keyboard alone", async ({ open }) => {
   await until("it is 18", async () => (await segue("params")).blend_window === 18);
 });
 
-// Fails when a lesson cannot be read, or gone through, without seeing it.
-onBothBackends("a lesson is read from start to end by keyboard alone", async ({ open }) => {
+// Fails when the text of a lesson, or the way to the next one, is not among the elements.
+onBothBackends("lessons are read from start to end by keyboard alone", async ({ open }) => {
   const { page, segue } = await open("play=off", { viewport: [1280, 800] });
   await elements(page);
   const press = async (role, name) => {
@@ -139,7 +141,7 @@ onBothBackends("a lesson is read from start to end by keyboard alone", async ({ 
 });
 
 // Fails when the page moves by itself although the system is set to little motion.
-onBackend("webgl2", "who wants little motion starts it by hand", async ({ open }) => {
+onBackend("webgl2", "page with reduced motion starts paused", async ({ open }) => {
   const { segue } = await open("", { viewport: [640, 480], motion: "reduce" });
   const before = await segue("time");
   assert.equal((await segue("params")).play, false);
@@ -149,7 +151,7 @@ onBackend("webgl2", "who wants little motion starts it by hand", async ({ open }
 });
 
 // Fails when the picture, a setting, a number or the link is missing.
-onBothBackends("a report holds the picture, what was set, the numbers and the link", async ({ open }) => {
+onBothBackends("report has the picture, the settings, the numbers and the link", async ({ open }) => {
   const { segue } = await open("compare=a:walk,run&lab=view&play=off", { viewport: [960, 640] });
   await until("both are measured", async () => Object.values(await segue("metrics")).length > 3);
   const report = await segue("report");

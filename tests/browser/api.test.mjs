@@ -1,4 +1,4 @@
-// The calls of `window.segueReady`, one by one.
+// Tests of the calls of `window.segueReady`, one by one.
 
 import assert from "node:assert/strict";
 import { onBothBackends } from "./harness.mjs";
@@ -6,8 +6,8 @@ import { apart, count, isClay, timelineOf, until } from "./help.mjs";
 
 const SMALL = { viewport: [960, 640] };
 
-// Fails when a refused value, or any beside it, is taken all the same, and when the message does not name it.
-onBothBackends("set refuses what does not fit, by its name, and changes nothing", async ({ open }) => {
+// Fails when a refused value or one beside it is set, and when the message does not name it.
+onBothBackends("set with a wrong value names it and changes nothing", async ({ open }) => {
   const { page, segue } = await open("lab=blend&play=off", SMALL);
   const [params, url] = [await segue("params"), await segue("url")];
   for (const [values, reason] of [
@@ -24,14 +24,14 @@ onBothBackends("set refuses what does not fit, by its name, and changes nothing"
     assert.deepEqual(await segue("params"), params, JSON.stringify(values));
   }
   assert.equal(await segue("url"), url);
-  // What JSON cannot carry.
+  // Values that JSON cannot represent.
   await assert.rejects(page.evaluate(() => window.segue.set({ blend_window: NaN })), /blend_window/);
   await assert.rejects(segue("pose", "nobody", 0), /found `nobody`/);
   await assert.rejects(segue("export", "result", "doc"), /found `doc`/);
   await assert.rejects(segue("seek", "soon"), /seek/);
 });
 
-onBothBackends("the table of keys is whole, and set tells its listeners", async ({ open, backend }) => {
+onBothBackends("keys has every parameter, and set calls the listeners", async ({ open, backend }) => {
   const { page, segue } = await open("lab=blend&play=off", SMALL);
   assert.match(await segue("version"), /^\d+\.\d+\.\d+/);
   const [keys, params, stats] = [await segue("keys"), await segue("params"), await segue("stats")];
@@ -72,7 +72,7 @@ onBothBackends("play, pause, seek and time", async ({ open }) => {
   assert.equal((await segue("params")).play, false);
 });
 
-// Fails when the picture is empty, which a canvas is that is read at the wrong moment.
+// Fails when the picture is empty, as a canvas is that is read outside of its frame.
 onBothBackends("a snapshot is a picture of the stage", async ({ open }) => {
   const { segue, snapshot } = await open("lab=blend&play=off", SMALL);
   await segue("set", {});
@@ -82,7 +82,7 @@ onBothBackends("a snapshot is a picture of the stage", async ({ open }) => {
   assert.ok(count(picture, [0, 40, picture.width, picture.height - 60], isClay) > 2000, "the character is in it");
 });
 
-onBothBackends("what is exported can be loaded", async ({ open }) => {
+onBothBackends("exported file can be loaded", async ({ open }) => {
   const { segue, load } = await open("lab=blend&play=off", SMALL);
   await segue("set", {});
   const bytes = await segue("export", "result", "bvh");
@@ -96,8 +96,8 @@ onBothBackends("what is exported can be loaded", async ({ open }) => {
   for (const t of [0, 0.7, 2.4]) assert.ok(apart(await segue("pose", clip.id, t), await segue("pose", exported.clips[0].id, t)) < 1e-4, `at ${t} s`);
 });
 
-// Fails when an earlier result is handed on under the names of clips that it was not made from.
-onBothBackends("what cannot be made is refused with its sentence, by every call", async ({ open }) => {
+// Fails when a call returns an earlier result for clips that it was not made from.
+onBothBackends("every call on a refused result rejects with its sentence", async ({ open }) => {
   const { segue } = await open("lab=path&a=walk&play=off", SMALL);
   await until("it is measured", async () => Object.keys(await segue("metrics")).length > 0);
   const clips = (await segue("clips")).length;

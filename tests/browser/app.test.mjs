@@ -1,11 +1,12 @@
-// The app in a real browser: the page's API, files in and out, the link, storage, and a graphics device that goes away.
+// Tests of the app in a real browser: the page's API, files, the link, storage, and lost graphics
+// devices.
 
 import assert from "node:assert/strict";
 import { Buffer } from "node:buffer";
 import { onBackend, onBothBackends } from "./harness.mjs";
 import { elsewhere, linkStored, stored, until } from "./help.mjs";
 
-/** A small file to bring along: a hip with one bone that turns. */
+/** A small motion file: a hip with one bone that turns. */
 function bvh(frames = 60, bone = "Spine") {
   const rows = Array.from({ length: frames }, (_, i) => `${i * 0.01} 1 0 0 ${i} 0 0 0 0`);
   return Buffer.from([
@@ -55,12 +56,13 @@ onBothBackends("metrics() has one number per pane", async ({ open }) => {
   }
 });
 
-onBothBackends("time runs, stops and is set; a still page draws nothing", async ({ open }) => {
+onBothBackends("time runs, stops and is set, and a still page draws nothing", async ({ open }) => {
   const { page, segue } = await open("play=off&t=0.5&follow=off");
   assert.equal(await segue("time"), 0.5);
   await segue("seek", 0.25);
   assert.equal(await segue("time"), 0.25);
-  // First the cameras settle, presets are made, the address is written, the work is stored.
+  // Before the page is still, cameras settle, presets are made, the address is written, and the
+  // work is stored.
   const frames = async () => (await segue("stats")).frames;
   let [before, quiet] = [-1, 0];
   await until("nothing moves, and no frame is drawn for two seconds", async () => {
@@ -78,7 +80,7 @@ onBothBackends("time runs, stops and is set; a still page draws nothing", async 
   assert.equal(await segue("time"), stopped);
 });
 
-onBackend("webgl2", "files come by drop and by call, bad ones are told and change nothing", async ({ open }) => {
+onBackend("webgl2", "files are loaded by drop and by call, and bad ones change nothing", async ({ open }) => {
   const { page, segue, load, dropFile } = await open("lab=view&play=off");
   await page.evaluate(() => {
     window.heard = [];
@@ -111,7 +113,7 @@ onBackend("webgl2", "several files in one drop arrive in order", async ({ open }
   assert.match(b, /^two~/);
 });
 
-onBackend("webgl2", "the address follows the state and leads back to it", async ({ open }) => {
+onBackend("webgl2", "address follows the state and restores it", async ({ open }) => {
   const opened = await open("blend_window=24&play=off&backend=webgl2");
   const { page, segue } = opened;
   await segue("set", { blend_window: 48 });
@@ -131,7 +133,7 @@ onBackend("webgl2", "the address follows the state and leads back to it", async 
   await until("going back opens that link", async () => (await segue("params")).blend_window === 7);
 });
 
-onBackend("webgl2", "work survives a reload, and only what is in the library is kept", async ({ open }) => {
+onBackend("webgl2", "work after a reload is restored, with the files of the library alone", async ({ open }) => {
   const opened = await open("");
   const { page, segue, load } = opened;
   await load("kept.bvh", bvh());
@@ -142,20 +144,20 @@ onBackend("webgl2", "work survives a reload, and only what is in the library is 
   await until("both files are stored", async () => (await stored(page)).files.length === 2);
   assert.deepEqual((await stored(page)).files.sort(), hashes);
 
-  // Without a query: what comes back comes from storage alone.
+  // Without a query, everything is restored from storage.
   await page.goto(page.url().split("?")[0]);
   await opened.ready();
   assert.deepEqual(brought(await segue("clips")).sort(), ["also", "kept"]);
   assert.equal((await segue("params")).blend_window, 33);
   assert.match((await segue("params")).a, /^kept~/);
 
-  // A link goes before stored parameters; the library comes back all the same.
+  // A link overrides the stored parameters, and the library is restored.
   await page.goto(`${page.url().split("?")[0]}?blend_window=5`);
   await opened.ready();
   assert.equal((await segue("params")).blend_window, 5);
   assert.equal(brought(await segue("clips")).length, 2);
 
-  // A framed page neither shows nor overwrites it.
+  // A framed page neither shows nor overwrites the stored work.
   await page.goto(`${page.url().split("?")[0]}?embed=1&blend_window=6`);
   await opened.ready();
   assert.equal(brought(await segue("clips")).length, 0);
@@ -200,7 +202,7 @@ onBackend("webgl2", "files are fetched in the order of the link, and refusals ar
 
 onBothBackends("a lost graphics device is replaced and the state stays", async ({ open, backend }) => {
   const prepare = (page) => page.addInitScript(() => {
-    // The handle by which the test takes the device away.
+    // The handle by which the test destroys the device.
     if (window.GPUAdapter) {
       const request = GPUAdapter.prototype.requestDevice;
       GPUAdapter.prototype.requestDevice = async function (...args) {
@@ -212,7 +214,7 @@ onBothBackends("a lost graphics device is replaced and the state stays", async (
   await page.evaluate(() => { window.firstCanvas = document.getElementById("segue"); });
   await segue("set", { blend_window: 31 });
   for (let time = 0; time < 2; time++) {
-    // Two that are lost within 10 s are too many for WebGPU; see lost.test.mjs.
+    // After two losses within 10 s, the page would give up WebGPU; see lost.test.mjs.
     if (time > 0 && backend === "webgpu") await page.waitForTimeout(10_500);
     await page.evaluate((backend) => {
       const canvas = document.getElementById("segue");
@@ -221,7 +223,7 @@ onBothBackends("a lost graphics device is replaced and the state stays", async (
       else canvas.getContext("webgl2").getExtension("WEBGL_lose_context").loseContext();
     }, backend);
     await page.waitForFunction(() => document.getElementById("segue") !== window.firstCanvas);
-    // Frames of before the loss do not count, nor does the device that is gone.
+    // Frames before the loss do not count, and neither does the lost device.
     const { frames } = await segue("stats");
     if (backend === "webgpu") await page.waitForFunction(() => window.device !== window.lost);
     await until("it draws again", async () => (await segue("stats")).frames > frames);
@@ -229,12 +231,12 @@ onBothBackends("a lost graphics device is replaced and the state stays", async (
   }
   assert.equal(await page.locator(".veil").count(), 0);
   assert.equal((await segue("params")).blend_window, 31);
-  // Only here: SwiftShader's WebGPU stops for good, now and then, when the canvas of a device that came after a lost one is read, by the browser
-  // or by the page. That frames are drawn on the new device is checked above.
+  // Only on WebGL 2: SwiftShader's WebGPU sometimes hangs when the canvas of a replaced device is
+  // read, by the browser or by the page. Frames on the new device are checked above.
   if (backend === "webgl2") assert.ok((await pixels()).colours() > 50);
 });
 
-onBackend("webgl2", "listeners hear of changes, and may act on them at once", async ({ open }) => {
+onBackend("webgl2", "listeners get changes, and may call the API at once", async ({ open }) => {
   const { page, segue } = await open("play=off");
   await page.evaluate(() => {
     window.queries = [];
@@ -248,7 +250,7 @@ onBackend("webgl2", "listeners hear of changes, and may act on them at once", as
   assert.equal((await segue("params")).blend_window, 8);
 });
 
-onBackend("webgl2", "a bundled take is there once set() has resolved", async ({ open }) => {
+onBackend("webgl2", "bundled take is in the library once set() has resolved", async ({ open }) => {
   const { segue } = await open("lab=view&play=off");
   await segue("set", { a: "cmu_jump" });
   const take = (await segue("clips")).find(({ id }) => id === "cmu_jump");
@@ -256,9 +258,9 @@ onBackend("webgl2", "a bundled take is there once set() has resolved", async ({ 
   assert.equal((await segue("pose", "result", 0)).joints.length, take.joints);
 });
 
-onBackend("webgl2", "where WebGPU promises more than it holds, WebGL 2 draws", async ({ open }) => {
+onBackend("webgl2", "WebGL 2 draws where WebGPU has an adapter and no device", async ({ open }) => {
   const prepare = (page) => page.addInitScript(() => {
-    // An adapter that is there when it is looked for, and gone when it is wanted.
+    // An adapter that is found, and gives no device.
     let asked = 0;
     GPU.prototype.requestAdapter = async () => (asked++ ? null : {});
   });
@@ -266,7 +268,7 @@ onBackend("webgl2", "where WebGPU promises more than it holds, WebGL 2 draws", a
   assert.equal((await segue("stats")).backend, "webgl2");
   assert.ok((await pixels()).colours() > 50);
 
-  // The canvas is not the one that the page looks after, yet a lost context is noticed.
+  // The app has replaced the page's canvas, and a lost context is still noticed.
   await page.evaluate(() => {
     window.firstCanvas = document.getElementById("segue");
     window.firstCanvas.getContext("webgl2").getExtension("WEBGL_lose_context").loseContext();
@@ -275,7 +277,7 @@ onBackend("webgl2", "where WebGPU promises more than it holds, WebGL 2 draws", a
   await until("the new canvas shows the character", async () => (await pixels()).colours() > 50);
 });
 
-onBackend("webgl2", "copying puts the link into the clipboard, and says so only then", async ({ open }) => {
+onBackend("webgl2", "copying puts the link into the clipboard, and then confirms it", async ({ open }) => {
   const { page, segue } = await open("blend_window=24&play=off");
   await page.context().grantPermissions(["clipboard-read", "clipboard-write"]);
   await page.locator("#segue").focus();
@@ -284,13 +286,13 @@ onBackend("webgl2", "copying puts the link into the clipboard, and says so only 
   await until("the link is in the clipboard", async () => (await page.evaluate(() => navigator.clipboard.readText())) === url);
 });
 
-onBothBackends("a panic in the middle of a frame is told, and a reload brings the work back", async ({ open }) => {
+onBothBackends("panic in a frame is shown, and a reload restores the work", async ({ open }) => {
   const { page, segue, load, problems } = await open("lab=blend&play=off");
   const { clips } = await load("turn.bvh", bvh());
   await segue("set", { blend_window: 24 });
   await linkStored(page, "blend_window=24");
   await segue("play");
-  // Without a clock the app's very next frame panics, as it would over a mistake of its own.
+  // Without a clock, the next frame of the app panics, as by an error of its own.
   await page.evaluate(() => void Object.defineProperty(window, "performance", { configurable: true, value: undefined }));
   const panel = page.getByRole("alertdialog");
   await panel.waitFor();

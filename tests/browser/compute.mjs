@@ -1,6 +1,9 @@
-// Measures, and judges nothing: the distances of all windows of 6,000 frames and 31 joints by a compute shader, where Chromium has WebGPU, beside
-// the Graph lab's own way (a kernel of its own for the products of all pairs of frames, and running sums of them, on one core). Segue takes its own: what a shader adds up differs from machine to machine in the
-// last bits, and a walk must be the same everywhere; so the shader would have to be much faster to be worth a second way for pictures alone.
+// A measurement without bounds: the distances of all windows of 6,000 frames and 31 joints by a
+// compute shader, where Chromium has WebGPU, beside those of the Graph lab (a kernel of its own for
+// the products of all pairs of frames, and running sums of them, on one core). Segue does not use
+// the shader. Its sums differ from machine to machine in the last bits, and a walk must be the same
+// everywhere; for pictures alone, it would have to be much faster.
+//
 //   node tests/browser/compute.mjs [--frames 6000] [--window 30]
 
 import process from "node:process";
@@ -11,8 +14,9 @@ import { close, openSegue } from "./segue.mjs";
 const { values } = parseArgs({ options: { frames: { type: "string", default: "6000" }, window: { type: "string", default: "30" } } });
 const frames = Number(values.frames), window = Number(values.window), joints = 31;
 
-// Tile by tile: first what each pair of frames adds (two products on the ground, one of heights), then the sums along diagonals and the distance
-// after the best turn about the vertical and shift along the ground. Points are x, y, z and weight.
+// Each tile computes the terms of every pair of frames (two products on the ground, one of
+// heights), then the sums along diagonals, and the distance after the best turn about the vertical
+// and shift along the ground. Points are x, y, z and weight.
 const SHADER = `
 struct Size { frames: u32, joints: u32, window: u32, pad: u32, row: u32, column: u32, tile: u32, side: u32 }
 @group(0) @binding(0) var<uniform> size: Size;
@@ -77,7 +81,7 @@ try {
 }
 process.exit();
 
-/** Until the Graph lab has all distances: then there is a histogram to draw a threshold on. */
+/** Waits until the Graph lab has all distances, and so a histogram with the threshold. */
 async function byCore(page, segue, load) {
   const clips = [];
   for (let i = 0; i < 6; i++) clips.push((await load(`clip${i}.bvh`, striding({ frames: frames / 6, hertz: 0.8 + 0.1 * i, swing: 25 + 3 * i }))).clips[0].id);
@@ -142,7 +146,7 @@ async function byShader({ frames, joints, window, SHADER }) {
     read.unmap();
     return found;
   };
-  // The same by hand, once: what is measured must be right.
+  // One distance is computed here, so that the measured result is known to be right.
   const [i, j] = [37, 411], found = (await of(0, 0))[i * tile + j];
   let [a, b, c, own, n] = [0, 0, 0, 0, 0];
   const [m, t] = [[0, 0], [0, 0]];
@@ -160,7 +164,7 @@ async function byShader({ frames, joints, window, SHADER }) {
   const right = Math.sqrt((own - 2 * c - 2 * Math.hypot(a, b)) / n);
   if (!(Math.abs(found - right) < 1e-3)) throw new Error(`the shader found ${found}, it is ${right}: ${problems[0]}`);
   const start = performance.now();
-  // A distance is the same both ways.
+  // Distances are symmetric.
   for (let row = 0; row < frames; row += tile) for (let column = row; column < frames; column += tile) await of(row, column);
   return (performance.now() - start) / 1e3;
 }

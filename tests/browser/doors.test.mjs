@@ -1,4 +1,4 @@
-// What a hostile link, page, file or script gets: nothing, and a sentence.
+// Tests of hostile links, pages, files and scripts.
 
 import assert from "node:assert/strict";
 import http from "node:http";
@@ -8,8 +8,9 @@ import { elsewhere, striding, until } from "./help.mjs";
 const SMALL = { viewport: [960, 640] };
 const DESK = { viewport: [1280, 800] };
 
-// Fails when anything but the page's own scripts runs. What the page itself does must not break its policy: the harness looks at that in every test.
-onBackend("webgl2", "the page's policy lets no script in", async ({ open }) => {
+// Fails when a script that is not the page's own runs. The harness checks in every test that the
+// page itself keeps its policy.
+onBackend("webgl2", "policy of the page blocks foreign scripts", async ({ open }) => {
   await elsewhere({ "/evil.js": { type: "text/javascript", text: "window.hit = 'a script from elsewhere';" } }, async (far) => {
     const opened = await open("lab=view&play=off", SMALL);
     opened.refuses = true;
@@ -31,7 +32,7 @@ onBackend("webgl2", "the page's policy lets no script in", async ({ open }) => {
       document.getElementById("form").submit();
       window.violations = violations;
     }, far);
-    // The browser tells of each in its own time; the form's submission comes last.
+    // The browser reports violations asynchronously; that of the form comes last.
     for (const directive of ["base-uri", "frame-src", "script-src-elem", "style-src-elem", "form-action"]) {
       await until(`a violation of ${directive}`, () => page.evaluate((name) => window.violations.includes(name), directive));
     }
@@ -39,8 +40,8 @@ onBackend("webgl2", "the page's policy lets no script in", async ({ open }) => {
   });
 });
 
-// Fails when the page that a lesson's link opens can put another one in the place of this one, or learns its address.
-onBackend("webgl2", "a page that a lesson's link opens has no hold on this one", async ({ open }) => {
+// Fails when a page that a lesson's link opens can navigate this one, or gets its address.
+onBackend("webgl2", "page that a lesson's link opens has no handle to this one", async ({ open }) => {
   const link = (far) => `[${"somewhere else ".repeat(30).trim()}](${far}/other.html)\n\n`;
   const answers = { "/other.html": { type: "text/html", text: "<!doctype html><title>Other</title>" } };
   await elsewhere(answers, async (far) => {
@@ -49,7 +50,7 @@ onBackend("webgl2", "a page that a lesson's link opens has no hold on this one",
     await segue("set", { lesson: `${far}/mine.md` });
     const pages = [];
     page.context().on("page", (opened) => pages.push(opened));
-    // The lesson may come, and be laid out, after any one click.
+    // The lesson may arrive and be laid out after any of the clicks.
     await until("the link opens a page", async () => {
       await page.mouse.move(160, 400);
       await page.mouse.down();
@@ -64,8 +65,9 @@ onBackend("webgl2", "a page that a lesson's link opens has no hold on this one",
   });
 });
 
-// Fails when a value of the wrong kind reaches the app's memory, and when the message does not say which, what was found and what was expected.
-onBackend("webgl2", "a call with something of the wrong kind is refused by its name", async ({ open }) => {
+// Fails when a value of a wrong type reaches the app, and when the message does not name the
+// argument, the found value and the expected type.
+onBackend("webgl2", "call with an argument of a wrong type names it", async ({ open }) => {
   const { page, segue } = await open("lab=blend&play=off", SMALL);
   const refusals = await page.evaluate(async () => {
     const circle = {};
@@ -93,8 +95,8 @@ onBackend("webgl2", "a call with something of the wrong kind is refused by its n
   assert.ok((await segue("pose", "result", 0)).joints.length > 10, "it goes on");
 });
 
-// Fails when a graph of too many clips leaves the numbers of an earlier one standing.
-onBackend("webgl2", "more clips than a graph takes are refused, and change nothing", async ({ open }) => {
+// Fails when a graph of too many clips shows the numbers of an earlier one.
+onBackend("webgl2", "set with more clips than a graph takes changes nothing", async ({ open }) => {
   const { segue } = await open("lab=graph&play=off", SMALL);
   const before = await segue("params");
   const many = Array.from({ length: 70 }, (_, n) => `clip${n}`).join(",");
@@ -114,8 +116,9 @@ async function silent(body) {
   }
 }
 
-// Fails when what never answers is waited for for ever, and when nobody can end the wait.
-onBackend("webgl2", "what never answers is given up, by hand or by itself", async ({ open }) => {
+// Fails when a server that never answers is waited for for ever, and when the user cannot stop the
+// wait.
+onBackend("webgl2", "fetch without an answer ends by the user or by the timeout", async ({ open }) => {
   await silent(async (far) => {
     const { page, segue } = await open("lab=view&play=off", SMALL);
     await page.evaluate(() => {
@@ -140,8 +143,8 @@ onBackend("webgl2", "what never answers is given up, by hand or by itself", asyn
   });
 });
 
-// Fails when `loaded` answers before the library has what the link brings.
-onBackend("webgl2", "who asks right after the start can wait for all clips", async ({ open }) => {
+// Fails when `loaded` resolves before the library has the clips of the link.
+onBackend("webgl2", "loaded right after the start waits for all clips", async ({ open }) => {
   const text = String(striding({ frames: 30 }));
   await elsewhere({ "/late.bvh": { text, after: 1500 } }, async (far) => {
     const { segue } = await open(`lab=view&play=off&src=${far}/late.bvh`, SMALL);
@@ -151,8 +154,8 @@ onBackend("webgl2", "who asks right after the start can wait for all clips", asy
   });
 });
 
-// Fails when a page that its host does not name is answered.
-onBackend("webgl2", "only pages that the host names may drive the frame", async ({ open }) => {
+// Fails when the page answers an origin that its host does not name.
+onBackend("webgl2", "only origins that the host names may drive the frame", async ({ open }) => {
   const { page } = await open("", {
     ...SMALL,
     wait: false,

@@ -1,4 +1,4 @@
-// In a frame of another page, and after the graphics context is gone.
+// Tests of the page in a frame of another one, and after the loss of its graphics context.
 
 import assert from "node:assert/strict";
 import { onBackend, onBothBackends } from "./harness.mjs";
@@ -6,8 +6,9 @@ import { apart, count, isClay, stageOf, striding, until } from "./help.mjs";
 
 const SMALL = { viewport: [960, 640] };
 
-// Fails when a call is not answered, its refusal comes as an answer, or the frame stores or shows what it should not.
-onBothBackends("a frame answers the page around it", async ({ open }) => {
+// Fails when a call is not answered, a refusal arrives as a result, or the frame stores or shows
+// the user's own work.
+onBothBackends("frame answers the page around it", async ({ open }) => {
   const { page } = await open("", {
     ...SMALL,
     wait: false,
@@ -54,8 +55,8 @@ onBothBackends("a frame answers the page around it", async ({ open }) => {
   assert.deepEqual(answers.databases, [], "a frame stores nothing");
 });
 
-// The link that the app itself gives must make a frame that answers, too.
-onBothBackends("the link of an embedded state is one that answers", async ({ open }) => {
+// Fails when a frame with the app's own link does not answer.
+onBothBackends("frame with the link of an embedded state answers", async ({ open }) => {
   const { segue } = await open("lab=blend&play=off&embed=1", SMALL);
   const search = new URL(await segue("url")).search;
   const { page } = await open("", {
@@ -72,8 +73,9 @@ onBothBackends("the link of an embedded state is one that answers", async ({ ope
   assert.equal(told, "ready");
 });
 
-// Fails when the app and the page's modules read a link differently: a frame that answers must have no storage.
-onBackend("webgl2", "a frame that answers stores nothing, however its link is spelled", async ({ open }) => {
+// Fails when the app and the page's modules parse a link differently. A frame that answers must
+// have no storage.
+onBackend("webgl2", "frame that answers stores nothing, by any spelling of its link", async ({ open }) => {
   const { page } = await open("", {
     ...SMALL,
     wait: false,
@@ -99,7 +101,7 @@ onBackend("webgl2", "a frame that answers stores nothing, however its link is sp
   for (const query of ["embed=On", "embed=1%20", "embed", "?embed=1"]) assert.equal((await ask(query, false)).answered, false, query);
 });
 
-/** Keeps hold of the WebGPU devices that are made, for the only way to lose one. */
+/** Records the WebGPU devices that the page makes, so that a test can destroy them. */
 const watchDevices = (page) => page.addInitScript(() => {
   window.devices = [];
   if (!window.GPUAdapter) return;
@@ -111,8 +113,9 @@ const watchDevices = (page) => page.addInitScript(() => {
   };
 });
 
-// Fails when the page stays on the dead canvas, when anything of the document is lost, and when nothing is drawn afterwards.
-onBothBackends("a lost graphics context costs nothing of the work", async ({ open, backend }) => {
+// Fails when the page stays on the lost canvas, when a part of the document is lost, and when
+// nothing is drawn afterwards.
+onBothBackends("lost graphics context leaves the work", async ({ open, backend }) => {
   const { page, segue, load, pixels } = await open("lab=blend&play=off", { ...SMALL, prepare: watchDevices });
   const { clips: [clip] } = await load("mine.bvh", striding({ frames: 90 }));
   await segue("set", { a: "walk", blend_window: 21 });

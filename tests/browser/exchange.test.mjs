@@ -1,15 +1,15 @@
-// What the page exports, other programs read: three.js, and Khronos' own validator.
+// Tests of exported files with other programs: three.js, and the validator of Khronos.
 
 import assert from "node:assert/strict";
 import { onBothBackends } from "./harness.mjs";
 import { striding } from "./help.mjs";
 import { AS_GOOD_AS_SAME, byIndex, complaints, farthest, fromBvh, fromCsv, fromGlb } from "./read_back.mjs";
 
-/** What `striding` is made in, and what Segue's own clips are written in. */
+/** The units of `striding` and of Segue's own clips. */
 const METRES_PER_UNIT = 0.01;
 
-// Fails when a format has another motion than the others, and when a GLB is no valid one or has nothing that shows.
-onBothBackends("three.js reads the motion that was exported", async ({ open }) => {
+// Fails when the formats have different motions, and when a GLB is invalid or shows nothing.
+onBothBackends("exported motion is the same in three.js", async ({ open }) => {
   const { segue, load } = await open("lab=blend&play=off", { viewport: [960, 640] });
   await segue("set", {});
   const { clips: [clip] } = await load("strides.bvh", striding({ frames: 40 }));
@@ -25,7 +25,7 @@ onBothBackends("three.js reads the motion that was exported", async ({ open }) =
   }
 });
 
-onBothBackends("a GLB that was exported can be loaded", async ({ open }) => {
+onBothBackends("exported GLB can be loaded", async ({ open }) => {
   const { segue, load } = await open("lab=blend&play=off", { viewport: [960, 640] });
   const { clips: [clip] } = await load("strides.bvh", striding({ frames: 40 }));
   const { clips: [back], warnings } = await load("back.glb", await segue("export", clip.id, "glb"));

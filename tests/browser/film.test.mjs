@@ -1,11 +1,14 @@
-// A video of the page: begun and ended by the API.
+// Tests of recordings of the page by the API.
 
 import assert from "node:assert/strict";
 import { setTimeout as pause } from "node:timers/promises";
 import { onBothBackends } from "./harness.mjs";
 import { until } from "./help.mjs";
 
-/** A video that can be played, with something to be seen in it; none where the machine drew nothing in that time. */
+/**
+ * Records a video that can be played and is not empty. Returns undefined where the machine drew
+ * nothing in that time.
+ */
 async function film(page, segue) {
   await segue("record");
   await assert.rejects(segue("record"), /a recording is under way/);
@@ -26,8 +29,8 @@ async function film(page, segue) {
   });
 }
 
-// Fails when nothing is recorded, when it is no video, and when a recording that was ended goes on.
-onBothBackends("a recording is a video of the page", async ({ open }) => {
+// Fails when nothing is recorded, when the result is no video, and when an ended recording goes on.
+onBothBackends("recording is a video of the page", async ({ open }) => {
   const { page, segue } = await open("lab=blend&play=on", { viewport: [640, 480] });
   await segue("set", {});
   await assert.rejects(segue("stopRecording"), /no recording is under way/);

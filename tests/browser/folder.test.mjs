@@ -1,4 +1,4 @@
-// A folder that is dropped: its motion files, in the order of their paths, each once.
+// Tests of dropped folders: their motion files are read once each, in the order of their paths.
 
 import assert from "node:assert/strict";
 import { onBothBackends } from "./harness.mjs";
@@ -6,7 +6,10 @@ import { striding, until } from "./help.mjs";
 
 const isAccent = (red, green, blue) => green > 150 && green - red > 60 && green - blue > 20;
 
-/** Drops a folder as browsers tell of one. A transfer that a script makes has none, so the answer to `webkitGetAsEntry` is put in. */
+/**
+ * Drops a folder. A transfer that a script makes cannot contain one, so `webkitGetAsEntry` is
+ * replaced.
+ */
 function dropFolder(page, files) {
   return page.evaluate(async (files) => {
     const file = (path, text) => {
@@ -34,8 +37,9 @@ function dropFolder(page, files) {
   }, files);
 }
 
-// Fails when a folder is taken for a file, when a file comes twice or out of order, and when the field for drops stays open.
-onBothBackends("a folder's motion files are read, in order", async ({ open }) => {
+// Fails when a folder is read as a file, when a file is read twice or out of order, and when the
+// drop zone stays open.
+onBothBackends("motion files of a dropped folder are read in order", async ({ open }) => {
   const { page, segue, pixels } = await open("lab=blend&play=off", { viewport: [960, 640] });
   await segue("set", {});
   await dropFolder(page, [
@@ -58,7 +62,7 @@ onBothBackends("a folder's motion files are read, in order", async ({ open }) =>
   });
 });
 
-onBothBackends("a folder without motion is told of", async ({ open }) => {
+onBothBackends("folder without motion files is reported", async ({ open }) => {
   const { page, segue } = await open("lab=blend&play=off", { viewport: [960, 640] });
   await page.evaluate(() => {
     window.errors = [];

@@ -1,5 +1,6 @@
-// Feeds the page with what chance makes: links, calls, messages, lessons, and parameters that fit. `cargo xtask fuzz page` runs it for minutes,
-// fuzz.test.mjs for seconds. The same seed makes the same input.
+// Feeds the page with random input: links, calls, messages, lessons, and valid parameters. `cargo
+// xtask fuzz page` runs it for minutes, fuzz.test.mjs for seconds. The same seed makes the same
+// input.
 
 import assert from "node:assert/strict";
 import process from "node:process";
@@ -7,10 +8,13 @@ import { fileURLToPath } from "node:url";
 import { close, openSegue } from "./segue.mjs";
 
 const SCHOOL = "https://school.example/";
-/** How much memory may still grow by in the last third of a run, bytes: a lab that was not open before takes some. */
+/**
+ * The greatest growth of the memory in the last third of a run, bytes. A lab that is opened for the
+ * first time takes some.
+ */
 const MOST_GROWTH = 192e6;
 
-/** Numbers by chance (mulberry32). */
+/** A generator of random numbers (mulberry32). */
 export function chance(seed) {
   let state = seed >>> 0;
   const number = () => {
@@ -47,7 +51,7 @@ function oddLesson(dice) {
   return `${pick(["# A\n", ""])}${some(200, () => pick([...parts, oddText(dice)])).join("")}`.slice(0, below(20) === 0 ? 300_000 : 4000);
 }
 
-/** A value that the parameter takes, as its row of `keys()` says; undefined for what is a text of its own. */
+/** Returns a valid value of a parameter by its row of `keys()`; undefined for free texts. */
 function fitting({ pick, number }, { type, min, max, step, choices, auto }, clips) {
   if (auto && number() < 0.2) return "auto";
   if (type === "number" || type === "integer") return min + Math.round((number() * (max - min)) / step) * step;
@@ -56,7 +60,7 @@ function fitting({ pick, number }, { type, min, max, step, choices, auto }, clip
   return type === "clip" ? pick(clips) : undefined;
 }
 
-/** What is asked of the page after each step: that it lives, and that all its numbers are numbers. */
+/** Asserts after each step that the page runs, and that all its numbers are finite. */
 async function sound({ page, segue }, what, seconds) {
   assert.equal(await page.locator(".veil").count(), 0, `it stopped after ${what}`);
   const bad = await page.evaluate(async (seconds) => {
@@ -74,7 +78,7 @@ async function sound({ page, segue }, what, seconds) {
   return (await segue("stats")).wasm_bytes;
 }
 
-/** One step by chance. Returns what it was. */
+/** Takes a random step. Returns its description. */
 async function step(dice, opened, keys, clips) {
   const { page, segue } = opened;
   const { pick, below, some } = dice;
@@ -122,7 +126,7 @@ async function step(dice, opened, keys, clips) {
   return `set(${JSON.stringify(values)})`;
 }
 
-/** Messages to a frame by its parent. The last one is answered whatever came before. */
+/** Sends messages to a frame from its parent. The last one must be answered. */
 async function messages(dice, opened, count) {
   const { page } = opened;
   const made = Array.from({ length: count }, () => ({ segue: dice.pick([1, 1, 1, 2, "1"]), id: dice.below(9), call: dice.pick(["set", "pose", "on", "load", "toString", "__proto__", oddText(dice)]), args: dice.pick([undefined, null, 7, "x", {}, [], [{}], [oddText(dice)]]) }));
@@ -140,7 +144,7 @@ async function messages(dice, opened, count) {
   assert.match(answer, /^\d+\.\d+/, "the frame answers no longer");
 }
 
-/** Runs for so long. Throws at the first thing that breaks the page, with the step that did it. */
+/** Runs for a time. Throws at the first failure of the page, with the step that caused it. */
 export async function fuzz(open, seed, seconds, tell = () => {}) {
   const dice = chance(seed);
   const course = await open("", {

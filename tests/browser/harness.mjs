@@ -1,28 +1,35 @@
 // Segue in a real Chromium, on both graphics backends. A test is a few lines:
 //
 //   import { onBothBackends } from "./harness.mjs";
-//   onBothBackends("a dropped file appears in the library", async ({ open }) => {
+//   onBothBackends("dropped file appears in the library", async ({ open }) => {
 //     const { page, segue, dropFile } = await open("lab=blend");
 //     await dropFile("walk.bvh", bytes);
 //     assert.equal((await segue("clips")).length, 1);
 //   });
 //
-// `cargo xtask test browser` runs them all; `node --test` here, or `node --test one.test.mjs`, works too and serves dist/ itself.
+// `cargo xtask test browser` runs all tests. `node --test` here, or `node --test one.test.mjs`,
+// works as well, and serves dist/ itself.
 
 import test, { after } from "node:test";
 import { BACKENDS, close, openSegue } from "./segue.mjs";
 
 after(close);
 
-/** A browser that stops for good fails its test, and the others go on. */
+/** The time limit of a test, so that a browser that hangs fails its test and not all others. */
 const TEST_TIMEOUT_MS = 900_000;
 
-/** Registers the test once per backend. `body` is given `{ backend, open, t }`; what it opens is closed behind it. */
+/**
+ * Registers a test once per backend. `body` gets `{ backend, open, t }`. The pages that it opens
+ * are closed at its end.
+ */
 export function onBothBackends(name, body) {
   for (const backend of BACKENDS) onBackend(backend, name, body);
 }
 
-/** Registers the test for one backend: for what does not depend on it, or exists on one only. */
+/**
+ * Registers a test for one backend, where the result does not depend on it, or only one has the
+ * feature.
+ */
 export function onBackend(backend, name, body) {
   test(`${name} [${backend}]`, { timeout: TEST_TIMEOUT_MS }, async (t) => {
     const opened = [];
@@ -34,7 +41,8 @@ export function onBackend(backend, name, body) {
     try {
       await body({ backend, open, t });
       for (const { problems, log, refuses } of opened) {
-        // What the page's own policy forbids it to do is a mistake, but where a test tries to break it (`refuses`).
+        // Violations of the page's policy are errors, except in a test that provokes them
+        // (`refuses`).
         if (!refuses) problems.push(...log.filter((line) => line.includes("Content Security Policy")));
         if (problems.length) throw new Error(`the page reported:\n${problems.join("\n")}`);
       }

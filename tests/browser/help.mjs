@@ -1,10 +1,14 @@
-// What several tests need: motion files made on the spot, waiting for a state, and looking at pictures.
+// Helpers of several tests: generated motion files, waiting for a state, and inspection of
+// pictures.
 
 import http from "node:http";
 import { setTimeout as pause } from "node:timers/promises";
 import { PATIENCE_MS } from "./segue.mjs";
 
-/** Asks until the answer is true, and fails with `what` where it never is. Software rendering is slow, so no test depends on a time. */
+/**
+ * Polls a condition until it holds, and fails with `what` where it never does. Software rendering
+ * is slow, so no test depends on a time.
+ */
 export async function until(what, ask, limitMs = PATIENCE_MS) {
   const end = Date.now() + limitMs;
   for (;;) {
@@ -15,7 +19,10 @@ export async function until(what, ask, limitMs = PATIENCE_MS) {
   }
 }
 
-/** What the browser keeps: the stored link, the ids of the clips, the SHA-256 of the files. */
+/**
+ * Returns the contents of the browser's storage: the link, the ids of the clips, the SHA-256 of the
+ * files.
+ */
 export const stored = (page) => page.evaluate(async () => {
   const database = await new Promise((resolve, reject) => Object.assign(indexedDB.open("segue"), { onsuccess: (event) => resolve(event.target.result), onerror: reject }));
   const all = (name, what, ...args) => new Promise((resolve) => { database.transaction(name).objectStore(name)[what](...args).onsuccess = (event) => resolve(event.target.result); });
@@ -28,7 +35,7 @@ export const stored = (page) => page.evaluate(async () => {
 /** Waits until the stored link contains `part`. */
 export const linkStored = (page, part) => until(`a link with ${part} is stored`, async () => (await stored(page)).query.includes(part));
 
-/** Numbers from 0 to 1, the same for the same seed (mulberry32). */
+/** Returns a generator of random numbers from 0 to 1 by a seed (mulberry32). */
 export function random(seed) {
   let state = seed;
   return () => {
@@ -63,7 +70,10 @@ function arm(name, x, first) {
   ];
 }
 
-/** A BVH file: somebody strides along, `hertz` steps a second, swinging legs and arms by `swing` degrees. */
+/**
+ * Returns a BVH file of a walk with `hertz` steps a second, and legs and arms that swing by `swing`
+ * degrees.
+ */
 export function striding({ frames = 180, hertz = 1, swing = 30, fps = 60 } = {}) {
   const childrenOf = (parent) => BODY.flatMap(([, of], index) => (of === parent ? [index] : []));
   const order = [];
@@ -88,7 +98,7 @@ export function striding({ frames = 180, hertz = 1, swing = 30, fps = 60 } = {})
   return Buffer.from(["HIERARCHY", ...hierarchy, "MOTION", `Frames: ${frames}`, `Frame Time: ${(1 / fps).toFixed(7)}`, ...rows, ""].join("\n"));
 }
 
-/** The Z, Y, X rotation of a joint, degrees. */
+/** Returns the Z, Y, X rotation of a joint, degrees. */
 function turn(name, phase, swing) {
   const forward = name.startsWith("Left") ? Math.sin(phase) : -Math.sin(phase);
   if (name.endsWith("UpLeg")) return [0, 0, -swing * forward];
@@ -98,12 +108,12 @@ function turn(name, phase, swing) {
   return [0, 3 * Math.sin(phase), 0];
 }
 
-/** How far two answers of `pose()` lie apart where they lie farthest apart, metres. */
+/** Returns the greatest distance between the same joints of two answers of `pose()`, metres. */
 export function apart(one, other) {
   return one.positions.reduce((most, value, index) => Math.max(most, Math.abs(value - other.positions[index])), 0);
 }
 
-/** Counts the pixels of a rectangle that `test(red, green, blue)` takes. */
+/** Counts the pixels of a rectangle for which `test(red, green, blue)` holds. */
 export function count(picture, [left, top, right, bottom], test) {
   let found = 0;
   for (let y = Math.round(top); y < bottom; y++) {
@@ -112,16 +122,25 @@ export function count(picture, [left, top, right, bottom], test) {
   return found;
 }
 
-/** The grey of the character: bright enough to be no background, and without a hue. The orange, blue and green of the lines have one. */
+/**
+ * Returns whether a colour is the grey of the character: brighter than the background, and without
+ * the hue of the lines.
+ */
 export const isClay = (red, green, blue) => Math.min(red, green, blue) > 70 && Math.max(red, green, blue) - Math.min(red, green, blue) < 40;
 
-/** The height of the panel with the timeline: it gives way in low windows. */
+/** Returns the height of the panel with the timeline, which is lower in low windows. */
 export const timelineOf = (height) => Math.min(214, Math.round(0.31 * height));
 
-/** The stage in a window of 960 points or wider, and between the words at its top and the numbers at its bottom. */
+/**
+ * Returns the rectangle of the stage in a window of at least 960 points, without the title at its
+ * top and the numbers at its bottom.
+ */
 export const stageOf = ({ width, height }) => [248, 48 + 40, width - 288, height - timelineOf(height) - 60];
 
-/** A server of another origin. Playwright's own answers would come with CORS headers, so this is a real one. */
+/**
+ * Starts a server of another origin. Playwright's own answers would have CORS headers, so this is a
+ * real one.
+ */
 export async function elsewhere(answers, body) {
   const server = http.createServer(async (request, response) => {
     const { status = 200, cors = true, after = 0, type = "application/octet-stream", text = "" } = answers[request.url] ?? { status: 404 };

@@ -1,4 +1,5 @@
-// The labs: each opens with something to see, its numbers are those of its motion, and what it makes can be kept and used in another.
+// Tests of the labs: each has a result, its numbers are those of its motion, and the result can be
+// kept and used in another lab.
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
@@ -7,11 +8,11 @@ import { apart, until } from "./help.mjs";
 
 const DESK = { viewport: [1000, 700] };
 
-/** The values of one number, pane by pane. */
+/** Returns the values of one metric, pane by pane. */
 const panes = async (segue, name) => (await segue("metrics"))[name].panes;
 
 // Fails when the speed is not that of the motion.
-onBothBackends("the speed lab goes at the speed that is asked for", async ({ open }) => {
+onBothBackends("speed lab has the speed of the parameter", async ({ open }) => {
   const { segue } = await open("lab=speed&speed=1.5", DESK);
   await segue("set", {});
   for (const speed of [1.5, 2.3, 3.4]) {
@@ -22,8 +23,8 @@ onBothBackends("the speed lab goes at the speed that is asked for", async ({ ope
   assert.ok((await segue("time")) >= 0);
 });
 
-// Fails when a cycle has a seam, and when the classic ways hide theirs.
-onBothBackends("the exact loop has no seam, one spring alone has", async ({ open }) => {
+// Fails when a cycle has a seam, and when the classic methods have none.
+onBothBackends("exact loop has no seam, and one spring alone has one", async ({ open }) => {
   const { segue } = await open("lab=loop&a=walk_left&loop_from=0.3&loop_to=1.2&compare=loop_method:exact,linear&play=off", DESK);
   await segue("set", {});
   const [exact, linear] = await panes(segue, "loop_seam_dps");
@@ -32,7 +33,7 @@ onBothBackends("the exact loop has no seam, one spring alone has", async ({ open
 });
 
 // Fails when the rebuilt root motion is not that of the clip it was removed from.
-onBothBackends("root motion that was removed is rebuilt from the feet", async ({ open }) => {
+onBothBackends("removed root motion is rebuilt from the feet", async ({ open }) => {
   const { segue } = await open("lab=in_place&a=walk&compare=root_way:take_out,put_back&play=off", DESK);
   await segue("set", {});
   const [removed, rebuilt] = await panes(segue, "root_way_m");
@@ -42,8 +43,8 @@ onBothBackends("root motion that was removed is rebuilt from the feet", async ({
   assert.ok(apart(start, end) > 0.01, "its body moves");
 });
 
-// Fails when the mask lets the legs through, or keeps the arms back.
-onBothBackends("a layer moves what its mask covers, and nothing else", async ({ open }) => {
+// Fails when the layer moves the legs, or does not move the arms.
+onBothBackends("layer moves the joints of its mask, and no others", async ({ open }) => {
   const { segue } = await open("lab=layers&mask=arms&feather=0&play=off", DESK);
   await segue("set", {});
   const [arms] = await panes(segue, "off_arms_deg");
@@ -53,8 +54,8 @@ onBothBackends("a layer moves what its mask covers, and nothing else", async ({ 
   assert.ok(apart(await segue("pose", "result", 1), await segue("pose", "walk", 1)) < 1e-4, "without weight it is A");
 });
 
-// Fails when a mistake is not made, or is made where none is asked for.
-onBothBackends("a classic mistake stands beside the right way", async ({ open }) => {
+// Fails when a chosen mistake has no effect, or one occurs where none is chosen.
+onBothBackends("classic mistake is shown beside the right method", async ({ open }) => {
   const { segue } = await open("lab=transition&compare=mistake:none,degrees,atan&play=off", DESK);
   await segue("set", {});
   const seams = await panes(segue, "velocity_jump_dps");
@@ -63,8 +64,8 @@ onBothBackends("a classic mistake stands beside the right way", async ({ open })
   assert.ok(spins[2] > 60 && spins[0] < 5, `spins: ${spins}`);
 });
 
-// Fails when the character does not go where its path goes, and when its way there is not part of the link.
-onBothBackends("a character goes on the path of the link, beside others", async ({ open }) => {
+// Fails when the character does not follow its path, and when the path is not part of the link.
+onBothBackends("character follows the path of the link, beside others", async ({ open }) => {
   const { segue } = await open("lab=path&a=walk&play=off", DESK);
   await segue("set", {});
   const half = async (which) => (await segue("pose", which, 1.6)).positions.slice(0, 3);
@@ -82,8 +83,9 @@ onBothBackends("a character goes on the path of the link, beside others", async 
   assert.match(id, /^path\(a:walk,path:[\w-]+\)$/);
 });
 
-// Fails when the graph has no walk, when a seed gives another one, when the walk does not grow, and when a classic mistake does not spin.
-onBothBackends("the graph lab walks by its seed, and the mistake spins", async ({ open }) => {
+// Fails when the graph has no walk, when the same seed gives another one, when the walk does not
+// continue, and when a classic mistake does not spin.
+onBothBackends("graph lab walks by its seed, and the mistake spins", async ({ open }) => {
   const { segue } = await open("lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20&compare=atan:atan2,atan&play=off", DESK);
   await segue("set", {});
   const spins = await panes(segue, "spins");
@@ -98,7 +100,10 @@ onBothBackends("the graph lab walks by its seed, and the mistake spins", async (
   await until("the walk is longer than what is measured", async () => (await segue("time")) === 45);
 });
 
-/** How every joint but the root is turned against its parent: what a clip keeps wherever it is laid. */
+/**
+ * Returns the rotation of every joint relative to its parent, which does not depend on the place of
+ * the clip. The root has the identity.
+ */
 function bends({ parents, rotations }) {
   const of = (joint) => rotations.slice(4 * joint, 4 * joint + 4);
   return parents.map((parent, joint) => {
@@ -113,28 +118,34 @@ function bends({ parents, rotations }) {
   });
 }
 
-/** How far the joints of two poses are bent apart where they are most, as a difference of quaternions. */
+/**
+ * Returns the greatest difference between the relative rotations of two poses, as a difference of
+ * quaternions.
+ */
 function bentApart(one, other) {
   const [a, b] = [bends(one), bends(other)];
   const dots = a.map((q, joint) => Math.abs(q.reduce((sum, value, axis) => sum + value * b[joint][axis], 0)));
   return Math.sqrt(Math.max(0, 2 - 2 * Math.min(...dots)));
 }
 
-// Fails when a walk leaves or enters a clip at another frame than the one that is written down, and natively walked: a last digit has then decided.
-onBothBackends("the built-in walk is the same in every browser as it is natively", async ({ open }) => {
+// Fails when a walk leaves or enters a clip at another frame than the recorded native walk.
+// Rounding would then have decided.
+onBothBackends("built-in walk is the same in every browser and natively", async ({ open }) => {
   const golden = JSON.parse(readFileSync(new URL("../../crates/session/tests/golden/walk.json", import.meta.url), "utf8"));
   const { segue } = await open(golden.link, DESK);
   await segue("set", {});
   let [looked, told] = [0, 0];
   for (const { clip, from, to, start } of golden.stays) {
-    // Behind its transition and before the next one a stay is its clip, frame by frame; a short one has no such frame.
+    // After its transition and before the next one, a stretch is its clip, frame by frame. A short
+    // one has no such frame.
     const frames = [golden.window, to - from - 1].filter((frame) => frame >= golden.window && frame < to - from && (start + frame) / golden.fps < 60);
     for (const frame of frames) {
       const shown = await segue("pose", "result", (start + frame) / golden.fps);
       const off = bentApart(shown, await segue("pose", clip, (from + frame) / golden.fps));
       assert.ok(off < 2e-3, `${clip} ${from} to ${to}, at ${start}: ${off} off in frame ${frame}`);
       looked += 1;
-      // Would it show if it were the next frame? Who stands still looks alike for long.
+      // The test is only meaningful where the next frame differs, which it does not in a character
+      // at rest.
       if (bentApart(shown, await segue("pose", clip, (from + frame + 1) / golden.fps)) > 4e-3) told += 1;
     }
   }
@@ -142,8 +153,9 @@ onBothBackends("the built-in walk is the same in every browser as it is natively
   assert.ok(2 * told > looked, `of ${looked} frames ${told} can be told from the next one`);
 });
 
-// Fails when a scenario does not turn the character, when weights need a reload, and when what was driven is not in the link.
-onBothBackends("a character is driven through a scenario", async ({ open }) => {
+// Fails when a scenario does not turn the character, when weights need a reload, and when the
+// scenario is not in the link.
+onBothBackends("character is driven through a scenario", async ({ open }) => {
   const { segue } = await open("lab=match&scenario=spin&play=off", DESK);
   await segue("set", {});
   const [turn] = await panes(segue, "match_turn");
@@ -155,8 +167,9 @@ onBothBackends("a character is driven through a scenario", async ({ open }) => {
   assert.match(id, /^match\(scenario:spin,weight_path:0.2,weight_feet:3\)$/);
 });
 
-// Fails when a kept result is not a clip like any other, when its link needs data, and when it does not outlive the page.
-onBothBackends("what is kept can be used, sent and found again", async ({ open }) => {
+// Fails when a kept result is not a clip like any other, when its link needs data, and when it is
+// lost with the page.
+onBothBackends("kept result can be used, linked and restored", async ({ open }) => {
   const { page, segue, ready } = await open("lab=transition&half_life=0.3&play=off", DESK);
   await segue("set", {});
   const id = await segue("keep", "result");

@@ -1,4 +1,4 @@
-// The two languages: which one a visitor sees, and that nobody downloads the other.
+// Tests of the two languages: the choice for a visitor, and the download of the chosen one alone.
 
 import assert from "node:assert/strict";
 import { onBackend, onBothBackends } from "./harness.mjs";
@@ -6,7 +6,7 @@ import { linkStored, until } from "./help.mjs";
 
 const isOfLanguage = (url) => url.pathname.includes("/lang/");
 
-/** Counts what is fetched of the languages. */
+/** Counts the requests for files of the languages. */
 function counted() {
   const fetched = [];
   return { fetched, prepare: (page) => void page.on("request", (request) => {
@@ -17,14 +17,15 @@ function counted() {
 
 const spoken = (page, tag) => page.waitForFunction((tag) => document.documentElement.lang === tag, tag);
 
-/** A page for somebody who reads these languages. */
+/** Opens a page in a browser with these languages. */
 const readerOf = (...languages) => (page) => page.addInitScript((languages) => {
   Object.defineProperty(navigator, "languages", { get: () => languages });
   Object.defineProperty(navigator, "language", { get: () => languages[0] });
 }, languages);
 
-// Fails when the font is part of the first visit, when Chinese does not come, or when the two look alike.
-onBothBackends("a link brings Chinese, the switch brings English back, and only then is anything fetched", async ({ open }) => {
+// Fails when the font is part of the first visit, when Chinese is not shown, or when both languages
+// look the same.
+onBothBackends("link selects Chinese, the switch selects English, and files are fetched on demand", async ({ open }) => {
   const plain = counted();
   const english = await open("lab=blend&play=off&t=1", { prepare: plain.prepare });
   const before = await english.screenshot();
@@ -46,13 +47,13 @@ onBothBackends("a link brings Chinese, the switch brings English back, and only 
   assert.equal(chinese.fetched.length, 2, "what is here is not fetched again");
 });
 
-onBackend("webgl2", "a reader of Chinese is spoken to in Chinese, and the link says nothing of it", async ({ open }) => {
+onBackend("webgl2", "browser set to Chinese shows Chinese, and the link does not name it", async ({ open }) => {
   const { page, segue, ready } = await open("lab=make&play=off", { prepare: readerOf("zh-TW", "en") });
   await spoken(page, "zh-Hant");
   assert.equal((await segue("params")).lang, "auto");
   assert.doesNotMatch(await segue("url"), /lang=/);
 
-  // Chosen by hand, it is there on the next visit, whatever link that begins with.
+  // A language that the user has chosen is shown on the next visit, with any link.
   await segue("set", { lang: "en" });
   await spoken(page, "en");
   await linkStored(page, "lang=en");
@@ -62,7 +63,7 @@ onBackend("webgl2", "a reader of Chinese is spoken to in Chinese, and the link s
   await spoken(page, "en");
 });
 
-onBackend("webgl2", "where the language does not come, English stays", async ({ open }) => {
+onBackend("webgl2", "language that cannot be loaded leaves English", async ({ open }) => {
   let refused = 0;
   const { page, segue } = await open("lab=blend&play=off&lang=zh-Hant", {
     prepare: (page) => page.route(isOfLanguage, (route) => (refused++, route.fulfill({ status: 404, body: "" }))),
@@ -74,7 +75,7 @@ onBackend("webgl2", "where the language does not come, English stays", async ({ 
   assert.equal(refused, 1, "it is not asked for again and again");
 });
 
-onBackend("webgl2", "the page's own words are in the reader's language, too", async ({ open }) => {
+onBackend("webgl2", "panels of the page are in the browser's language", async ({ open }) => {
   const { page, ready } = await open("", {
     wait: false,
     prepare: async (page) => {

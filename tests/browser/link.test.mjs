@@ -1,4 +1,4 @@
-// The link: every parameter into the address and back, and what is done with an address that is wrong.
+// Tests of the link: every parameter into the address and back, and wrong addresses.
 
 import assert from "node:assert/strict";
 import { onBackend, onBothBackends } from "./harness.mjs";
@@ -6,7 +6,7 @@ import { striding, until } from "./help.mjs";
 
 const SMALL = { viewport: [960, 640] };
 
-/** What cannot be chosen by its type alone: ids, texts, and numbers that lie within the clips. */
+/** The values that do not follow from the type: ids, texts, and numbers within the clips. */
 const CHOSEN = {
   a: "idle", b: "jump", leave_a: 0.35, enter_b: 0.25, gait: "run", gait_speed: 3.15, make_seconds: 5.5, lab: "make",
   joint: "left hand & 100 % = #1+2", follow_joint: "Kopf, rechts/\"ü\"", in: 0.25, out: 3.75, t: 1.234, play: false,
@@ -16,7 +16,7 @@ const CHOSEN = {
   compare: "blend_window:60,20", lesson: "slerp", src: "https://example.org/one.bvh?x=1&y=2 https://example.org/two.bvh",
 };
 
-/** A value of this row that is not its default, two thirds up its range and on its step. */
+/** Returns a value of this row that is not its default, two thirds up its range and on its step. */
 function otherThanDefault({ key, type, min, max, step, choices, default: usual }) {
   if (key in CHOSEN) return CHOSEN[key];
   if (type === "switch") return !usual;
@@ -29,8 +29,9 @@ const serveFiles = (page) => page.route(({ hostname }) => hostname === "example.
   headers: { "access-control-allow-origin": "*" }, body: striding({ frames: 30 }),
 }));
 
-// Fails for every key that url() leaves out, escapes wrongly, or that a link does not bring back, and when a file of the link takes the place of a clip in it.
-onBothBackends("every key survives its link", async ({ open }) => {
+// Fails for every key that url() leaves out or escapes wrongly, or that a link does not restore,
+// and when a file of the link replaces a clip in it.
+onBothBackends("every key is restored by its link", async ({ open }) => {
   const { segue } = await open("", { ...SMALL, prepare: serveFiles });
   const keys = await segue("keys");
   const wanted = Object.fromEntries(keys.map((row) => [row.key, otherThanDefault(row)]));
@@ -49,7 +50,7 @@ onBothBackends("every key survives its link", async ({ open }) => {
   assert.equal(new URL(await again.segue("url")).search, url.search);
 });
 
-onBothBackends("defaults are no part of a link, and the address follows", async ({ open }) => {
+onBothBackends("defaults are not part of a link, and the address follows", async ({ open }) => {
   const { page, segue } = await open("lab=blend&blend_window=24", SMALL);
   assert.equal(new URL(await segue("url")).search, "?blend_window=24");
   await segue("set", { blend_window: 30, weight_law: "linear" });
@@ -61,8 +62,9 @@ onBothBackends("defaults are no part of a link, and the address follows", async 
   await until("the address follows again", () => page.url().endsWith("?weight_law=smoother"));
 });
 
-// Fails when one bad part of a link spoils the rest of it, and when nobody is told. The notice can be seen and not asked for.
-onBothBackends("what is wrong in a link is told, and the rest is used", async ({ open }) => {
+// Fails when one bad part of a link affects the others, and when there is no notice. Notices are
+// not part of the API, so the picture is checked.
+onBothBackends("wrong parts of a link are reported, and the rest is used", async ({ open }) => {
   const query = "blend_window=24&align=off&play=off";
   const right = await open(query, SMALL);
   const wrong = await open(`colour=red&weight_law=steep&ghosts=99&${query}`, SMALL);
@@ -78,7 +80,7 @@ onBothBackends("what is wrong in a link is told, and the rest is used", async ({
   await until("a notice stands on the page", async () => (await differing()) > 1000);
 });
 
-onBackend("webgl2", "the way back in the browser's history is followed", async ({ open }) => {
+onBackend("webgl2", "going back in the history restores the state", async ({ open }) => {
   const { page, segue } = await open("blend_window=24&play=off", SMALL);
   await page.evaluate(() => history.pushState(null, "", "?blend_window=48&play=off"));
   await page.evaluate(() => history.pushState(null, "", "?blend_window=48&play=off&x"));

@@ -1,4 +1,4 @@
-// Files on their way in: dropped, broken, and still there after a reload.
+// Tests of loading: dropped files, broken files, and files after a reload.
 
 import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
@@ -8,11 +8,12 @@ import { onBackend, onBothBackends } from "./harness.mjs";
 import { apart, striding, stored, until } from "./help.mjs";
 
 const SMALL = { viewport: [960, 640] };
-/** Clips that were loaded from files, in the order in which they came. */
+/** Returns the clips of files, in the order of their loading. */
 const loaded = async (segue) => (await segue("clips")).filter((clip) => clip.sha256);
 
-// Fails when the drop does not reach the app, when a clip goes to another slot, and when the result is not made of what was dropped.
-onBothBackends("what is dropped becomes A, then B, and plays", async ({ open }) => {
+// Fails when the drop does not reach the app, when a clip gets another slot, and when the result is
+// not made of the dropped clips.
+onBothBackends("dropped files become A, then B, and play", async ({ open }) => {
   const { segue, dropFile } = await open("lab=blend&play=off", SMALL);
   await dropFile("slow.bvh", striding({ hertz: 0.8, swing: 20 }));
   const [slow] = await until("the first file is in the library", async () => (await loaded(segue)).length === 1 && loaded(segue));
@@ -41,7 +42,7 @@ onBothBackends("what is dropped becomes A, then B, and plays", async ({ open }) 
 const SHARED = [process.env.SEGUE_SHARED, fileURLToPath(new URL("../../../shared/data", import.meta.url)), fileURLToPath(new URL("../../../../shared/data", import.meta.url))]
   .find((folder) => folder && existsSync(`${folder}/cmu/run.bvh`));
 
-onBothBackends("takes from two studios, dropped", async ({ open, t }) => {
+onBothBackends("dropped takes of two studios are blended", async ({ open, t }) => {
   if (!SHARED) return t.skip("the takes are not here");
   const { segue, dropFile } = await open("lab=blend&play=off", SMALL);
   for (const [index, path] of ["cmu/run.bvh", "games105/walkF.bvh"].entries()) {
@@ -55,8 +56,9 @@ onBothBackends("takes from two studios, dropped", async ({ open, t }) => {
   await until("there is a result", async () => segue("pose", "result", 0).then(() => true, () => false));
 });
 
-// Fails when a broken file changes anything, when it is refused without saying where, and when it takes the app along.
-onBothBackends("a broken file is refused with its place, and nothing changes", async ({ open }) => {
+// Fails when a broken file changes the state, when its refusal has no position, and when the app
+// stops.
+onBothBackends("broken file is refused with its position, and changes nothing", async ({ open }) => {
   const { segue, load } = await open("lab=blend&play=off", SMALL);
   await segue("set", {}); // resolves when the clips that Segue makes itself are made
   const before = await segue("clips");
@@ -76,14 +78,15 @@ onBothBackends("a broken file is refused with its place, and nothing changes", a
   const { clips } = await load("good.bvh", Buffer.from(good));
   assert.equal(clips[0].frames, 4);
   assert.equal((await segue("clips")).length, before.length + 1, "the app goes on");
-  // A header that promises too much reserves no memory for it: what is there is read, and the rest is said.
+  // A header that states too much reserves no memory. The existing frames are read, and a warning
+  // names the missing ones.
   const endless = await load("endless.bvh", Buffer.from(good.replace("Frames: 4", "Frames: 4000000000")));
   assert.equal(endless.clips[0].frames, 4);
   assert.match(endless.warnings.join(), /4000000000/);
   assert.ok((await segue("stats")).wasm_bytes < 200e6);
 });
 
-onBothBackends("a broken file that is dropped is told of", async ({ open }) => {
+onBothBackends("dropped broken file is reported", async ({ open }) => {
   const { page, segue, dropFile } = await open("lab=blend&play=off", SMALL);
   await page.evaluate(() => {
     window.errors = [];
@@ -97,7 +100,7 @@ onBothBackends("a broken file that is dropped is told of", async ({ open }) => {
   assert.deepEqual(await segue("clips"), before);
 });
 
-/** A zip of so many files of no bytes. */
+/** Returns a zip of empty files. */
 function emptyFiles(count) {
   const [parts, directory] = [[], []];
   let at = 0;
@@ -126,8 +129,9 @@ function emptyFiles(count) {
   return Buffer.concat([...parts, list, end]);
 }
 
-// Fails when an archive may hold any number of files, and when each that is broken is told before they are counted.
-onBackend("webgl2", "60,000 empty files in a zip do not stop the frames, and the limit is told", async ({ open, t }) => {
+// Fails when an archive may contain any number of files, and when each broken one is reported
+// before they are counted.
+onBackend("webgl2", "zip of 60,000 empty files does not stop the frames, and its refusal names the limit", async ({ open, t }) => {
   const { page, segue, load } = await open("lab=view&play=off", SMALL);
   await segue("set", {});
   const before = await segue("clips");
@@ -153,8 +157,8 @@ onBackend("webgl2", "60,000 empty files in a zip do not stop the frames, and the
   assert.deepEqual(await segue("clips"), before);
 });
 
-// Fails when the library, the parameters or the bytes of the files do not come back from where the browser keeps them.
-onBothBackends("a reload brings the work back", async ({ open }) => {
+// Fails when the library, the parameters or the bytes of the files are not restored from storage.
+onBothBackends("reload restores the work", async ({ open }) => {
   const { page, segue, load, ready } = await open("", SMALL);
   const { clips } = await load("mine.bvh", striding({ frames: 90 }));
   await segue("set", { lab: "blend", compare: "", a: clips[0].id, blend_window: 17, weight_law: "linear", play: false, t: 0.4 });
@@ -164,11 +168,11 @@ onBothBackends("a reload brings the work back", async ({ open }) => {
     const { query, files } = await stored(page);
     return files.length === 1 && query.includes("blend_window=17");
   });
-  // Without the link, so that all of it comes out of storage.
+  // Without the link, so that everything is restored from storage.
   await page.goto(new URL(page.url()).origin, { waitUntil: "commit" });
   await ready();
   await segue("set", {});
-  // A storage that is slow comes after the first frame.
+  // A slow storage answers after the first frame.
   await until("the library is back", async () => (await segue("clips")).length === library.length);
   assert.deepEqual(await segue("clips"), library);
   assert.deepEqual(await segue("params"), params);
@@ -176,8 +180,8 @@ onBothBackends("a reload brings the work back", async ({ open }) => {
   assert.ok(apart(await segue("pose", "result", 0.4), pose) < 1e-6, "the same result as before");
 });
 
-// Fails when a storage that answers late is given up, or what was dropped meanwhile is stored in its place.
-onBackend("webgl2", "stored work that comes late joins what was dropped meanwhile", async ({ open }) => {
+// Fails when the work of a late storage is lost, or replaced by a clip that was dropped meanwhile.
+onBackend("webgl2", "late stored work joins a clip that was dropped meanwhile", async ({ open }) => {
   const { page, segue, load, dropFile, ready } = await open("", SMALL);
   const mine = (await load("mine.bvh", striding({ frames: 90 }))).clips[0];
   await until("the work is stored", async () => (await stored(page)).files.length === 1);
@@ -198,7 +202,7 @@ onBackend("webgl2", "stored work that comes late joins what was dropped meanwhil
   });
 });
 
-/** In the page: the database opens when `letIn()` is called, and not before. */
+/** Runs in the page. Delays the opening of the database until `letIn()` is called. */
 function holdStorage() {
   const { open } = IDBFactory.prototype;
   const { set } = Object.getOwnPropertyDescriptor(IDBRequest.prototype, "onsuccess");
@@ -210,8 +214,8 @@ function holdStorage() {
   };
 }
 
-// Fails when one tab writes its own library over what another has stored, and when it deletes the files of the other.
-onBackend("webgl2", "two tabs lose nothing of each other's", async ({ open }) => {
+// Fails when one tab overwrites the clips that another has stored, and when it deletes their files.
+onBackend("webgl2", "two tabs keep the clips of both", async ({ open }) => {
   const { page, segue, load, ready } = await open("play=off", SMALL);
   const other = await page.context().newPage();
   await other.goto(page.url(), { waitUntil: "commit" });

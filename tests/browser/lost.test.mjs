@@ -1,4 +1,5 @@
-// Graphics devices that die, one after the other, while the page plays, is dragged and loads: it lives on, and nothing is lost.
+// Tests of graphics devices that are lost, one after the other, while the page plays, a slider is
+// dragged and files are loaded.
 
 import assert from "node:assert/strict";
 import { onBackend } from "./harness.mjs";
@@ -7,10 +8,10 @@ import { random, striding, until } from "./help.mjs";
 const SMALL = { viewport: [960, 640] };
 const LOSSES = 20;
 const BURSTS = 5;
-/** Each page loses two WebGPU devices: where they die within 10 s, it draws by WebGL 2 from then on. */
+/** The number of WebGPU losses. After two within 10 s, the page draws with WebGL 2. */
 const WEBGPU_PAGES = 10;
 
-/** In the page: `lose()` takes the graphics away that draw at present. */
+/** Runs in the page. Defines `lose()`, which destroys the present graphics device. */
 const prepare = (page) => page.addInitScript(() => {
   if (window.GPUAdapter) {
     const request = GPUAdapter.prototype.requestDevice;
@@ -20,12 +21,14 @@ const prepare = (page) => page.addInitScript(() => {
   }
   window.lose = (backend) => {
     if (backend === "webgpu") return window.device.destroy();
-    // As a real loss would, it may come before the app has drawn anything on a fresh canvas.
+    // Like a real loss, it may come before the app has drawn on a new canvas.
     document.getElementById("segue").getContext("webgl2", { antialias: false })?.getExtension("WEBGL_lose_context")?.loseContext();
   };
 });
 
-/** Plays, drags the blend window and loads files for as long as `body` takes. Answers with the ids of the files. */
+/**
+ * Plays, drags the blend window and loads files while `body` runs. Returns the ids of the files.
+ */
 async function whileBusy({ page, segue, load }, body) {
   const ids = [];
   let done = false;
@@ -69,7 +72,8 @@ onBackend("webgl2", `${LOSSES} lost WebGL contexts at any moment`, async ({ open
   await isAlive(opened, ids);
 });
 
-// Fails when a context that is lost before it draws is handed to wgpu, and when a loss during a restart is not seen to.
+// Fails when a context that is lost before it draws is handed to wgpu, and when a loss during a
+// restart is ignored.
 onBackend("webgl2", `${BURSTS} bursts of lost WebGL contexts`, async ({ open }) => {
   const opened = await open("lab=blend", { ...SMALL, prepare });
   const next = random(23);
@@ -105,8 +109,8 @@ for (let index = 1; index <= WEBGPU_PAGES; index++) {
   });
 }
 
-onBackend("both", "WebGL 2 draws once two WebGPU devices have died within 10 s", async ({ open }) => {
-  // Playing, so that every device goes on drawing: a still page may be done after one frame.
+onBackend("both", "WebGL 2 draws after two lost WebGPU devices within 10 s", async ({ open }) => {
+  // The page plays, so that every device keeps drawing. A still page may end after one frame.
   const opened = await open("lab=blend", { ...SMALL, prepare });
   const { page, segue } = opened;
   await page.evaluate(() => {

@@ -1,8 +1,11 @@
-// Measures, and judges nothing: how soon the page shows its first frame, how long frames take while three panes play, and how long
-// it takes until all of a change is there: in Blend and Path for clips of 3,000 frames, in Register for two of 1,500, all of 31
-// joints. On both backends.
+// A measurement without bounds: the time to the first frame, the duration of frames while three
+// panes play, and the time until a change is complete, in Blend and Path for clips of 3,000 frames,
+// in Register for two of 1,500, all of 31 joints. On both backends.
+//
 //   node tests/browser/measure.mjs [--size 1440x900] [--seconds 60]
-// Of frames stats() knows the last 240: a minute of drawing in software, so that the start, which has its own row, does not count.
+//
+// stats() has the last 240 frames, which is a minute of drawing in software. The start does not
+// count there; it has a row of its own.
 
 import process from "node:process";
 import { parseArgs } from "node:util";
@@ -12,7 +15,7 @@ import { BACKENDS, close, openSegue } from "./segue.mjs";
 const { values } = parseArgs({ options: { size: { type: "string", default: "1440x900" }, seconds: { type: "string", default: "60" } } });
 const viewport = values.size.split("x").map(Number);
 const millis = (number) => Number(number.toFixed(1));
-/** Two roads that differ in one of their twelve points by half a step. */
+/** Two paths that differ in one of their twelve points by half a step. */
 const ROADS = ["AAwCAQHgAwDEBwCkCwCkCwCkCwqmCwmkCwCkCwCkCwDEBwDgAw", "AAwCAQHgAwDEBwCkCwCkCwCkC1CmC0-kCwCkCwCkCwDEBwDgAw"];
 const rows = {};
 
@@ -36,7 +39,8 @@ async function measure(backend) {
   const long = await openSegue(backend, "lab=blend&play=off", { viewport });
   const [a, b] = [await long.load("a.bvh", striding({ frames: 3000, hertz: 0.9 })), await long.load("b.bvh", striding({ frames: 3000, hertz: 1.6, swing: 40 }))];
   await long.segue("set", { a: a.clips[0].id, b: b.clips[0].id, leave_a: 20, enter_b: 5 });
-  // The same work that a drag causes: one value after the other, each awaited, without the drawing that software rendering makes slow.
+  // The work of a drag: one value after the other, each awaited, without the slow drawing in
+  // software.
   const set = await changes(long, range(40, (i) => ({ blend_window: 10 + 5 * i })));
   await long.segue("set", { leave_a: "auto", enter_b: "auto" });
   const search = await changes(long, [{ blend_window: 61 }]);
@@ -46,7 +50,7 @@ async function measure(backend) {
 
   const pair = await openSegue(backend, "lab=register&play=off", { viewport });
   const [c, d] = [await pair.load("c.bvh", striding({ frames: 1500, hertz: 0.9 })), await pair.load("d.bvh", striding({ frames: 1500, hertz: 1.1, swing: 40 }))];
-  // The start goes on for seconds where pictures are drawn in software; it was measured above.
+  // In software, the start takes seconds; it is measured above.
   await pair.page.waitForTimeout(5000);
   const [first, again] = [[c, d], [d, c]].map(([from, to]) => ({ a: from.clips[0].id, b: to.clips[0].id }));
   const register = [...await changes(pair, [first]), ...await changes(pair, [again])];
@@ -74,7 +78,7 @@ async function measure(backend) {
   };
 }
 
-/** How long each of the changes takes until nothing is left to be done, milliseconds. */
+/** Returns the time of each change until its work is complete, milliseconds. */
 function changes({ page }, values) {
   return page.evaluate(async (values) => {
     const segue = await window.segueReady;
@@ -98,14 +102,17 @@ function middleAndMost(took) {
   return `${millis(sorted[sorted.length >> 1])}, ${millis(sorted.at(-1))}`;
 }
 
-/** The same page again in the same browser, its files in the cache. */
+/** Opens the page again in the same browser, with its files in the cache. */
 async function reopened({ page, ready }) {
   await page.reload({ waitUntil: "commit" });
   await ready();
   return page.evaluate(() => window.firstFrame);
 }
 
-/** `segueReady` settles with the first frame, and the clock of the page begins with the navigation. */
+/**
+ * Returns the time to the first frame, with which `segueReady` settles. The clock of the page
+ * begins with the navigation.
+ */
 function noteFirstFrame(page) {
   return page.addInitScript(() => document.addEventListener("DOMContentLoaded", () => {
     window.segueReady?.then(() => { window.firstFrame = performance.now(); });

@@ -1,6 +1,8 @@
-// Fills the page's memory, and says what the page said: four BVH files of some 500 MB of zeros, and a stream of an address that is longer than a
-// file may be, twice. Ends with an error when the page stops, when a refusal does not name memory, file and what to remove, and when the second
-// stream makes the page larger. Takes a minute or two, 8 GB of memory and 3 GB of disk.
+// Fills the page's memory, and prints the page's notices: four BVH files of about 500 MB of zeros,
+// and twice a stream that is longer than a file may be. Ends with an error when the page stops,
+// when a refusal does not name the memory, the file and what to remove, and when the second stream
+// makes the page larger. Takes a minute or two, 8 GB of memory and 3 GB of disk.
+//
 //   node tests/browser/memory.mjs [--megabytes 490] [--files 4]
 
 import assert from "node:assert/strict";
@@ -58,7 +60,7 @@ async function fill() {
   await page.context().close();
 }
 
-/** Opens the address of an endless file, and once more. */
+/** Opens the address of an endless file twice. */
 async function stream() {
   const piece = Buffer.alloc(1 << 20, "0 0 0 0 0 0 0 0 0 0\n");
   const server = http.createServer(async (request, response) => {
@@ -112,7 +114,9 @@ async function note(what, segue) {
   return wasm_bytes;
 }
 
-/** Drops a file of zeros that is made in the page. Each differs from the last in its first row. */
+/**
+ * Drops a file of zeros that is made in the page. Each differs from the others in its first row.
+ */
 function dropZeros(page, name) {
   const head = striding({ frames: 1 }).toString();
   const channels = head.trim().split("\n").at(-1).split(" ").length;

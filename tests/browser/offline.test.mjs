@@ -1,4 +1,4 @@
-// What a page keeps for the visits after the first, and how it comes to a newer build.
+// Tests of the service worker: visits without a network, and updates to a newer build.
 
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
@@ -11,13 +11,16 @@ const SMALL = { viewport: [640, 480], keeps: true };
 const DIST = new URL("../../dist/", import.meta.url);
 const TYPES = { html: "text/html", js: "text/javascript", wasm: "application/wasm", webmanifest: "application/manifest+json", svg: "image/svg+xml" };
 
-/** The build that a page is of. */
+/** Returns the build of a page. */
 const buildOf = (page) => page.evaluate(() => document.querySelector('meta[name="build"]').content);
 const keptBuilds = (page) => page.evaluate(() => caches.keys());
-/** Until the worker has kept everything and looks after this page. */
+/** Waits until the worker has cached all files and controls this page. */
 const isKept = (page) => until("the page is kept", () => page.evaluate(() => Boolean(navigator.serviceWorker.controller)));
 
-/** A host whose build changes under the page's feet: `html` and `worker` are the names that its two entry files go by. */
+/**
+ * Starts a host whose build changes while the page is open: `html` and `worker` are the builds of
+ * its two entry files.
+ */
 async function host(t) {
   const real = (await readFile(new URL("index.html", DIST), "utf8")).match(/name="build" content="(\w+)"/)[1];
   const now = { html: real, worker: real, real, beside: {} };
@@ -39,8 +42,8 @@ async function host(t) {
   return { now, base: `http://127.0.0.1:${server.address().port}/somewhere/` };
 }
 
-// Fails when a file of the first visit is not kept, and when the kept page asks the network for anything.
-onBackend("webgl2", "the second visit needs no network", async ({ open }) => {
+// Fails when a file of the first visit is not cached, and when the cached page uses the network.
+onBackend("webgl2", "second visit needs no network", async ({ open }) => {
   const { page, ready, segue } = await open("lab=make&gait_speed=1.2", SMALL);
   await isKept(page);
   await page.context().setOffline(true);
@@ -50,14 +53,14 @@ onBackend("webgl2", "the second visit needs no network", async ({ open }) => {
   assert.ok((await segue("pose", "result", 0.1)).joints.length > 10);
 });
 
-// Fails when a worker keeps files of two builds, and when a reload stays with the old one for ever.
-onBackend("webgl2", "a newer build comes whole, with the next reload", async ({ open, t }) => {
+// Fails when a worker caches files of two builds, and when reloads never get the new one.
+onBackend("webgl2", "newer build replaces all files with the next reload", async ({ open, t }) => {
   const { now, base } = await host(t);
   const { page, ready } = await open("play=off", { ...SMALL, base });
   await isKept(page);
   assert.equal(await buildOf(page), now.real);
 
-  // The host is in the middle of an update: the worker is new, the page is not.
+  // The host is being updated: the worker is new, the page is not.
   now.worker = "1111111111111111";
   const refused = await page.evaluate(async () => {
     const registration = await navigator.serviceWorker.getRegistration();
@@ -79,8 +82,9 @@ onBackend("webgl2", "a newer build comes whole, with the next reload", async ({ 
   assert.deepEqual((await keptBuilds(page)).map((name) => name.split(" ").pop()), [now.html]);
 });
 
-// Fails when a host can never correct what lies beside the page, and when files of its other pages are kept.
-onBackend("webgl2", "what lies beside the page comes from the network as long as there is one", async ({ open, t }) => {
+// Fails when a host cannot replace files beside the page, and when files of its other pages are
+// cached.
+onBackend("webgl2", "files beside the page come from the network while there is one", async ({ open, t }) => {
   const { now, base } = await host(t);
   Object.assign(now.beside, { "mine.md": "one", "other.html": "<!doctype html><title>Other</title>", "other.json": "1" });
   const { page } = await open("play=off", { ...SMALL, base });

@@ -1,5 +1,5 @@
-// The page around the app: what it does when all goes well, and what it says when something does not.
-// A stand-in takes the app's place, for most of this cannot be provoked in the real one.
+// Tests of the page around the app, in success and in failure. A stub replaces the app, because
+// most failures cannot be provoked in the real one.
 
 import assert from "node:assert/strict";
 import { onBackend } from "./harness.mjs";
@@ -27,7 +27,7 @@ const STAND_IN = `
     exportClip() { return new Uint8Array([1, 2, 3]); }
   }`;
 
-/** The smallest module there is: the page compiles it before it hands it to the bindings. */
+/** The smallest WebAssembly module, which the page compiles and hands to the bindings. */
 const EMPTY_MODULE = Buffer.from([0x00, 0x61, 0x73, 0x6d, 0x01, 0x00, 0x00, 0x00]);
 const fulfillWasm = (route) => route.fulfill({ contentType: "application/wasm", body: EMPTY_MODULE });
 
@@ -62,7 +62,7 @@ onBackend("webgl2", "segueReady resolves with the API", async ({ open }) => {
   await assert.rejects(page.evaluate(() => window.segue.on("nothing", () => {})), /on: event: found `nothing`, expected one of change, error, progress/);
 });
 
-onBackend("webgl2", "a download that fails is said and can be tried again", async ({ open }) => {
+onBackend("webgl2", "failed download is shown and can be tried again", async ({ open }) => {
   const { page, ready } = await open("", {
     wait: false,
     prepare: async (page) => {
@@ -78,7 +78,7 @@ onBackend("webgl2", "a download that fails is said and can be tried again", asyn
   await page.waitForFunction(() => window.segue?.version === "9.9.9");
 });
 
-onBackend("webgl2", "a browser without graphics is told so in a sentence", async ({ open }) => {
+onBackend("webgl2", "browser without graphics shows a sentence", async ({ open }) => {
   const { page, ready } = await open("", {
     wait: false,
     prepare: (page) => page.addInitScript(() => {
@@ -90,7 +90,7 @@ onBackend("webgl2", "a browser without graphics is told so in a sentence", async
   assert.match(await panelOf(page).innerText(), /neither WebGPU nor WebGL2/);
 });
 
-onBackend("webgl2", "a start that fails gives its reason", async ({ open }) => {
+onBackend("webgl2", "failed start shows its reason", async ({ open }) => {
   const { page, ready } = await open("", {
     wait: false,
     prepare: async (page) => {
@@ -102,7 +102,7 @@ onBackend("webgl2", "a start that fails gives its reason", async ({ open }) => {
   assert.match(await panelOf(page).innerText(), /no graphics for you/);
 });
 
-onBackend("webgl2", "a panic shows its text, a report to copy, and the way back", async ({ open }) => {
+onBackend("webgl2", "panic shows its text, a report to copy, and a button to reload", async ({ open }) => {
   const { page, segue } = await open("lab=blend", { prepare: standIn });
   await page.context().grantPermissions(["clipboard-read", "clipboard-write"]);
   await page.evaluate(() => { window.panic = "the knee bent backwards"; });
@@ -120,7 +120,7 @@ onBackend("webgl2", "a panic shows its text, a report to copy, and the way back"
   assert.match(page.url(), /\?lab=blend$/);
 });
 
-onBackend("webgl2", "a trap outside of any call counts as a panic", async ({ open }) => {
+onBackend("webgl2", "trap outside of any call counts as a panic", async ({ open }) => {
   const opened = await open("", { prepare: standIn });
   await opened.page.evaluate(() => void setTimeout(() => { throw new WebAssembly.RuntimeError("unreachable"); }));
   await panelOf(opened.page).waitFor();
@@ -128,8 +128,9 @@ onBackend("webgl2", "a trap outside of any call counts as a panic", async ({ ope
   opened.problems.length = 0;
 });
 
-// Fails when a trap for want of memory is called a mistake, and when any other trap is not.
-onBackend("webgl2", "a trap for want of memory speaks of memory", async ({ open }) => {
+// Fails when a trap by a failed allocation is shown as an error of Segue, and when another trap is
+// not.
+onBackend("webgl2", "trap by a failed allocation names the memory", async ({ open }) => {
   const prepare = async (page) => {
     await standIn(page);
     await page.addInitScript(() => { window.memory = { buffer: { byteLength: 3.9e9 } }; });
@@ -148,7 +149,7 @@ onBackend("webgl2", "a trap for want of memory speaks of memory", async ({ open 
   assert.match(await panelOf(panicked.page).innerText(), /mistake/);
 });
 
-onBackend("webgl2", "a lost graphics context moves the app to a fresh canvas", async ({ open }) => {
+onBackend("webgl2", "lost graphics context moves the app to a new canvas", async ({ open }) => {
   const { page } = await open("", { prepare: standIn });
   const moved = await page.evaluate(async () => {
     const old = document.getElementById("segue");
@@ -164,8 +165,8 @@ onBackend("webgl2", "a lost graphics context moves the app to a fresh canvas", a
   assert.deepEqual(moved, [true, 3, 3, true, false]);
 });
 
-onBackend("webgl2", "a framed page answers its parent", async ({ open }) => {
-  // The page around it is another one: this one's policy lets it frame nothing.
+onBackend("webgl2", "framed page answers its parent", async ({ open }) => {
+  // The framing page is another one, because the policy of this page allows no frames in it.
   const course = (route) => route.fulfill({ contentType: "text/html", body: "<!doctype html><title>A course</title>" });
   const { page } = await open("", {
     wait: false,

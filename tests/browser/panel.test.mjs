@@ -1,4 +1,4 @@
-// What is seen and touched: a slider under the mouse, panes side by side, a phone, and nothing at all while nothing changes.
+// Tests of the panels: a slider under the mouse, panes side by side, a phone, and a page at rest.
 
 import assert from "node:assert/strict";
 import { setTimeout as pause } from "node:timers/promises";
@@ -10,7 +10,10 @@ const DESK = { viewport: [1000, 700] };
 const isAccent = (red, green, blue) => green > 150 && green - red > 60 && green - blue > 20;
 const isWhite = (...rgb) => Math.min(...rgb) > 225;
 
-/** The first slider of the right panel: where its filled part begins, where its handle is, where its track ends. */
+/**
+ * Returns the positions on the first slider of the right panel: the start of the filled part, the
+ * handle, the end of the track.
+ */
 function firstSlider(picture) {
   const [left, right] = [picture.width - 288 + 20, picture.width - 16]; // past the rounded end
   for (let y = 60; y < picture.height - 214; y++) {
@@ -27,7 +30,8 @@ function firstSlider(picture) {
   throw new Error("no slider in the right panel");
 }
 
-// Fails when the mouse does not reach the slider, when the result is not computed anew, and when a drag is more than one step of undo.
+// Fails when the mouse does not reach the slider, when the result is not computed again, and when a
+// drag is more than one step of undo.
 onBothBackends("dragging the blend window changes the result, and undo takes it back in one step", async ({ open }) => {
   const { page, segue, drag, pixels } = await open("lab=blend&play=off", DESK);
   await segue("set", {});
@@ -53,7 +57,7 @@ onBothBackends("dragging the blend window changes the result, and undo takes it 
 });
 
 // Fails when a pane is missing, empty, or the same as its neighbour.
-onBothBackends("three panes, each with its own value and a character in it", async ({ open }) => {
+onBothBackends("three panes have values and characters of their own", async ({ open }) => {
   const { segue, pixels } = await open("compare=blend_window:30,15,10&play=off", DESK);
   await segue("set", {});
   for (const [name, { panes, value }] of Object.entries(await segue("metrics"))) {
@@ -83,8 +87,8 @@ onBothBackends("three panes, each with its own value and a character in it", asy
   assert.equal(alone.panes.length, 1, `one pane is left of ${clay}`);
 });
 
-// Fails when anything asks for a frame though there is nothing new to see: batteries pay for it.
-onBothBackends("a page at rest draws nothing", async ({ open }) => {
+// Fails when a frame is requested although nothing changes, which drains batteries.
+onBothBackends("page at rest draws nothing", async ({ open }) => {
   const { segue } = await open("lab=blend&play=off", DESK);
   await segue("set", {});
   const drawnIn = async (ms) => {
@@ -100,8 +104,9 @@ onBothBackends("a page at rest draws nothing", async ({ open }) => {
   await until("and rests again", async () => (await drawnIn(1500)) === 0);
 });
 
-// Fails when a phone gets the columns of a desk, all three panes, or something that is wider than it.
-onBothBackends("a phone shows one pane, and all of the page", async ({ open }) => {
+// Fails when a phone shows the columns of the wide layout, all three panes, or something wider than
+// its screen.
+onBothBackends("phone shows one pane, and the whole page", async ({ open }) => {
   const [width, height] = [390, 844];
   const { page, segue, pixels, log } = await open("compare=blend_window:30,15,10&play=off", { viewport: [width, height] });
   await segue("set", {});
@@ -112,7 +117,7 @@ onBothBackends("a phone shows one pane, and all of the page", async ({ open }) =
     const picture = await pixels();
     return count(picture, stage, isClay) > 3000 && picture;
   });
-  // One character: clay in one run of columns only.
+  // One character has the colour of clay in one run of columns.
   const columns = Array.from({ length: stage[2] }, (_, x) => count(picture, [x, stage[1], x + 1, stage[3]], isClay) > 3);
   const runs = columns.filter((clay, x) => clay && !columns[x - 1]).length;
   assert.ok(runs >= 1 && runs <= 2, `${runs} separate characters`);

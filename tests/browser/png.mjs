@@ -2,7 +2,10 @@
 
 import zlib from "node:zlib";
 
-/** @returns {{ width: number, height: number, data: Uint8Array, at(x: number, y: number): number[], colours(): number }} */
+/**
+ * @returns {{ width: number, height: number, data: Uint8Array, at(x: number, y: number): number[],
+ * colours(): number }}
+ */
 export function decodePng(bytes) {
   let width, height, channels;
   const packed = [];
@@ -43,7 +46,7 @@ export function decodePng(bytes) {
     data: rows,
     /** [red, green, blue, alpha] of one pixel */
     at,
-    /** how many different colours there are */
+    /** the number of different colours */
     colours() {
       const seen = new Set();
       for (let i = 0; i < rows.length; i += channels) seen.add((rows[i] << 16) | (rows[i + 1] << 8) | rows[i + 2]);
@@ -52,7 +55,7 @@ export function decodePng(bytes) {
   };
 }
 
-/** The predictor of the PNG specification: whichever neighbour is nearest to left + up − upLeft. */
+/** The Paeth predictor of the PNG specification: the neighbour nearest to left + up − upLeft. */
 function paeth(left, up, upLeft) {
   const estimate = left + up - upLeft;
   const [toLeft, toUp, toUpLeft] = [Math.abs(estimate - left), Math.abs(estimate - up), Math.abs(estimate - upLeft)];

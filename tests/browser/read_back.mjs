@@ -1,6 +1,7 @@
-// Whether exported files are the same motion to three.js: BVH through its BVHLoader, GLB through its GLTFLoader, against the positions that were
-// exported as CSV. A test of the page uses it (exchange.test.mjs), and `node read_back.mjs FOLDER` does for the files that the core's tests leave
-// in target/tmp/exchange, which `cargo xtask test oracles` runs.
+// Comparison of exported files in three.js: BVH through its BVHLoader and GLB through its
+// GLTFLoader, against the positions that were exported as CSV. A test of the page uses it
+// (exchange.test.mjs), and `cargo xtask test oracles` runs `node read_back.mjs FOLDER` on the files
+// that the core's tests leave in target/tmp/exchange.
 
 import { readFileSync } from "node:fs";
 import process from "node:process";
@@ -13,7 +14,10 @@ import validator from "gltf-validator";
 /** A thousandth of a centimetre, metres. */
 export const AS_GOOD_AS_SAME = 1e-5;
 
-/** `{ joints, frames }`: names, and for each frame the positions of the joints in metres. */
+/**
+ * Reads a CSV file. Returns `{ joints, frames }`: names, and for each frame the positions of the
+ * joints in metres.
+ */
 export function fromCsv(text) {
   const [names, ...rows] = text.trimEnd().split("\r\n").map(cells);
   const columns = names.flatMap((name, column) => (name.endsWith(".x_m") ? [column] : []));
@@ -23,14 +27,17 @@ export function fromCsv(text) {
   };
 }
 
-/** The same of a BVH file. */
+/** Reads a BVH file. Returns joints and frames as for CSV. */
 export function fromBvh(text, metresPerUnit) {
   const { skeleton, clip } = new BVHLoader().parse(text);
   const bones = skeleton.bones.filter((bone) => bone.name !== "ENDSITE");
   return { joints: bones.map((bone) => bone.name), frames: frames(bones[0], bones, clip, metresPerUnit) };
 }
 
-/** The same of a GLB file, its joints in the order of its skin. Names are those that three.js makes of them. */
+/**
+ * Reads a GLB file. Returns joints and frames as for CSV, in the order of its skin, with the names
+ * that three.js makes.
+ */
 export async function fromGlb(bytes) {
   const buffer = bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength);
   const { scene, animations } = await new GLTFLoader().parseAsync(buffer, "");
@@ -40,13 +47,16 @@ export async function fromGlb(bytes) {
   return { joints: skin.skeleton.bones.map((bone) => bone.name), frames: frames(scene, skin.skeleton.bones, animations[0], 1), skin };
 }
 
-/** What Khronos' validator says of a GLB file: messages, none where it is valid. */
+/** Returns the messages of Khronos' validator for a GLB file, none where it is valid. */
 export async function complaints(bytes) {
   const { issues } = await validator.validateBytes(new Uint8Array(bytes));
   return issues.messages.filter(({ severity }) => severity < 2).map(({ code, message, pointer }) => `${code} at ${pointer}: ${message}`);
 }
 
-/** How far a joint is from where it should be, in metres, in the worst frame. Joints are matched by `key(names, index)`. */
+/**
+ * Returns the greatest error of a joint's position over all frames, metres. Joints are matched by
+ * `key(names, index)`.
+ */
 export function farthest(expected, found, key = (names, index) => names[index]) {
   if (expected.frames.length !== found.frames.length) throw new Error(`${found.frames.length} frames, not ${expected.frames.length}`);
   if (expected.joints.length !== found.joints.length) throw new Error(`${found.joints.length} joints, not ${expected.joints.length}`);
@@ -74,7 +84,7 @@ function frames(root, bones, clip, metresPerUnit) {
   });
 }
 
-/** The cells of a line; a comma in quotation marks is none. */
+/** Returns the cells of a line. Commas in quotation marks do not separate. */
 function cells(line) {
   return [...line.matchAll(/(?:^|,)(?:"((?:[^"]|"")*)"|([^,]*))/g)].map(([, quoted, plain]) => quoted?.replaceAll('""', '"') ?? plain);
 }

@@ -1,15 +1,16 @@
-// Large files: read by a worker, while the page goes on.
+// Tests of large files, which a worker reads while the page goes on.
 
 import assert from "node:assert/strict";
 import { onBackend, onBothBackends } from "./harness.mjs";
 import { apart, striding, until } from "./help.mjs";
 
 const SMALL = { viewport: [960, 640] };
-/** Well above the size from which files are read by the worker. */
+/** A size well above that of the largest file that is read at once. */
 const LARGE = striding({ frames: 12_000 });
 
-// Fails when the file is read between two frames, when the answers of the worker do not arrive whole, and when nothing is told meanwhile.
-onBothBackends("a large file is read beside the page", async ({ open }) => {
+// Fails when the file is read between two frames, when answers of the worker are incomplete, and
+// when no progress is reported.
+onBothBackends("large file is read while the page goes on", async ({ open }) => {
   const { page, segue, dropFile, load } = await open("lab=view&play=off", SMALL);
   await page.evaluate(() => {
     window.progress = [];
@@ -28,11 +29,11 @@ onBothBackends("a large file is read beside the page", async ({ open }) => {
   const short = (await load("short.bvh", striding({ frames: 200 }))).clips[0];
   for (const time of [0, 1.5]) assert.ok(apart(await segue("pose", clip.id, time), await segue("pose", short.id, time)) < 1e-6);
 
-  // And through the API, which tells what came of it.
+  // The API returns the result.
   await assert.rejects(load("torn.bvh", LARGE.subarray(0, LARGE.length / 2).toString().replace("MOTION", "NOTION")), /torn\.bvh:\d+:\d+: found .+, expected /);
 });
 
-onBackend("webgl2", "a large file can be stopped", async ({ open }) => {
+onBackend("webgl2", "reading of a large file can be stopped", async ({ open }) => {
   const { page, segue } = await open("lab=view&play=off", SMALL);
   await segue("set", {});
   const before = await segue("clips");
@@ -49,7 +50,7 @@ onBackend("webgl2", "a large file can be stopped", async ({ open }) => {
   assert.equal((await segue("clips")).length, before.length + 1);
 });
 
-onBackend("webgl2", "a large file is there again after a reload", async ({ open }) => {
+onBackend("webgl2", "large file is restored after a reload", async ({ open }) => {
   const { page, segue, load, ready } = await open("", SMALL);
   const { clips } = await load("long.bvh", LARGE);
   await segue("set", { lab: "view", compare: "", a: clips[0].id, play: false });

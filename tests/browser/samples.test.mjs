@@ -1,4 +1,4 @@
-// Bundled takes: fetched when they are asked for, alone or as a set, and there without a network from then on.
+// Tests of bundled takes, which are fetched on demand, alone or as a set, and cached.
 
 import assert from "node:assert/strict";
 import { onBackend, onBothBackends } from "./harness.mjs";
@@ -9,7 +9,7 @@ const NINE = [
   "cmu16_walk", "cmu16_run", "cmu16_fast_walk", "cmu16_veer_left", "cmu16_veer_right", "cmu16_turn_left", "cmu16_turn_right", "cmu16_stop", "cmu16_run_stop",
 ];
 
-/** Notes the takes that the page asks for. */
+/** Records the takes that the page requests. */
 function watch(asked) {
   return (page) => page.on("request", (request) => {
     const [, file] = new URL(request.url()).pathname.split("/samples/");
@@ -17,8 +17,9 @@ function watch(asked) {
   });
 }
 
-// Fails when a first visit or another clip fetches takes, when a link fetches more than it names, and when what came cannot be played.
-onBothBackends("a link to a take fetches that take alone", async ({ open }) => {
+// Fails when a first visit or another clip fetches takes, when a link fetches more than it names,
+// and when a fetched take cannot be played.
+onBothBackends("link to a take fetches that take alone", async ({ open }) => {
   const asked = [];
   const { segue } = await open("lab=loop&a=cmu16_walk&play=off", { ...DESK, prepare: watch(asked) });
   await segue("set", {});
@@ -28,8 +29,9 @@ onBothBackends("a link to a take fetches that take alone", async ({ open }) => {
   assert.ok((await segue("pose", "result", 0.5)).joints.includes("lfemur"));
 });
 
-// Fails when the clips of the graph are not replaced, when one of the nine does not come, and when the walk is not of them.
-onBackend("webgl2", "graph and matching take all nine takes from a link", async ({ open }) => {
+// Fails when the clips of the graph are not replaced, when one of the nine is not loaded, and when
+// the walk is not made of them.
+onBackend("webgl2", "graph and match labs load all nine takes of a link", async ({ open }) => {
   const asked = [];
   const { segue } = await open("lab=graph&play=off", { ...DESK, prepare: watch(asked) });
   await segue("set", {});
@@ -45,12 +47,13 @@ onBackend("webgl2", "graph and matching take all nine takes from a link", async 
   assert.ok((await segue("pose", "result", 1)).joints.includes("lfemur"));
 });
 
-// Fails when a take is not kept with the page, and when the library forgets a take that was loaded.
-onBackend("webgl2", "a take that was loaded once needs no network", async ({ open }) => {
+// Fails when a take is not cached with the page, and when the library loses a loaded take.
+onBackend("webgl2", "loaded take needs no network", async ({ open }) => {
   const { page, ready, segue } = await open("lab=loop&a=cmu16_run&play=off", { ...DESK, keeps: true });
   await until("the page is kept", () => page.evaluate(() => Boolean(navigator.serviceWorker.controller)));
   await segue("set", { a: "cmu16_walk" });
-  // The first take came before the page was kept; it is the second one that is there for the next visit.
+  // The first take was loaded before the page was cached, so only the second one is available on
+  // the next visit.
   await until("the address names it", () => page.url().includes("cmu16_walk"));
   await page.evaluate(() => document.dispatchEvent(new Event("visibilitychange")));
   await page.context().setOffline(true);

@@ -1,5 +1,6 @@
-// Measures, and judges nothing: how long a search of motion matching takes in Chromium, by each method, at the median and the 99th percentile.
-// `cargo xtask match-speed` does the same outside the browser.
+// A measurement without bounds: the time of a search of motion matching in Chromium by each method,
+// the median and the 99th percentile. `cargo xtask match-speed` does the same outside the browser.
+//
 //   node tests/browser/search.mjs [--frames 5000,50000,500000]
 
 import { spawnSync } from "node:child_process";
@@ -13,7 +14,7 @@ import { close, launch } from "./segue.mjs";
 
 const { values } = parseArgs({ options: { frames: { type: "string", default: "5000,50000,500000" } } });
 const root = fileURLToPath(new URL("../..", import.meta.url));
-/** Slow methods are asked so many queries only. */
+/** The number of queries for slow methods. */
 const FEW = 200;
 
 const folder = mkdtempSync(join(tmpdir(), "segue-search-"));
@@ -21,7 +22,7 @@ const rows = {};
 try {
   build();
   const page = await (await launch("webgl2")).newPage();
-  // Isolated, a page's clock goes by 5 microseconds and not by 100.
+  // In an isolated page, the resolution of the clock is 5 microseconds instead of 100.
   const headers = { "Cross-Origin-Opener-Policy": "same-origin", "Cross-Origin-Embedder-Policy": "require-corp" };
   await page.route("**/*", (route) => {
     const name = new URL(route.request().url()).pathname.slice(1);

@@ -1,4 +1,4 @@
-// Segue in a real Chromium: what harness.mjs makes tests of and shot.mjs takes pictures of.
+// Segue in a real Chromium, for the tests of harness.mjs and the pictures of shot.mjs.
 
 import { execFileSync, spawn } from "node:child_process";
 import { Buffer } from "node:buffer";
@@ -11,7 +11,9 @@ import { decodePng } from "./png.mjs";
 
 export const BACKENDS = ["webgl2", "webgpu"];
 
-/** How long a test waits for something before it fails: software rendering takes seconds for a frame where the machine does much besides. */
+/**
+ * The time limit for a condition. Software rendering takes seconds for a frame on a busy machine.
+ */
 export const PATIENCE_MS = 120_000;
 
 const COMMON_FLAGS = [
@@ -19,11 +21,12 @@ const COMMON_FLAGS = [
 ];
 const BACKEND_FLAGS = {
   webgl2: ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-features=WebGPU"],
-  // The last three, too: unless Vulkan composes the page, what WebGPU draws is missing in pictures of it.
+  // The last three are needed because pictures of a page lack what WebGPU draws, unless Vulkan
+  // composes the page.
   webgpu: [
     "--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader", "--enable-features=Vulkan", "--use-vulkan=swiftshader", "--use-angle=vulkan",
   ],
-  // For what goes from one to the other: pictures of what WebGPU draws are empty.
+  // For tests that change from WebGPU to WebGL 2. Pictures of WebGPU are empty here.
   both: [
     "--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader", "--enable-unsafe-swiftshader", "--enable-features=Vulkan", "--use-vulkan=swiftshader", "--use-angle=swiftshader",
   ],
@@ -34,11 +37,12 @@ const BACKEND_FLAGS = {
  * @param options.viewport [width, height]
  * @param options.scale device pixels per CSS pixel
  * @param options.theme "dark" or "light"
- * @param options.motion "reduce" for a user who wants little of it
- * @param options.base the address to open in place of the build that is served
- * @param options.keeps true: the page may keep itself for later visits (sw.js), which no other test is about
+ * @param options.motion "reduce" for a user who prefers reduced motion
+ * @param options.base the address to open instead of the served build
+ * @param options.keeps true: the page may register its service worker (sw.js), which other tests
+ *   must not have
  * @param options.wait false: return at once, ready or not
- * @param options.prepare called with the page before it goes anywhere: routes, init scripts
+ * @param options.prepare called with the page before it navigates, to add routes and init scripts
  */
 export async function openSegue(backend, query = "", options = {}) {
   const { viewport = [1280, 800], scale = 1, theme = "dark", motion = "no-preference", base, keeps = false, wait = true, prepare } = options;
@@ -50,7 +54,10 @@ export async function openSegue(backend, query = "", options = {}) {
   const page = await context.newPage();
   page.setDefaultTimeout(PATIENCE_MS);
   const log = [];
-  /** Uncaught errors, which fail the test. Empty it (`problems.length = 0`) where one is the point. */
+  /**
+   * Uncaught errors, which fail the test. A test that expects one empties the list
+   * (`problems.length = 0`).
+   */
   const problems = [];
   page.on("console", (message) => log.push(`${message.type()}: ${message.text()}`));
   page.on("pageerror", (error) => problems.push(String(error.stack ?? error)));
@@ -66,17 +73,23 @@ export async function openSegue(backend, query = "", options = {}) {
       await page.waitForFunction(() => "segueReady" in window);
       return page.evaluate(() => window.segueReady.then(() => true));
     },
-    /** Calls the page's API: `segue("set", { lab: "blend" })`; a property by its name alone: `segue("version")`. */
+    /**
+     * Calls the page's API: `segue("set", { lab: "blend" })`; a property by its name alone:
+     * `segue("version")`.
+     */
     segue: (member, ...args) => call(page, member, args),
     /** Loads a file through the API. */
     load: (name, bytes) => load(page, name, bytes),
     dropFile: (name, bytes, at) => dropFile(page, name, bytes, at),
     drag: (from, to, steps) => drag(page, from, to, steps),
-    /** The page's picture as PNG bytes. */
+    /** Returns a picture of the page as PNG bytes. */
     screenshot: () => page.screenshot({ type: "png" }),
-    /** The same, decoded: `{ width, height, at(x, y), colours(), … }`. */
+    /** Returns a decoded picture of the page: `{ width, height, at(x, y), colours(), … }`. */
     pixels: async () => decodePng(await page.screenshot({ type: "png" })),
-    /** The stage alone, decoded, as the app itself reads it back: the browser's own pictures wait for a compositor that a lost device takes along. */
+    /**
+     * Returns a decoded picture of the stage from the app. The browser's own pictures wait for a
+     * compositor, which a lost device stops.
+     */
     snapshot: async () => decodePng(await snapshot(page)),
   };
   if (wait) await withTimeout(opened.ready(), PATIENCE_MS, () => `the page did not get ready; it said:\n${log.join("\n")}`);
@@ -132,7 +145,7 @@ async function snapshot(page) {
 
 const browsers = new Map();
 
-/** One browser per backend and test file, started when first asked for. */
+/** The browsers of this test file by backend, started on demand. */
 export function launch(backend) {
   if (!BACKEND_FLAGS[backend]) throw new Error(`there is no backend "${backend}", only ${Object.keys(BACKEND_FLAGS).join(", ")}`);
   if (!browsers.has(backend)) {
@@ -153,7 +166,8 @@ function chromiumPath() {
   throw new Error("no Chromium on the path: install one, or name it in the variable CHROMIUM");
 }
 
-// The server: the one that `cargo xtask test` has started, or one of our own over dist/.
+// The server: the one that `cargo xtask test` has started, or a server of dist/ that is started
+// here.
 let server;
 let addressPromise;
 

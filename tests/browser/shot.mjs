@@ -1,7 +1,7 @@
-// Takes one picture by hand:
+// Takes a picture of the page:
 //   node tests/browser/shot.mjs --query "lab=blend" --size 1440x900 --backend webgl2 --out x.png [--theme light] [--scale 2]
 //                               [--wait 1500] [--eval "await segue.set({ lab: 'graph' })"]
-// --eval runs in the page before the wait, with `segue` at hand, and its value is printed.
+// --eval runs in the page before the wait, with the API as `segue`, and its value is printed.
 
 import { writeFile } from "node:fs/promises";
 import process from "node:process";
@@ -41,7 +41,10 @@ try {
   process.exit();
 }
 
-/** An expression is returned; what is more than one goes as it is. */
+/**
+ * Returns the body of a function: an expression gets a `return`, several statements stay as they
+ * are.
+ */
 function statement(code) {
   return /;|\breturn\b/.test(code) ? code : `return ${code}`;
 }

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { onBothBackends } from "./harness.mjs";
 
-onBothBackends("the page starts and draws", async ({ open, backend }) => {
+onBothBackends("page starts and draws", async ({ open, backend }) => {
   const { page, segue, pixels } = await open();
   assert.equal((await segue("stats")).backend, backend);
   assert.equal(await page.locator("#loading").count(), 0, "the loading state is gone");

@@ -1,6 +1,8 @@
-// Measures, and judges nothing: how fast BVH text is read by Segue and by three.js' BVHLoader, in the same page. "Reading" is
-// parser beside parser: bytes, or text, in; clip out. The first time the browser has not optimised the code yet. "Into the
-// library" is all of what a user waits for: to the worker, read, hashed, back, analysed.
+// A measurement without bounds: the speed of reading BVH text by Segue and by three.js' BVHLoader,
+// in the same page. "Reading" compares the parsers, from bytes or text to a clip. In the first run,
+// the browser has not optimised the code yet. "Into the library" is the whole wait of a user:
+// transfer to the worker, reading, hashing, transfer back, and analysis.
+//
 //   node tests/browser/speed.mjs [--frames 9600,60000]      frames of a body of 31 joints, some 730 bytes each
 
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -64,7 +66,7 @@ function compare(page) {
     };
     const text = new TextDecoder().decode(buffer);
     const theirs = await best(1, () => new BVHLoader().parse(text));
-    // What the worker runs (web/js/reader.js).
+    // The worker's program (web/js/reader.js).
     const setup = JSON.stringify({ options: { metres_per_unit: null, up: null, fps: null, max_bytes: 512 << 20, drop_t_pose: true }, roles: {}, companions: [] });
     const { default: init, readFile } = await import(new URL("./read/reader.js", document.querySelector("link[rel=modulepreload][href$='boot.js']").href));
     await init();

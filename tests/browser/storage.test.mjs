@@ -1,18 +1,18 @@
-// What the browser keeps: a file that was called loaded is there again, however the page ended.
+// Tests of storage: a loaded file is restored, however the page has ended.
 
 import assert from "node:assert/strict";
 import { onBackend } from "./harness.mjs";
 import { linkStored, random, striding, until } from "./help.mjs";
 
 const SMALL = { viewport: [960, 640] };
-/** The ids of clips that were loaded from files, in the order in which they came. */
+/** Returns the ids of clips of files, in the order of their loading. */
 const loaded = async (segue) => (await segue("clips")).filter((clip) => clip.sha256).map(({ id }) => id);
 
 const FILES = 40;
 const MOMENTS = 10;
-const LATEST_MS = 5000;
+const MAX_WAIT_MS = 5000;
 
-/** How a page ends; each answers with the page that the work is looked for in. */
+/** The ways to end a page. Each returns the page in which the work has to be restored. */
 const ENDS = {
   reload: async (page) => {
     await page.reload({ waitUntil: "commit" });
@@ -27,15 +27,16 @@ const ENDS = {
     const context = page.context();
     const session = await context.newCDPSession(page);
     const crashed = page.waitForEvent("crash");
-    session.send("Page.crash").catch(() => {}); // nobody is left to answer
+    session.send("Page.crash").catch(() => {}); // the crashed page does not answer
     await crashed;
     return context.newPage();
   },
 };
 
-// Fails when load() resolves before the file is stored, and when what is stored needs a record that was not written yet.
-for (const [seed, [end, bringAbout]] of Object.entries(ENDS).entries()) {
-  onBackend("webgl2", `files that were loaded are there after a ${end}, whenever it comes`, async ({ open }) => {
+// Fails when load() resolves before the file is stored, and when a stored file needs a record that
+// is not written yet.
+for (const [seed, [end, endPage]] of Object.entries(ENDS).entries()) {
+  onBackend("webgl2", `loaded files are restored after a ${end} at any moment`, async ({ open }) => {
     const next = random(20_261_122 + seed);
     const texts = Array.from({ length: FILES }, (_, index) => striding({ frames: 12, swing: 10 + index }).toString());
     let resolved = 0;
@@ -50,9 +51,9 @@ for (const [seed, [end, bringAbout]] of Object.entries(ENDS).entries()) {
           window.tell(clips[0].id);
         }
       }, texts).catch(() => {}); // the page ends in the middle of it
-      const wait = next() * LATEST_MS;
+      const wait = next() * MAX_WAIT_MS;
       await page.waitForTimeout(wait);
-      const again = await bringAbout(page);
+      const again = await endPage(page);
       await loading;
       const expected = [...told];
       resolved += expected.length;
@@ -74,7 +75,10 @@ for (const [seed, [end, bringAbout]] of Object.entries(ENDS).entries()) {
   });
 }
 
-/** In the page's origin: reads or writes the browser's records and files. Sent as text: the page's policy lets no script make a function. */
+/**
+ * Reads or writes the browser's records and files in the page's origin. It is sent as text, because
+ * the page's policy lets no script make a function.
+ */
 const inStorage = (page, body, argument = null) => page.evaluate(`(async () => {
   const database = await new Promise((resolve, reject) => Object.assign(indexedDB.open("segue"), { onsuccess: (event) => resolve(event.target.result), onerror: reject }));
   const asked = (request) => new Promise((resolve, reject) => Object.assign(request, { onsuccess: () => resolve(request.result), onerror: () => reject(request.error) }));
@@ -88,8 +92,8 @@ const inStorage = (page, body, argument = null) => page.evaluate(`(async () => {
 
 const keysOf = (page, store) => inStorage(page, async (stores, asked, store) => asked(stores(store)[0].getAllKeys()), store);
 
-// Fails when a record that cannot be read is written over, and when it takes clips or files along.
-onBackend("webgl2", "a record that cannot be read is kept, and its clips come back", async ({ open }) => {
+// Fails when a damaged record is overwritten, and when clips or files are lost with it.
+onBackend("webgl2", "damaged record is kept, and its clips are restored", async ({ open }) => {
   const { page, segue, load, ready } = await open("lab=view&play=off", SMALL);
   const { clips: [mine] } = await load("mine.bvh", striding({ frames: 12 }));
   await until("the record is written", async () => (await keysOf(page, "work")).includes("latest"));
@@ -106,8 +110,8 @@ onBackend("webgl2", "a record that cannot be read is kept, and its clips come ba
   assert.deepEqual(await keysOf(page, "files"), [mine.sha256]);
 });
 
-// Fails when one tab does not hear of what another has stored.
-onBackend("webgl2", "two tabs see each other's clips", async ({ open }) => {
+// Fails when one tab does not get the clips that another has stored.
+onBackend("webgl2", "two tabs get each other's clips", async ({ open }) => {
   const { page, load } = await open("lab=view&play=off", SMALL);
   const other = await page.context().newPage();
   await other.goto(page.url(), { waitUntil: "commit" });
@@ -121,14 +125,14 @@ onBackend("webgl2", "two tabs see each other's clips", async ({ open }) => {
   }, mine.id));
 });
 
-// Fails when one file that has no room takes those along that have, and when it is not named.
-onBackend("webgl2", "a full storage keeps what has room and names the rest", async ({ open }) => {
+// Fails when a file without room prevents the storage of others, and when it is not named.
+onBackend("webgl2", "full storage stores what has room and names the rest", async ({ open }) => {
   const { page, segue, load, ready } = await open("lab=view&play=off", SMALL);
   await page.evaluate(() => {
     window.errors = [];
     window.segue.on("error", ({ message }) => window.errors.push(message));
   });
-  // Before anything is stored: a browser asks how much room there is only now and then.
+  // Set before anything is stored, because a browser checks its quota only from time to time.
   const session = await page.context().newCDPSession(page);
   await session.send("Storage.overrideQuotaForOrigin", { origin: new URL(page.url()).origin, quotaSize: 700_000 });
   const { clips: [small] } = await load("small.bvh", striding({ frames: 12 }));

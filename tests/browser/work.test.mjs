@@ -1,16 +1,18 @@
-// Work goes on between pictures: without a graphics card they are far apart, and in a page that nobody looks at there are none.
+// Tests of work between frames. Without a graphics card, frames are far apart, and a hidden page
+// has none.
 
 import assert from "node:assert/strict";
 import { striding, until } from "./help.mjs";
 import { onBothBackends } from "./harness.mjs";
 
-// Fails when work waits for frames, and when every piece of it opens a channel: a browser keeps those.
-onBothBackends("work ends without a picture, through one channel", async ({ open }) => {
+// Fails when work waits for frames, and when every slice of it opens a channel, which browsers keep
+// in memory.
+onBothBackends("work without frames ends, through one channel", async ({ open }) => {
   const { page, segue, load } = await open("lab=view&play=off", { prepare: countAndHold });
   const [a, b] = [await load("a.bvh", striding({ frames: 1200, hertz: 0.9 })), await load("b.bvh", striding({ frames: 1200, hertz: 1.1, swing: 40 }))];
   const before = await page.evaluate(() => window.channels);
   await page.evaluate((link) => {
-    // One frame to read the address, one to begin.
+    // One frame reads the address, one begins the work.
     window.framesLeft = 2;
     history.pushState(null, "", link);
     dispatchEvent(new PopStateEvent("popstate"));
