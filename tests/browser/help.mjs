@@ -3,13 +3,13 @@
 
 import http from "node:http";
 import { setTimeout as pause } from "node:timers/promises";
-import { PATIENCE_MS } from "./segue.mjs";
+import { WAIT_TIMEOUT_MS } from "./segue.mjs";
 
 /**
  * Polls a condition until it holds, and fails with `what` where it never does. Software rendering
  * is slow, so no test depends on a time.
  */
-export async function until(what, ask, limitMs = PATIENCE_MS) {
+export async function until(what, ask, limitMs = WAIT_TIMEOUT_MS) {
   const end = Date.now() + limitMs;
   for (;;) {
     const answer = await ask();

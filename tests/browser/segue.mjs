@@ -14,7 +14,7 @@ export const BACKENDS = ["webgl2", "webgpu"];
 /**
  * The time limit for a condition. Software rendering takes seconds for a frame on a busy machine.
  */
-export const PATIENCE_MS = 120_000;
+export const WAIT_TIMEOUT_MS = 120_000;
 
 const COMMON_FLAGS = [
   "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync",
@@ -52,7 +52,7 @@ export async function openSegue(backend, query = "", options = {}) {
     viewport: { width, height }, deviceScaleFactor: scale, colorScheme: theme, reducedMotion: motion, serviceWorkers: keeps ? "allow" : "block",
   });
   const page = await context.newPage();
-  page.setDefaultTimeout(PATIENCE_MS);
+  page.setDefaultTimeout(WAIT_TIMEOUT_MS);
   const log = [];
   /**
    * Uncaught errors, which fail the test. A test that expects one empties the list
@@ -92,7 +92,7 @@ export async function openSegue(backend, query = "", options = {}) {
      */
     snapshot: async () => decodePng(await snapshot(page)),
   };
-  if (wait) await withTimeout(opened.ready(), PATIENCE_MS, () => `the page did not get ready; it said:\n${log.join("\n")}`);
+  if (wait) await withTimeout(opened.ready(), WAIT_TIMEOUT_MS, () => `the page did not get ready; it said:\n${log.join("\n")}`);
   return opened;
 }
 

@@ -1,11 +1,34 @@
 //! The names in a template.
 
-/// Returns the names of a template, each once, in the order in which they stand there. Those in
-/// the forms of a plural count, too.
+use std::fmt;
+
+/// The reason why a template is invalid.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) enum TemplateError {
+    /// A `}` without its `{`.
+    Unopened,
+    /// A `{` without its `}`.
+    Unclosed,
+    /// A placeholder whose name is empty or has other characters than letters, digits and `_`.
+    Name(String),
+}
+
+impl fmt::Display for TemplateError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unopened => f.write_str("a `}` that closes nothing: write `}}`"),
+            Self::Unclosed => f.write_str("a `{` that is not closed"),
+            Self::Name(name) => write!(f, "`{{{name}}}` is not a name"),
+        }
+    }
+}
+
+/// Returns the names of a template, each once, in their order, including those in the forms of a
+/// plural.
 ///
 /// # Errors
-/// What is wrong with the template.
-pub(crate) fn names(template: &str) -> Result<Vec<String>, String> {
+/// [`TemplateError`] where a brace or a name is invalid.
+pub(crate) fn names(template: &str) -> Result<Vec<String>, TemplateError> {
     let mut found: Vec<String> = Vec::new();
     let mut depth = 0_usize;
     let mut letters = template.char_indices().peekable();
@@ -15,7 +38,7 @@ pub(crate) fn names(template: &str) -> Result<Vec<String>, String> {
             '{' | '}' if is_double && depth == 0 => {
                 letters.next();
             }
-            '}' if depth == 0 => return Err("a `}` that closes nothing: write `}}`".to_owned()),
+            '}' if depth == 0 => return Err(TemplateError::Unopened),
             '}' => depth -= 1,
             '{' => {
                 depth += 1;
@@ -26,7 +49,7 @@ pub(crate) fn names(template: &str) -> Result<Vec<String>, String> {
                     let name = rest[..end].trim();
                     let is_name = |sign: char| sign.is_alphanumeric() || sign == '_';
                     if name.is_empty() || !name.chars().all(is_name) {
-                        return Err(format!("`{{{name}}}` is not a name"));
+                        return Err(TemplateError::Name(name.to_owned()));
                     }
                     if !found.iter().any(|known| known == name) {
                         found.push(name.to_owned());
@@ -36,7 +59,7 @@ pub(crate) fn names(template: &str) -> Result<Vec<String>, String> {
             _ => {}
         }
     }
-    if depth == 0 { Ok(found) } else { Err("a `{` that is not closed".to_owned()) }
+    if depth == 0 { Ok(found) } else { Err(TemplateError::Unclosed) }
 }
 
 #[cfg(test)]
@@ -60,8 +83,13 @@ mod tests {
 
     #[test]
     fn names_of_broken_templates_are_refused() {
-        for template in ["{}", "{a", "a}", "{a b}"] {
-            assert!(names(template).is_err(), "{template}");
+        for (template, error) in [
+            ("{}", TemplateError::Name(String::new())),
+            ("{a", TemplateError::Unclosed),
+            ("a}", TemplateError::Unopened),
+            ("{a b}", TemplateError::Name("a b".to_owned())),
+        ] {
+            assert_eq!(names(template), Err(error), "{template}");
         }
     }
 }

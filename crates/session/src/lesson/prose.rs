@@ -15,12 +15,44 @@ pub(super) struct Prose {
     /// The numbers of open marks of each kind.
     pub(super) strong: usize,
     pub(super) emphasis: usize,
-    /// The open link: its target, or the address that is shown instead.
-    link: Option<Result<Target, String>>,
+    /// The open link.
+    link: Option<Link>,
     /// The number of spans before it.
     link_from: usize,
     /// Whether a line ended: a space follows, unless the characters on both sides take none.
     line_ended: bool,
+}
+
+/// A link of a lesson.
+#[derive(Debug)]
+enum Link {
+    /// A link that may be opened.
+    Target(Target),
+    /// A link with an address that may not be opened, which is shown after the text.
+    Text(String),
+}
+
+impl Link {
+    /// Returns the link of an address.
+    fn of(address: &str) -> Self {
+        if let Some(query) = address.strip_prefix('?') {
+            Self::Target(Target::State(query.to_owned()))
+        } else if let Some(name) = lesson_of_file(address) {
+            Self::Target(Target::State(format!("lesson={name}")))
+        } else if address.starts_with("https://") || address.starts_with("http://") {
+            Self::Target(Target::Web(address.to_owned()))
+        } else {
+            Self::Text(address.to_owned())
+        }
+    }
+
+    /// Returns the target, if the link may be opened.
+    fn target(&self) -> Option<&Target> {
+        match self {
+            Self::Target(target) => Some(target),
+            Self::Text(_) => None,
+        }
+    }
 }
 
 impl Prose {
@@ -29,12 +61,12 @@ impl Prose {
     }
 
     pub(super) fn begin_link(&mut self, address: &str) {
-        self.link = Some(target_of(address));
+        self.link = Some(Link::of(address));
         self.link_from = self.spans.len();
     }
 
     pub(super) fn end_link(&mut self) {
-        if let Some(Err(address)) = self.link.take() {
+        if let Some(Link::Text(address)) = self.link.take() {
             self.text(&format!(" ({address})"), false);
         }
     }
@@ -52,7 +84,7 @@ impl Prose {
                 text.insert(0, ' ');
             }
         }
-        let target = self.link.as_ref().and_then(|link| link.as_ref().ok());
+        let target = self.link.as_ref().and_then(Link::target);
         let is_long = target.is_some() && self.spans.len() >= self.link_from + MAX_SPANS_OF_A_LINK;
         let look = (self.strong > 0, self.emphasis > 0, code, target);
         match self.spans.last_mut() {
@@ -77,19 +109,6 @@ impl Prose {
             span.text = with_units_held(&span.text);
         }
         self.spans
-    }
-}
-
-/// Returns the target of an address; an address that may not be opened is returned as the error.
-fn target_of(address: &str) -> Result<Target, String> {
-    if let Some(query) = address.strip_prefix('?') {
-        Ok(Target::State(query.to_owned()))
-    } else if let Some(name) = lesson_of_file(address) {
-        Ok(Target::State(format!("lesson={name}")))
-    } else if address.starts_with("https://") || address.starts_with("http://") {
-        Ok(Target::Web(address.to_owned()))
-    } else {
-        Err(address.to_owned())
     }
 }
 
