@@ -74,7 +74,7 @@ pub(crate) struct Segue {
     curves: CurveCache,
     picture: Picture,
     /// The notice to show when the text is in the clipboard.
-    copied: &'static str,
+    copied: ui::Word,
     /// Whether the session has begun, with the stored work and the link or without them.
     has_begun: bool,
     languages: LanguageLoader,

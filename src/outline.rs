@@ -29,8 +29,6 @@ pub(crate) enum Deed {
 impl Outline {
     /// Begins to tell the page of the widgets of `ctx`. `show` hands it changes, as JSON.
     pub(crate) fn install(&self, ctx: &Context, show: fn(&str)) {
-        // Labels are to be translated before they are told.
-        ui::translate_labels(ctx);
         ctx.add_plugin(OutlinePlugin { outline: self.clone(), show });
     }
 

@@ -72,7 +72,6 @@ impl Segue {
             if platform::prefers_reduced_motion() {
                 ctx.all_styles_mut(|style| style.animation_time = 0.0);
             }
-            ui::kit::ENGLISH.install(ctx);
             self.window.theme = Some(theme);
         }
     }

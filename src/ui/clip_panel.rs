@@ -2,7 +2,7 @@
 //! in the View lab.
 
 use super::kit::{self, Tree, TreeRow};
-use super::language::{say, tr};
+use super::language::{Text, Word, say};
 use super::out::Out;
 use super::rows::save_rows_ui;
 use super::state::{Typing, UiState};
@@ -32,7 +32,7 @@ pub(crate) fn clip_panel_ui(
     ui: &mut Ui,
 ) {
     for warning in &entry.warnings {
-        sentence_ui(&say(warning, ui), palette_of(ui).warning, ui);
+        sentence_ui(warning, palette_of(ui).warning, ui);
     }
     let Some(motion) = &entry.motion else {
         let status = text::status(entry);
@@ -53,8 +53,8 @@ pub(crate) fn clip_panel_ui(
     kit::folded_ui(text::BODY_PARTS, ui, |ui| roles_ui(entry, motion, out, ui));
 }
 
-fn sentence_ui(sentence: &str, color: eframe::egui::Color32, ui: &mut Ui) {
-    ui.label(RichText::new(tr(sentence, ui)).font(theme_of(ui).font(Type::Small)).color(color));
+fn sentence_ui<'a>(sentence: impl Into<Text<'a>>, color: eframe::egui::Color32, ui: &mut Ui) {
+    ui.label(RichText::new(say(sentence, ui)).font(theme_of(ui).font(Type::Small)).color(color));
 }
 
 fn facts_ui(entry: &Entry, motion: &Motion, ui: &mut Ui) {
@@ -70,31 +70,30 @@ fn facts_ui(entry: &Entry, motion: &Motion, ui: &mut Ui) {
         (text::MEAN_SPEED, format!("{speed:.2}"), "m/s"),
     ];
     for (label, value, unit) in facts {
-        kit::value_row_ui(label, &value, unit, ui);
+        kit::value_row_ui(label, &value, Word::new(unit), ui);
     }
     let muted = palette_of(ui).muted;
     if let Some(about) = &entry.about {
-        sentence_ui(&say(&about.measure.to_sentence(), ui), muted, ui);
+        sentence_ui(&about.measure.to_sentence(), muted, ui);
     }
     let channels = channels_in_words(clip.skeleton());
     if !channels.is_empty() {
-        sentence_ui(&say(&channels, ui), muted, ui);
+        sentence_ui(&channels, muted, ui);
     }
 }
 
 /// Metres per unit of length that files come in.
-const UNITS: [(f64, &str); 6] = [
-    (1.0, "m"),
-    (0.01, "cm"),
-    (0.001, "mm"),
-    (0.0254, "inch"),
-    (0.3048, "foot"),
-    (segue_formats::CMU_METRES_PER_UNIT, "CMU, 5.64 cm"),
+const UNITS: [(f64, Word); 6] = [
+    (1.0, Word::new("m")),
+    (0.01, Word::new("cm")),
+    (0.001, Word::new("mm")),
+    (0.0254, Word::new("inch")),
+    (0.3048, Word::new("foot")),
+    (segue_formats::CMU_METRES_PER_UNIT, Word::new("CMU, 5.64 cm")),
 ];
 
 /// Frame rates that files come in.
-const RATES: [(f64, &str); 5] =
-    [(24.0, "24"), (25.0, "25"), (30.0, "30"), (60.0, "60"), (120.0, "120")];
+const RATES: [f64; 5] = [24.0, 25.0, 30.0, 60.0, 120.0];
 
 /// What may be said better than it was found.
 fn overrides_ui(
@@ -115,11 +114,11 @@ fn overrides_ui(
         UNITS.iter().find(|(metres, _)| (metres / provenance.metres_per_unit - 1.0).abs() < 1e-6);
     let unit = known.map_or_else(
         || msg!("{metres} m", metres = format_number(provenance.metres_per_unit, 1e-6)),
-        |(_, name)| Message::word(name),
+        |&(_, name)| name.into(),
     );
-    let found = say(&as_found(unit, options.metres_per_unit.is_none()), ui);
-    let mut choices = vec![(None, found.as_str())];
-    choices.extend(UNITS.map(|(metres, name)| (Some(metres), name)));
+    let found = as_found(&unit, options.metres_per_unit.is_none());
+    let mut choices = vec![(None, Text::from(&found))];
+    choices.extend(UNITS.map(|(metres, name)| (Some(metres), name.into())));
     if let Some(metres_per_unit) =
         kit::choice_row_ui(text::UNIT, options.metres_per_unit, &choices, ui)
     {
@@ -127,8 +126,9 @@ fn overrides_ui(
     }
 
     let axis = |up| if up == UpAxis::Y { "Y" } else { "Z" };
-    let found = say(&as_found(axis(provenance.up), options.up.is_none()), ui);
-    let choices = [(None, found.as_str()), (Some(UpAxis::Y), "Y"), (Some(UpAxis::Z), "Z")];
+    let found = as_found(&Message::data(axis(provenance.up)), options.up.is_none());
+    let named = |up| (Some(up), Text::Data(axis(up)));
+    let choices = [(None, Text::from(&found)), named(UpAxis::Y), named(UpAxis::Z)];
     if let Some(up) = kit::choice_row_ui(text::UP_AXIS, options.up, &choices, ui) {
         reread(ImportOptions { up, ..options });
     }
@@ -144,8 +144,8 @@ fn overrides_ui(
     }
 }
 
-fn as_found(value: impl Into<Message>, is_found: bool) -> Message {
-    if is_found { msg!("{value}, detected", value = value.into()) } else { text::AS_FOUND.into() }
+fn as_found(value: &Message, is_found: bool) -> Message {
+    if is_found { msg!("{value}, detected", value) } else { text::AS_FOUND.into() }
 }
 
 /// What is chosen in the list of frame rates.
@@ -158,12 +158,12 @@ enum Rate {
 
 /// The frame rate by hand: what was chosen anew.
 fn rate_ui(entry: &Entry, fps: Option<f64>, state: &mut UiState, ui: &mut Ui) -> Option<Rate> {
-    let typed = fps.filter(|fps| RATES.iter().all(|(rate, _)| rate != fps));
-    let typed_name = typed.map(|fps| format_number(fps, 0.01)).unwrap_or_default();
-    let mut choices = vec![(Rate::Given(None), text::AS_FILE)];
-    choices.extend(RATES.map(|(rate, name)| (Rate::Given(Some(rate)), name)));
-    choices.extend(typed.map(|fps| (Rate::Given(Some(fps)), typed_name.as_str())));
-    choices.push((Rate::Other, text::OTHER));
+    let typed = fps.filter(|fps| !RATES.contains(fps));
+    let rates = RATES.into_iter().chain(typed);
+    let rates: Vec<(f64, String)> = rates.map(|rate| (rate, format_number(rate, 0.01))).collect();
+    let mut choices = vec![(Rate::Given(None), Text::from(text::AS_FILE))];
+    choices.extend(rates.iter().map(|(rate, name)| (Rate::Given(Some(*rate)), Text::Data(name))));
+    choices.push((Rate::Other, text::OTHER.into()));
     let typing = state.typed_fps.as_mut().filter(|typing| typing.id == entry.id);
     let chosen = if typing.is_some() { Rate::Other } else { Rate::Given(fps) };
     let Some(typing) = typing else {
@@ -204,7 +204,10 @@ fn joints_ui(motion: &Motion, session: &Session, out: &mut Out, ui: &mut Ui) {
     };
     let row = |joint: usize| TreeRow {
         name: joints[joint].name.clone(),
-        detail: motion.roles().role_of(joint).map_or("", Role::name).to_owned(),
+        detail: motion
+            .roles()
+            .role_of(joint)
+            .map_or(Word::default(), |role| Word::new(role.name())),
         hint: in_words(&joints[joint].channels),
     };
     if let Some(joint) = kit::tree_ui(&tree, row, ui) {
@@ -215,11 +218,11 @@ fn joints_ui(motion: &Motion, session: &Session, out: &mut Out, ui: &mut Ui) {
 fn roles_ui(entry: &Entry, motion: &Motion, out: &mut Out, ui: &mut Ui) {
     sentence_ui(text::BODY_PARTS_HELP, palette_of(ui).muted, ui);
     let joints = motion.clip().skeleton().joints().iter().enumerate();
-    let mut options = vec![(None, text::NOBODY)];
-    options.extend(joints.map(|(index, joint)| (Some(index), joint.name.as_str())));
+    let mut options = vec![(None, Text::from(text::NOBODY))];
+    options.extend(joints.map(|(index, joint)| (Some(index), Text::Data(&joint.name))));
     for role in Role::ALL {
-        if let Some(joint) = kit::choice_row_ui(role.name(), motion.roles().get(role), &options, ui)
-        {
+        let label = Word::new(role.name());
+        if let Some(joint) = kit::choice_row_ui(label, motion.roles().get(role), &options, ui) {
             out.commands.push(Command::File(FileCommand::CorrectRole(
                 entry.id.clone(),
                 role,

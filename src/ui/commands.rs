@@ -4,7 +4,7 @@
 
 use super::kit::{self, Button, Icon, MenuItem};
 use super::labs::toggle_compare;
-use super::language::tr;
+use super::language::{Text, Word, say};
 use super::lessons_panel::{self, toggle_lessons};
 use super::out::{Action, Out};
 use super::stage::framing::frame_everything;
@@ -14,6 +14,7 @@ use super::theme::theme_of;
 use eframe::egui::{Event, Id, Key as Keyboard, Memory, Modifiers, Popup, Ui};
 use segue_session::choices::{Camera, Follow, Look};
 use segue_session::{Command, Key, Kind, PlaybackCommand, Session, Value};
+use segue_text::Message;
 
 /// Something that a button, a line of a menu or a key asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,9 +82,9 @@ enum Focus {
 #[derive(Clone, Copy, Debug)]
 struct Row {
     /// The label of its button and of its line in a menu; empty for keys alone.
-    text: &'static str,
+    text: Word,
     /// What is said over its button, where that is more than its label.
-    tooltip: &'static str,
+    tooltip: Word,
     icon: Option<Icon>,
     triggers: &'static [Trigger],
     focus: Focus,
@@ -92,11 +93,11 @@ struct Row {
 /// A row of the list of shortcuts.
 enum HelpRow {
     /// Commands that are told of together, and what they do.
-    Commands(&'static [UiCommand], &'static str),
+    Commands(&'static [UiCommand], Word),
     /// The keys of the labs.
-    Labs(&'static str),
+    Labs(Word),
     /// What the pointer or held keys do, by the widget that they belong to.
-    Gesture(&'static str, &'static str),
+    Gesture(Word, Word),
 }
 
 const NONE: Modifiers = Modifiers::NONE;
@@ -150,35 +151,47 @@ const WITH_KEYS: [UiCommand; 25] = [
 ];
 
 const HELP: &[HelpRow] = &[
-    HelpRow::Commands(&[UiCommand::TogglePlay], "play or pause"),
-    HelpRow::Commands(&[UiCommand::StepBack, UiCommand::StepOn], "one frame back or forward"),
-    HelpRow::Commands(&[UiCommand::TenBack, UiCommand::TenOn], "ten frames back or forward"),
-    HelpRow::Commands(&[UiCommand::ToBeginning], "to the beginning"),
+    HelpRow::Commands(&[UiCommand::TogglePlay], Word::new("play or pause")),
+    HelpRow::Commands(
+        &[UiCommand::StepBack, UiCommand::StepOn],
+        Word::new("one frame back or forward"),
+    ),
+    HelpRow::Commands(
+        &[UiCommand::TenBack, UiCommand::TenOn],
+        Word::new("ten frames back or forward"),
+    ),
+    HelpRow::Commands(&[UiCommand::ToBeginning], Word::new("to the beginning")),
     HelpRow::Commands(
         &[UiCommand::Mark(Key::In), UiCommand::Mark(Key::Out)],
-        "set the in or out mark here; Shift clears it",
+        Word::new("set the in or out mark here; Shift clears it"),
     ),
-    HelpRow::Commands(&[UiCommand::Slower, UiCommand::Faster], "slower, faster"),
-    HelpRow::Commands(&[UiCommand::ToggleLoop], "loop"),
-    HelpRow::Commands(&[UiCommand::ToggleCompare], "compare full, half, third"),
-    HelpRow::Commands(&[UiCommand::ToggleLessons], "lessons; Esc closes them"),
-    HelpRow::Labs("the labs, in order"),
-    HelpRow::Commands(&[UiCommand::ToggleTopView], "top view"),
-    HelpRow::Commands(&[UiCommand::FrameEverything], "frame all"),
-    HelpRow::Commands(&[UiCommand::ToggleFollow], "camera follow on or off"),
-    HelpRow::Commands(&[UiCommand::NextLook], "body, bones, both"),
+    HelpRow::Commands(&[UiCommand::Slower, UiCommand::Faster], Word::new("slower, faster")),
+    HelpRow::Commands(&[UiCommand::ToggleLoop], Word::new("loop")),
+    HelpRow::Commands(&[UiCommand::ToggleCompare], Word::new("compare full, half, third")),
+    HelpRow::Commands(&[UiCommand::ToggleLessons], Word::new("lessons; Esc closes them")),
+    HelpRow::Labs(Word::new("the labs, in order")),
+    HelpRow::Commands(&[UiCommand::ToggleTopView], Word::new("top view")),
+    HelpRow::Commands(&[UiCommand::FrameEverything], Word::new("frame all")),
+    HelpRow::Commands(&[UiCommand::ToggleFollow], Word::new("camera follow on or off")),
+    HelpRow::Commands(&[UiCommand::NextLook], Word::new("body, bones, both")),
     HelpRow::Gesture(
-        "W A S D, arrows",
-        "drive the character of the Match lab; Shift runs, Q strafes",
+        Word::new("W A S D, arrows"),
+        Word::new("drive the character of the Match lab; Shift runs, Q strafes"),
     ),
-    HelpRow::Commands(&[UiCommand::Undo], "undo"),
-    HelpRow::Commands(&[UiCommand::Redo], "redo"),
-    HelpRow::Commands(&[UiCommand::CopyLink], "copy the link, when nothing else is selected"),
-    HelpRow::Commands(&[UiCommand::ToggleHelp], "this list"),
-    HelpRow::Gesture("drag", "turn the camera; with Shift or the right button, move it"),
-    HelpRow::Gesture("W A S D", "the same, except in the Match lab"),
-    HelpRow::Gesture("wheel, pinch", "zoom"),
-    HelpRow::Gesture("Page up, down", "zoom"),
+    HelpRow::Commands(&[UiCommand::Undo], Word::new("undo")),
+    HelpRow::Commands(&[UiCommand::Redo], Word::new("redo")),
+    HelpRow::Commands(
+        &[UiCommand::CopyLink],
+        Word::new("copy the link, when nothing else is selected"),
+    ),
+    HelpRow::Commands(&[UiCommand::ToggleHelp], Word::new("this list")),
+    HelpRow::Gesture(
+        Word::new("drag"),
+        Word::new("turn the camera; with Shift or the right button, move it"),
+    ),
+    HelpRow::Gesture(Word::new("W A S D"), Word::new("the same, except in the Match lab")),
+    HelpRow::Gesture(Word::new("wheel, pinch"), Word::new("zoom")),
+    HelpRow::Gesture(Word::new("Page up, down"), Word::new("zoom")),
 ];
 
 /// What commands work on.
@@ -193,7 +206,13 @@ impl UiCommand {
     fn row(self) -> Row {
         use Focus::{Ignored, MenuRespected, Respected, RespectedByKeyboard};
         use Trigger::{Copy, Keys, Typed};
-        let keys = |triggers, focus| Row { text: "", tooltip: "", icon: None, triggers, focus };
+        let keys = |triggers, focus| Row {
+            text: Word::default(),
+            tooltip: Word::default(),
+            icon: None,
+            triggers,
+            focus,
+        };
         let named =
             |text, icon, triggers| Row { text, icon: Some(icon), ..keys(triggers, Ignored) };
         match self {
@@ -421,16 +440,14 @@ pub(crate) fn command_button_ui(
 ) {
     let row = command.row();
     let name = name_of(command, state);
-    let button = button.name(name).hint("").selected(command.is_on(session));
+    let button = button.name(name).hint(Text::EMPTY).selected(command.is_on(session));
     let enabled = command.is_enabled(session);
     let response = ui.add_enabled_ui(enabled, |ui| kit::button_ui(button, ui)).inner;
     // Made only while the pointer is over the button.
     let response = response.on_hover_ui(|ui| {
-        let what = tr(if row.tooltip.is_empty() { name } else { row.tooltip }, ui);
-        ui.label(match keys_of(&[command]).as_str() {
-            "" => what.into_owned(),
-            keys => format!("{what} ({keys})"),
-        });
+        let what = say(if row.tooltip.is_empty() { name } else { row.tooltip }, ui);
+        let keys = keys_of(&[command]);
+        ui.label(if keys.is_empty() { what } else { format!("{what} ({})", say(&keys, ui)) });
     });
     if response.clicked() {
         command.run(&mut Target { session, state, out, ui });
@@ -447,7 +464,7 @@ pub(crate) fn command_item_ui(
 ) {
     let shortcut = keys_of(&[command]);
     let (text, icon) = (name_of(command, state), command.row().icon);
-    let item = MenuItem { text, icon, shortcut: &shortcut, chosen: false };
+    let item = MenuItem { text: text.into(), icon, shortcut: (&shortcut).into(), chosen: false };
     let enabled = command.is_enabled(session);
     if ui.add_enabled_ui(enabled, |ui| kit::menu_item_ui(item, ui)).inner.clicked() {
         command.run(&mut Target { session, state, out, ui });
@@ -455,7 +472,7 @@ pub(crate) fn command_item_ui(
 }
 
 /// Returns what a command is called where its label alone does not say it.
-fn name_of(command: UiCommand, state: &UiState) -> &'static str {
+fn name_of(command: UiCommand, state: &UiState) -> Word {
     match command {
         UiCommand::SwitchLanguage => state.language.next().switch(),
         UiCommand::ToggleProjector => text::PROJECTOR,
@@ -463,18 +480,19 @@ fn name_of(command: UiCommand, state: &UiState) -> &'static str {
     }
 }
 
-/// Returns the list of shortcuts: the keys, and what they do, in English.
-pub(crate) fn help() -> impl Iterator<Item = (String, &'static str)> {
+/// Returns the list of shortcuts: the keys, and what they do.
+pub(crate) fn help() -> impl Iterator<Item = (Message, Word)> {
     HELP.iter().map(|row| match row {
         HelpRow::Commands(commands, what) => (keys_of(commands), *what),
-        HelpRow::Labs(what) => (lab_keys(), *what),
-        HelpRow::Gesture(how, what) => ((*how).to_owned(), *what),
+        HelpRow::Labs(what) => (Message::data(lab_keys()), *what),
+        HelpRow::Gesture(how, what) => ((*how).into(), *what),
     })
 }
 
-/// Returns the first keys of commands, one behind the other: `Shift ← →`.
-fn keys_of(commands: &[UiCommand]) -> String {
-    let mut words: Vec<&str> = Vec::new();
+/// Returns the first keys of commands, one behind the other: `Shift ← →`. Only a key that stands
+/// alone has a name to translate, such as `Space`.
+fn keys_of(commands: &[UiCommand]) -> Message {
+    let mut words: Vec<&'static str> = Vec::new();
     for command in commands {
         let (modifiers, key) = match command.row().triggers.first() {
             Some(Trigger::Keys(modifiers, key)) => (*modifiers, key.symbol_or_name()),
@@ -493,7 +511,11 @@ fn keys_of(commands: &[UiCommand]) -> String {
             key => key,
         });
     }
-    words.join(" ")
+    match words.as_slice() {
+        [] => Message::default(),
+        [key] => Message::word(key),
+        keys => Message::data(keys.join(" ")),
+    }
 }
 
 /// Returns the keys of the labs: `1 … 9, 0, -, =`.
@@ -514,7 +536,8 @@ mod tests {
 
     #[test]
     fn every_line_of_the_list_names_its_keys() {
-        let list: Vec<(String, &str)> = help().collect();
+        let list: Vec<(String, &str)> =
+            help().map(|(keys, what)| (keys.to_string(), what.english())).collect();
         let keys = |what: &str| {
             let line = list.iter().find(|(_, sentence)| *sentence == what);
             line.map(|(keys, _)| keys.as_str()).unwrap()

@@ -24,6 +24,7 @@ pub(crate) use lab_ui::{Shown, Title};
 pub(crate) use view::compare_clips;
 
 use super::kit;
+use super::language::Word;
 use super::out::Out;
 use super::rows::{Detail, compare_choice_ui, param_row_ui, slot_row_ui};
 use super::state::UiState;
@@ -95,7 +96,7 @@ pub(crate) fn lab_panel_ui(session: &Session, state: &mut UiState, out: &mut Out
     group_ui(text::CAMERA, Group::Camera, session, out, ui);
 }
 
-fn group_ui(title: &str, group: Group, session: &Session, out: &mut Out, ui: &mut Ui) {
+fn group_ui(title: Word, group: Group, session: &Session, out: &mut Out, ui: &mut Ui) {
     kit::folded_ui(title, ui, |ui| {
         for param in
             PARAMS.iter().filter(|param| param.group == group && !param.has(Mark::ByPointer))

@@ -3,7 +3,7 @@
 mod prose;
 
 use super::kit::{self, Button, Icon, MenuItem};
-use super::language::{say, tr};
+use super::language::{Text, say};
 use super::out::{Action, Out};
 use super::state::UiState;
 use super::text;
@@ -58,13 +58,13 @@ pub(super) fn lessons_panel_ui(session: &Session, state: &mut UiState, out: &mut
             Lesson::Contents(page) => contents_ui(page, out, ui),
             Lesson::Page(page) => page_ui(page, name, session, state, out, ui),
             Lesson::Waiting => {
-                note_ui(text::LESSON_WAITING, false, ui);
+                note_ui(text::LESSON_WAITING.into(), false, ui);
                 if kit::button_ui(Button::new(text::STOP_LOADING).icon(Icon::Close), ui).clicked() {
                     out.actions.push(Action::StopLesson);
                 }
             }
             Lesson::Failed(problem) => {
-                note_ui(&say(problem, ui), true, ui);
+                note_ui(problem.into(), true, ui);
                 if kit::button_ui(Button::new(text::TRY_AGAIN).icon(Icon::Loop), ui).clicked() {
                     out.commands.push(Command::Try(format!("{}={name}", Key::Lesson.param().name)));
                 }
@@ -123,7 +123,7 @@ fn contents_ui(page: &Page, out: &mut Out, ui: &mut Ui) {
     ui.add_space(space::XS);
     for (index, entry) in page.entries().enumerate() {
         let name = format!("{}. {}", index + 1, entry.label);
-        let item = MenuItem { text: &name, ..MenuItem::default() };
+        let item = MenuItem { text: Text::Data(&name), ..MenuItem::default() };
         if kit::menu_item_ui(item, ui).clicked() {
             out.commands.push(Command::Try(entry.query.clone()));
         }
@@ -199,23 +199,25 @@ fn answer_ui(page: &Page, name: &str, state: &mut UiState, out: &mut Out, ui: &m
 fn try_ui(label: &str, query: &str, session: &Session, out: &mut Out, ui: &mut Ui) {
     let is_there = session.is_tried(query);
     let icon = if is_there { Icon::Check } else { Icon::Play };
-    if kit::button_ui(Button::new(label).icon(icon).selected(is_there), ui).clicked() {
+    if kit::button_ui(Button::new(Text::Data(label)).icon(icon).selected(is_there), ui).clicked() {
         out.commands.push(Command::Try(query.to_owned()));
     }
 }
 
 fn title_ui(title: &str, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
-    let words = RichText::new(tr(title, ui)).font(theme.font(Type::Heading)).color(palette.text);
+    let words = RichText::new(say(Text::Data(title), ui))
+        .font(theme.font(Type::Heading))
+        .color(palette.text);
     let title = ui.label(words);
     ui.ctx().accesskit_node_builder(title.id, |node| node.set_role(Role::Heading));
     ui.add_space(space::XS);
 }
 
-fn note_ui(words: &str, is_problem: bool, ui: &mut Ui) {
+fn note_ui(words: Text<'_>, is_problem: bool, ui: &mut Ui) {
     let palette = palette_of(ui);
     let color = if is_problem { palette.warning } else { palette.muted };
-    ui.label(RichText::new(tr(words, ui)).font(theme_of(ui).font(Type::Body)).color(color));
+    ui.label(RichText::new(say(words, ui)).font(theme_of(ui).font(Type::Body)).color(color));
     ui.add_space(space::S);
 }
 

@@ -3,7 +3,7 @@
 use super::clip_panel::clip_panel_ui;
 use super::kit::{self, Button, ClipRow, Icon, MenuItem, Part};
 use super::labs::compare_clips;
-use super::language::{say, tr};
+use super::language::{Text, Word, say};
 use super::out::{Action, Out};
 use super::state::{Typing, UiState};
 use super::text;
@@ -55,7 +55,7 @@ pub(crate) fn library_list_ui(session: &Session, state: &mut UiState, out: &mut 
         kit::set_role(Role::List, text::LIBRARY, ui);
         for entry in ordered {
             let row = ui.push_id(&entry.id, |ui| {
-                kit::set_role(Role::ListItem, "", ui);
+                kit::set_role(Role::ListItem, Word::default(), ui);
                 entry_ui(entry, session, state, out, ui);
             });
             if arrived.as_ref() == Some(&entry.id) {
@@ -83,7 +83,12 @@ pub(crate) fn drop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     }
     for (name, done) in &state.fetching {
         let detail = done.map_or_else(String::new, |done| format!("{:.0} %", done * 100.0));
-        if kit::progress_row_ui(name, done.map(|done| done as f32), &detail, ui) {
+        if kit::progress_row_ui(
+            Text::Data(name),
+            done.map(|done| done as f32),
+            Text::Data(&detail),
+            ui,
+        ) {
             out.actions.push(Action::StopFetching(name.clone()));
         }
     }
@@ -92,20 +97,20 @@ pub(crate) fn drop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
             continue;
         };
         let megabytes = size as f64 / 1e6;
-        let detail = say(
-            &msg!("{done:.0} of {all:.0} MB", done = job.progress * megabytes, all = megabytes),
-            ui,
-        );
-        if kit::progress_row_ui(job.kind.name(), Some(job.progress as f32), &detail, ui) {
+        let detail =
+            msg!("{done:.0} of {all:.0} MB", done = job.progress * megabytes, all = megabytes);
+        let name = Text::Data(job.kind.name());
+        if kit::progress_row_ui(name, Some(job.progress as f32), &detail, ui) {
             out.commands.push(Command::File(FileCommand::StopReading(task)));
         }
     }
     if let Some((come, asked)) = session.samples_progress() {
         let detail = format!("{come} / {asked}");
-        kit::brief_progress_ui(text::LOADING_SAMPLES, come as f32 / asked as f32, &detail, ui);
+        let share = come as f32 / asked as f32;
+        kit::brief_progress_ui(text::LOADING_SAMPLES, share, Text::Data(&detail), ui);
     }
     if let Some(memory) = memory {
-        kit::brief_progress_ui(text::MEMORY, memory.share(), &say(&text::memory(memory), ui), ui);
+        kit::brief_progress_ui(text::MEMORY, memory.share(), &text::memory(memory), ui);
     }
     if state.samples_open {
         samples_ui(session, out, ui);
@@ -122,21 +127,22 @@ pub(crate) fn drop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
 fn samples_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     for set in Session::sample_sets() {
-        let item = MenuItem { text: set.label, icon: Some(Icon::Download), ..MenuItem::default() };
+        let text = Word::new(set.label).into();
+        let item = MenuItem { text, icon: Some(Icon::Download), ..MenuItem::default() };
         if kit::menu_item_ui(item, ui).clicked() {
             out.commands.push(Command::File(FileCommand::LoadSamples(set)));
         }
     }
     for sample in Session::samples() {
-        let item =
-            MenuItem { text: sample.label, icon: Some(Icon::Download), ..MenuItem::default() };
+        let text = Word::new(sample.label).into();
+        let item = MenuItem { text, icon: Some(Icon::Download), ..MenuItem::default() };
         if kit::menu_item_ui(item, ui).clicked() {
             out.commands.push(Command::Assign(free_slot(session), sample.id.to_owned()));
         }
     }
     ui.add_space(space::XS);
     ui.label(
-        RichText::new(tr(segue_session::SAMPLES_CREDIT, ui))
+        RichText::new(say(Word::new(segue_session::SAMPLES_CREDIT), ui))
             .font(theme.font(Type::Small))
             .color(palette.muted),
     );
@@ -183,7 +189,8 @@ fn facts(entry: &Entry) -> Message {
 
 fn entry_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     if let Some(renaming) = state.renaming.as_mut().filter(|renaming| renaming.id == entry.id) {
-        let field = kit::text_field_ui(text::RENAME, &entry.name, &mut renaming.text, ui);
+        let field =
+            kit::text_field_ui(text::RENAME, Text::Data(&entry.name), &mut renaming.text, ui);
         field.response.request_focus();
         if field.committed {
             out.commands.push(Command::Rename(entry.id.clone(), renaming.text.clone()));
@@ -200,12 +207,12 @@ fn entry_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out
     let warning = warnings.join("\n");
     let actions =
         [(Icon::Sliders, text::DETAILS), (Icon::Pencil, text::RENAME), (Icon::Trash, text::REMOVE)];
-    let (name, facts) = (say(&entry.title(), ui), say(&facts(entry), ui));
+    let (name, facts) = (entry.title(), facts(entry));
     let row = ClipRow {
-        name: &name,
-        detail: &facts,
+        name: (&name).into(),
+        detail: (&facts).into(),
         part,
-        warning: &warning,
+        warning: Text::Data(&warning),
         selected: open,
         actions: &actions,
     };
@@ -227,18 +234,21 @@ fn entry_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out
     menu.show(|ui| {
         for slot in [Slot::A, Slot::B] {
             let words = if slot == Slot::A { text::USE_AS_A } else { text::USE_AS_B };
-            if kit::menu_item_ui(MenuItem { text: words, ..MenuItem::default() }, ui).clicked() {
+            if kit::menu_item_ui(MenuItem { text: words.into(), ..MenuItem::default() }, ui)
+                .clicked()
+            {
                 out.commands.push(Command::Assign(slot, entry.id.clone()));
             }
         }
-        let compare =
-            MenuItem { text: text::COMPARE_WITH_A, icon: Some(Icon::Swap), ..MenuItem::default() };
+        let text = text::COMPARE_WITH_A.into();
+        let compare = MenuItem { text, icon: Some(Icon::Swap), ..MenuItem::default() };
         if part != Part::A && kit::menu_item_ui(compare, ui).clicked() {
             compare_clips(session.params().text(Key::A), &entry.id, out);
         }
         for format in ExportFormat::ALL {
-            let words = say(&msg!("Save as {format}", format = text::format(format)), ui);
-            let save = MenuItem { text: &words, icon: Some(Icon::Download), ..MenuItem::default() };
+            let words = msg!("Save as {format}", format = text::format(format));
+            let text = Text::from(&words);
+            let save = MenuItem { text, icon: Some(Icon::Download), ..MenuItem::default() };
             if kit::menu_item_ui(save, ui).clicked() {
                 let how = ExportOptions { format, ..state.export };
                 out.actions.push(Action::Save { which: entry.id.clone(), how });

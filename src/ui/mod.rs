@@ -24,8 +24,7 @@ mod transport_row;
 
 pub(crate) use appearance::{stage_look, stage_theme, theme};
 pub(crate) use labs::on_stage::highlights;
-pub(crate) use language::{Language, LanguagePack, PackError, activate_english};
-pub(crate) use language::{skip_words, translate_labels};
+pub(crate) use language::{Language, LanguagePack, PackError, Word, activate_english, skip_words};
 pub(crate) use out::Action;
 pub(crate) use page::show;
 pub(crate) use state::{Filming, Gamepad, UiState};

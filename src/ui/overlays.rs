@@ -3,7 +3,7 @@
 
 use super::commands;
 use super::kit::{self, Mood, Notice, NoticeEvent};
-use super::language::{say, tr};
+use super::language::{Word, say};
 use super::out::Out;
 use super::state::UiState;
 use super::text;
@@ -27,15 +27,13 @@ fn notices_ui(session: &Session, state: &UiState, out: &mut Out, ui: &mut Ui) {
         Level::Warning => Mood::Warning,
         Level::Error => Mood::Bad,
     };
-    let texts: Vec<String> = list.iter().map(|notice| say(&notice.text, ui)).collect();
     let notices: Vec<Notice<'_>> = list
         .iter()
-        .zip(&texts)
-        .map(|(notice, text)| Notice {
-            text,
+        .map(|notice| Notice {
+            text: &notice.text,
             mood: mood(notice.level),
             action: match notice.mends.len() {
-                0 => "",
+                0 => Word::default(),
                 1 => text::MEND,
                 _ => text::MEND_ALL,
             },
@@ -56,7 +54,7 @@ fn notices_ui(session: &Session, state: &UiState, out: &mut Out, ui: &mut Ui) {
 fn help_ui(state: &mut UiState, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let mut open = true;
-    egui::Window::new(RichText::new(tr(text::HELP, ui)).font(theme.font(Type::Title)))
+    egui::Window::new(RichText::new(say(text::HELP, ui)).font(theme.font(Type::Title)))
         .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
         .collapsible(false)
         .resizable(false)
@@ -65,12 +63,12 @@ fn help_ui(state: &mut UiState, ui: &mut Ui) {
             Grid::new("shortcuts").num_columns(2).spacing([space::L, space::XS]).show(ui, |ui| {
                 for (keys, what) in commands::help() {
                     ui.label(
-                        RichText::new(tr(&keys, ui))
+                        RichText::new(say(&keys, ui))
                             .font(theme.font(Type::Strong))
                             .color(palette.text),
                     );
                     ui.label(
-                        RichText::new(tr(what, ui))
+                        RichText::new(say(what, ui))
                             .font(theme.font(Type::Body))
                             .color(palette.muted),
                     );
@@ -101,7 +99,7 @@ fn drop_ui(state: &UiState, ui: &Ui) {
     let words = painter.text(
         screen.center(),
         Align2::CENTER_CENTER,
-        tr(text::DROP_NOW, ui),
+        say(text::DROP_NOW, ui),
         theme.font(Type::Title),
         palette.text,
     );

@@ -9,14 +9,14 @@ pub(crate) use param::{Detail, compare_choice_ui, param_row_ui};
 pub(crate) use save::save_rows_ui;
 
 use super::kit::{self, Button, Icon};
-use super::language::{say, tr};
+use super::language::{Text, Word, say};
 use super::out::Out;
 use super::state::UiState;
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, Ui};
 use segue_motion::transition::has_legs;
-use segue_session::{Command, Key, Mark, NoResult, PARAMS, Session, Slot, split_reference};
+use segue_session::{Command, Entry, Key, Mark, NoResult, PARAMS, Session, Slot, split_reference};
 use segue_text::{Message, msg};
 /// The foot lock, how feet are read where they are held, and why they are not.
 pub(crate) fn foot_rows_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
@@ -25,7 +25,8 @@ pub(crate) fn foot_rows_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         && let Some(outcome) = session.main_outcome()
         && !has_legs(outcome.motion.clip().skeleton(), outcome.motion.roles())
     {
-        let words = egui::RichText::new(tr(text::NO_LEGS, ui)).font(theme_of(ui).font(Type::Small));
+        let words =
+            egui::RichText::new(say(text::NO_LEGS, ui)).font(theme_of(ui).font(Type::Small));
         ui.label(words.color(palette_of(ui).warning));
     }
     kit::folded_ui(text::FEET, ui, |ui| {
@@ -46,10 +47,10 @@ pub(crate) fn foot_rows_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
 pub(crate) fn save_result_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let panes = session.panes();
     state.saved_pane = state.saved_pane.min(panes.len().saturating_sub(1));
-    let names: Vec<String> =
-        panes.iter().map(|pane| say(&session.variant_name(pane).unwrap_or_default(), ui)).collect();
+    let names: Vec<Message> =
+        panes.iter().map(|pane| session.variant_name(pane).unwrap_or_default()).collect();
     if panes.len() > 1 {
-        let options: Vec<(usize, &str)> = names.iter().map(String::as_str).enumerate().collect();
+        let options: Vec<(usize, &Message)> = names.iter().enumerate().collect();
         if let Some(pane) = kit::choice_row_ui(text::SAVED_PANE, state.saved_pane, &options, ui) {
             state.saved_pane = pane;
         }
@@ -145,26 +146,21 @@ fn found_sentence(session: &Session, automatic: [bool; 2]) -> Message {
     }
     match session.main_outcome().and_then(|outcome| outcome.transition) {
         Some(transition) => text::place_found(&transition, automatic),
-        None => Message::word(text::FOUND).sentence(),
+        None => Message::from(text::FOUND).sentence(),
     }
 }
 
 /// Which clip is in a slot, to be chosen anew.
 pub(crate) fn slot_row_ui(slot: Slot, session: &Session, out: &mut Out, ui: &mut Ui) {
     let chosen = session.params().text(slot.key());
-    if let Some(id) = clip_choice_ui(slot.label(), chosen, session, ui) {
+    if let Some(id) = clip_choice_ui(Word::new(slot.label()), chosen, session, ui) {
         out.commands.push(Command::Assign(slot, id));
     }
 }
 
-/// Returns the names of all clips of the library, in the language of the interface.
-pub(crate) fn clip_titles(session: &Session, ui: &Ui) -> Vec<String> {
-    session.library().entries().iter().map(|entry| say(&entry.title(), ui)).collect()
-}
-
 /// A clip of the library to choose; the id of the one that was.
-pub(crate) fn clip_choice_ui(
-    label: &str,
+pub(crate) fn clip_choice_ui<'a>(
+    label: impl Into<Text<'a>>,
     chosen: &str,
     session: &Session,
     ui: &mut Ui,
@@ -175,15 +171,30 @@ pub(crate) fn clip_choice_ui(
     let missing = (found.is_none() && !chosen.is_empty())
         .then(|| (usize::MAX, text::missing(split_reference(chosen).0)));
     // The one that is not here cannot be chosen, only seen.
-    let named: Vec<(usize, String)> = (entries.iter().map(|entry| entry.title()).enumerate())
-        .chain(missing)
-        .map(|(index, name)| (index, say(&name, ui)))
+    let named: Vec<(usize, Message)> =
+        entries.iter().map(|entry| entry.title()).enumerate().chain(missing).collect();
+    let options: Vec<(usize, &Message)> =
+        named.iter().map(|(index, name)| (*index, name)).collect();
+    let (label, chosen) = (label.into(), found.unwrap_or(usize::MAX));
+    let picked =
+        ui.push_id(label.english(), |ui| kit::choice_row_ui(label, chosen, &options, ui)).inner;
+    Some(entries.get(picked?)?.id.clone())
+}
+
+/// Shows a menu of the clips that may be added. Returns the id of the one that was picked.
+pub(crate) fn add_clip_ui(
+    session: &Session,
+    may_be_added: impl Fn(&Entry) -> bool,
+    ui: &mut Ui,
+) -> Option<String> {
+    let entries = session.library().entries().iter();
+    let entries: Vec<&Entry> =
+        entries.map(|entry| &**entry).filter(|entry| may_be_added(entry)).collect();
+    let titles: Vec<Message> = entries.iter().map(|entry| entry.title()).collect();
+    let options: Vec<(Option<usize>, Text<'_>)> = std::iter::once((None, text::CHOOSE_CLIP.into()))
+        .chain(titles.iter().enumerate().map(|(index, title)| (Some(index), title.into())))
         .collect();
-    let options: Vec<(usize, &str)> =
-        named.iter().map(|(index, name)| (*index, name.as_str())).collect();
-    let picked = ui
-        .push_id(label, |ui| kit::choice_row_ui(label, found.unwrap_or(usize::MAX), &options, ui))
-        .inner;
+    let picked = kit::choice_row_ui(text::ADD_CLIP, None, &options, ui).flatten();
     Some(entries.get(picked?)?.id.clone())
 }
 
@@ -198,6 +209,6 @@ pub(crate) fn compare_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui
 }
 
 /// The name of the lab that is open.
-pub(crate) fn lab_label(session: &Session) -> &'static str {
-    session.params().lab().label()
+pub(crate) fn lab_label(session: &Session) -> Word {
+    Word::new(session.params().lab().label())
 }

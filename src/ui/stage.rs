@@ -13,7 +13,6 @@ use self::verdicts::verdicts;
 use crate::ui::appearance::stage_theme;
 use crate::ui::kit;
 use crate::ui::labs::on_stage;
-use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::state::{Layout, UiState};
 use crate::ui::theme::{palette_of, space, theme_of};
@@ -81,10 +80,10 @@ fn stage_ui(
     let roomy = numbers_top - stage.top() > 240.0 * theme_of(ui).scale();
     // Where nothing can be done, no hint says what to do.
     let is_refused = session.panes().iter().any(|pane| pane.problem.is_some());
-    if let Some(note) = on_stage::note(session, state, ui) {
+    if let Some(note) = on_stage::note(session, state) {
         kit::caption_ui(&note, stage.with_max_y(numbers_top - space::S), ui);
     } else if let Some(note) = session.character_note().filter(|_| roomy) {
-        kit::caption_ui(&say(&note, ui), stage.with_max_y(numbers_top - space::S), ui);
+        kit::caption_ui(&note, stage.with_max_y(numbers_top - space::S), ui);
     } else if let Some(hint) = on_stage::hint(session)
         .filter(|_| state.hint && roomy && layout != Layout::Phone && !is_refused)
     {

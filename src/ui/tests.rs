@@ -92,7 +92,6 @@ fn harness(size: Vec2, theme: Theme, page: Page) -> Harness<'static, Page> {
     let builder =
         Harness::builder().with_size(size).with_max_steps(60).with_context_setup(move |ctx| {
             theme.install(ctx);
-            kit::ENGLISH.install(ctx);
         });
     let mut harness = builder.build_ui_state(
         |ui, page: &mut Page| {
@@ -175,9 +174,9 @@ fn the_stage_has_its_own_colours_and_rows() {
         let page = page("lab=view&a=walk&play=off&stage=paper&theme=dark");
         let mut harness = harness(size, Theme::default(), page);
         if name == "stage-desk" {
-            harness.get_by_role_and_label(Role::Button, text::STAGE).scroll_to_me();
+            harness.get_by_role_and_label(Role::Button, text::STAGE.english()).scroll_to_me();
             harness.run();
-            harness.get_by_role_and_label(Role::Button, text::STAGE).click();
+            harness.get_by_role_and_label(Role::Button, text::STAGE.english()).click();
             harness.run();
             harness.get_by_label("Hand twist").scroll_to_me();
             harness.run();
@@ -263,13 +262,13 @@ fn values_side_by_side_are_dragged_one_by_one() {
     harness.key_press(egui::Key::ArrowRight);
     harness.run_steps(2);
     assert_eq!(compared(&harness), "blend_window:30,16,10");
-    press(text::PANE_MORE, &mut harness);
+    press(text::PANE_MORE.english(), &mut harness);
     assert_eq!(compared(&harness), "blend_window:30,16,10,8");
     // There is no room for a fifth: the button keeps its place, and does nothing.
-    press(text::PANE_MORE, &mut harness);
+    press(text::PANE_MORE.english(), &mut harness);
     assert_eq!(compared(&harness), "blend_window:30,16,10,8");
     for _ in 0..3 {
-        press(text::PANE_LESS, &mut harness);
+        press(text::PANE_LESS.english(), &mut harness);
     }
     assert_eq!(compared(&harness), "");
     assert_eq!(harness.state().session.panes().len(), 1);
@@ -282,13 +281,13 @@ fn choices_side_by_side_have_a_row_each() {
     let mut harness = harness(DESK, DARK, page("compare=weight_law:smooth,linear&play=off"));
     picture("compare-choices", &mut harness);
     assert!(harness.query_by_label("Weight law").is_none());
-    press(text::PANE_MORE, &mut harness);
+    press(text::PANE_MORE.english(), &mut harness);
     let three = compared(&harness);
     assert!(
         three.starts_with("weight_law:smooth,linear,") && three.matches(',').count() == 2,
         "{three}"
     );
-    press(text::PANE_LESS, &mut harness);
+    press(text::PANE_LESS.english(), &mut harness);
     press("One pane", &mut harness);
     assert_eq!(compared(&harness), "");
     assert_eq!(harness.state().session.params().choice::<choices::WeightLaw>().word(), "smooth");
@@ -376,11 +375,15 @@ fn notices_of_any_length_can_be_closed_one_after_the_other() {
         for left in (0..harness.state().session.notices().list().len()).rev() {
             let cross = |harness: &Harness<'_, Page>| {
                 harness
-                    .get_all_by_label(kit::ENGLISH.dismiss)
+                    .get_all_by_label(kit::DISMISS.english())
                     .last()
                     .map(|cross| cross.rect().center())
             };
-            harness.get_all_by_label(kit::ENGLISH.dismiss).last().expect("a cross").scroll_to_me();
+            harness
+                .get_all_by_label(kit::DISMISS.english())
+                .last()
+                .expect("a cross")
+                .scroll_to_me();
             harness.run();
             let at = cross(&harness).expect("a cross");
             assert!(
@@ -415,7 +418,7 @@ fn notice_offers_to_mend_a_clip() {
     let wild = text.replace(rows[row], &format!("1e9 {rest}"));
     page.session.load("x.bvh", Arc::from(wild.as_bytes())).expect("a file that is read");
     let mut harness = harness(DESK, DARK, page);
-    press(text::MEND, &mut harness);
+    press(text::MEND.english(), &mut harness);
     let commands = &harness.state().out.commands;
     assert!(
         matches!(commands.as_slice(), [.., Command::File(FileCommand::Mend(_))]),

@@ -13,7 +13,7 @@ use self::tracks::{
 };
 use crate::ui::kit::{self, Curves, Part, Series, Timeline};
 use crate::ui::labs::in_time;
-use crate::ui::language::say;
+use crate::ui::language::Word;
 use crate::ui::out::Out;
 use crate::ui::state::{Layout, UiState};
 use crate::ui::text;
@@ -48,7 +48,6 @@ pub(crate) fn timeline_panel_ui(
     let joint_title = role.map_or_else(|| Message::data(joint), |role| role.name().into());
     let quantity_label = quantity.label();
     let caption = msg!("{joint} · {what} {unit}", joint = joint_title, what = quantity_label, unit);
-    let caption = say(&caption, ui);
     let playhead = Playhead {
         secs: session.now_secs(),
         frame: frame_at(&outcome.motion, session.now_secs()),
@@ -59,7 +58,7 @@ pub(crate) fn timeline_panel_ui(
         curve_menu_ui(outcome, &row, out, ui);
     }
 
-    let panes = named_outcomes(session, |name| say(name, ui));
+    let panes = named_outcomes(session);
     cache.update(outcome, &panes, joint, quantity);
     let palette = palette_of(ui);
     let series: Vec<Series<'_>> = cache
@@ -87,20 +86,18 @@ pub(crate) fn timeline_panel_ui(
         .collect();
     let made_from = session.panes().first().and_then(Pane::made_from).unwrap_or(params);
     let names = [Key::A, Key::B].map(|key| {
-        session
-            .library()
-            .find(made_from.text(key))
-            .map_or_else(String::new, |entry| say(&entry.title(), ui))
+        session.library().find(made_from.text(key)).map(|entry| entry.title()).unwrap_or_default()
     });
     let names = match outcome.walk() {
         Some(walk) => [0, 1].map(|part: usize| {
             let clip = walk.passed.get(part).map(|passed| passed.stay.clip);
             clip.and_then(|clip| walk.built.clips().names().get(clip))
-                .map_or_else(String::new, |name| say(&session.clip_title(name), ui))
+                .map(|name| session.clip_title(name))
+                .unwrap_or_default()
         }),
         None => names,
     };
-    let made = in_time::made_name(made_from).map(|name| say(&name, ui));
+    let made = in_time::made_name(made_from);
     let round = round_name(outcome, &names);
     let tracks = if outcome.registered().is_some() {
         // The feet of both say more than their bars.
@@ -113,15 +110,15 @@ pub(crate) fn timeline_panel_ui(
         tracks(outcome, &names)
     };
     let curves = Curves {
-        title: quantity.label(),
-        unit,
+        title: Word::new(quantity_label),
+        unit: Word::new(unit),
         decimals: 2,
         include: (quantity != choices::Curve::Turn).then_some(0.0),
         series: &series,
     };
     let mut seams = seams(outcome, palette.accent);
     seams.extend(hard_turns(outcome, palette.warning));
-    let feet = feet_names(session, layout, ui);
+    let feet = feet_names(session, layout);
     let stripes = stripes(session, &feet);
     let timeline = Timeline {
         duration: session.duration_secs(),

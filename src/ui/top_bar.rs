@@ -2,7 +2,7 @@
 
 use super::commands::{UiCommand, command_button_ui, command_icon_ui, command_item_ui};
 use super::kit::{self, Button, Icon};
-use super::language::{say, tr};
+use super::language::{Word, say};
 use super::out::Out;
 use super::state::{Layout, UiState};
 use super::text;
@@ -40,7 +40,7 @@ fn logo_ui(layout: Layout, ui: &mut Ui) {
         let (rect, _) = ui.allocate_exact_size(vec2(side, side), Sense::hover());
         kit::paint_logo(rect, palette.a, palette.b, ui.painter());
     }
-    ui.label(RichText::new(tr(text::APP, ui)).font(theme.font(Type::Title)).color(palette.text));
+    ui.label(RichText::new(say(text::APP, ui)).font(theme.font(Type::Title)).color(palette.text));
     ui.add_space(space::S);
 }
 
@@ -48,10 +48,11 @@ fn lab_tabs_ui(session: &Session, ui: &mut Ui) -> Option<&'static str> {
     let Kind::Choice(labs) = Key::Lab.param().kind else {
         return None;
     };
-    let options: Vec<(&'static str, &str)> = labs.iter().map(|lab| (lab.key, lab.label)).collect();
+    let options: Vec<(&'static str, Word)> =
+        labs.iter().map(|lab| (lab.key, Word::new(lab.label))).collect();
     let chosen = session.params().lab().word();
     kit::tabs_ui(
-        [Key::Lab.param().label, text::MORE_LABS],
+        [Word::new(Key::Lab.param().label), text::MORE_LABS],
         chosen,
         &options,
         ui.available_width(),
@@ -80,7 +81,6 @@ fn actions_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut 
     }
     let panes = session.panes().len();
     let label = if panes > 1 { msg!("Compare · {panes}", panes) } else { text::COMPARE.into() };
-    let label = say(&label, ui);
     command_button_ui(UiCommand::ToggleCompare, Button::new(&label), session, state, out, ui);
     let lessons = match layout {
         Layout::Desk => Button::new(text::LESSONS).icon(Icon::Book),

@@ -1,10 +1,12 @@
 //! Play, step, speed and time: the row that every bottom panel begins with.
 
 use super::kit::{self, Transport, TransportEvent};
+use super::language::Text;
 use super::out::Out;
 use super::state::Layout;
 use eframe::egui::{Response, Ui};
 use segue_session::{Command, Key, PlaybackCommand, Session, Value};
+use segue_text::Message;
 
 /// Where the playhead is.
 #[derive(Clone, Copy, Debug)]
@@ -18,7 +20,7 @@ pub(super) struct Playhead {
 /// The row, with a caption at its end where there is room.
 pub(super) fn transport_row_ui(
     playhead: Playhead,
-    caption: &str,
+    caption: &Message,
     layout: Layout,
     session: &Session,
     out: &mut Out,
@@ -32,7 +34,7 @@ pub(super) fn transport_row_ui(
         now: playhead.secs,
         frame: playhead.frame,
         frames: playhead.frames,
-        caption: if layout == Layout::Phone { "" } else { caption },
+        caption: if layout == Layout::Phone { Text::EMPTY } else { caption.into() },
     };
     let row = ui.horizontal(|ui| kit::transport_ui(&transport, ui));
     match row.inner {

@@ -274,7 +274,7 @@ fn warning_of_the_framing_page_is_shown_once() {
             .notices()
             .list()
             .iter()
-            .filter(|notice| notice.text.to_string() == crate::ui::HOST_READS)
+            .filter(|notice| notice.text.to_string() == crate::ui::HOST_READS.english())
             .count()
     };
     segue.warn_of_host();

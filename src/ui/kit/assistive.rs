@@ -1,13 +1,22 @@
 //! What the kit tells assistive technology beyond the widgets themselves: parts and groups, the
 //! values of sliders, and painted text.
 
+use crate::ui::language::{Word, say};
 use eframe::egui::accesskit::{Action, ActionData, Role};
 use eframe::egui::{Id, Rect, Response, Sense, Ui, WidgetInfo};
 use std::ops::RangeInclusive;
 
+/// Describes a widget. All of `info` is written before: egui holds its context while it asks for
+/// it, and writing a text in the language of the interface needs the context.
+#[expect(clippy::disallowed_methods, reason = "the closure needs no context")]
+pub(crate) fn describe(response: &Response, info: &WidgetInfo) {
+    response.widget_info(|| info.clone());
+}
+
 /// Gives a part of the page, which `ui` draws, a role and a name (empty for none): a landmark, a
 /// list, or a group.
-pub(crate) fn set_role(role: Role, name: &str, ui: &Ui) {
+pub(crate) fn set_role(role: Role, name: Word, ui: &Ui) {
+    let name = say(name, ui);
     ui.ctx().accesskit_node_builder(ui.unique_id(), |node| {
         node.set_role(role);
         if !name.is_empty() {
@@ -19,14 +28,14 @@ pub(crate) fn set_role(role: Role, name: &str, ui: &Ui) {
 /// Makes painted text readable: a galley alone is no widget.
 pub(super) fn readable_ui(text: &str, rect: Rect, id: Id, ui: &Ui) -> Response {
     let response = ui.interact(rect, id, Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, text));
+    describe(&response, &WidgetInfo::labeled(Role::Label, true, text));
     response
 }
 
 /// A number that assistive technology can read and set.
-pub(super) struct Adjustable<'a> {
+pub(super) struct Adjustable {
     /// The name.
-    pub(super) name: &'a str,
+    pub(super) name: String,
     /// The number.
     pub(super) value: f64,
     /// Its smallest and greatest value.
@@ -39,11 +48,10 @@ pub(super) struct Adjustable<'a> {
     pub(super) help: String,
 }
 
-impl Adjustable<'_> {
+impl Adjustable {
     /// Describes the widget as a slider.
     pub(super) fn describe(self, response: &Response, ui: &Ui) {
-        let enabled = ui.is_enabled();
-        response.widget_info(|| WidgetInfo::slider(enabled, self.value, self.name));
+        describe(response, &WidgetInfo::slider(ui.is_enabled(), self.value, self.name));
         ui.ctx().accesskit_node_builder(response.id, |node| {
             node.set_min_numeric_value(*self.range.start());
             node.set_max_numeric_value(*self.range.end());

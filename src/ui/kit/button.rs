@@ -1,8 +1,9 @@
 //! Buttons, from the one that matters to those that only appear under the pointer.
 
+use super::assistive::describe;
 use super::icon::{Icon, paint_icon};
 use super::paint::{Run, faded, focus_ring, line_of};
-use crate::ui::language::tr;
+use crate::ui::language::{Text, say};
 use crate::ui::theme::{HIT, Palette, Type, palette_of, radius, space, theme_of};
 use eframe::egui::{
     Align2, Color32, CursorIcon, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2,
@@ -24,18 +25,19 @@ pub(crate) enum Tone {
 /// A button: an icon, a word, or both.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Button<'a> {
-    text: &'a str,
-    name: &'a str,
+    text: Text<'a>,
+    name: Text<'a>,
     icon: Option<Icon>,
     trailing: Option<Icon>,
     tone: Tone,
     selected: bool,
-    hint: &'a str,
+    hint: Text<'a>,
 }
 
 impl<'a> Button<'a> {
     /// A button that says `text`.
-    pub(crate) fn new(text: &'a str) -> Self {
+    pub(crate) fn new(text: impl Into<Text<'a>>) -> Self {
+        let text = text.into();
         Self {
             text,
             name: text,
@@ -43,14 +45,15 @@ impl<'a> Button<'a> {
             trailing: None,
             tone: Tone::Secondary,
             selected: false,
-            hint: "",
+            hint: Text::EMPTY,
         }
     }
 
     /// A button that is only an icon; `name` is what it is called, and its hint until another is
     /// given.
-    pub(crate) fn icon_only(icon: Icon, name: &'a str) -> Self {
-        Self { text: "", name, icon: Some(icon), hint: name, tone: Tone::Quiet, ..Self::new("") }
+    pub(crate) fn icon_only(icon: Icon, name: impl Into<Text<'a>>) -> Self {
+        let name = name.into();
+        Self { name, icon: Some(icon), hint: name, tone: Tone::Quiet, ..Self::new(Text::EMPTY) }
     }
 
     /// The one thing to do here.
@@ -90,14 +93,14 @@ impl<'a> Button<'a> {
     }
 
     /// What appears when the pointer rests on it.
-    pub(crate) fn hint(mut self, hint: &'a str) -> Self {
-        self.hint = hint;
+    pub(crate) fn hint(mut self, hint: impl Into<Text<'a>>) -> Self {
+        self.hint = hint.into();
         self
     }
 
     /// What screen readers call it, where that is not its text.
-    pub(crate) fn name(mut self, name: &'a str) -> Self {
-        self.name = name;
+    pub(crate) fn name(mut self, name: impl Into<Text<'a>>) -> Self {
+        self.name = name.into();
         self
     }
 
@@ -190,23 +193,19 @@ pub(crate) fn button_ui(button: Button<'_>, ui: &mut Ui) -> Response {
         }
         focus_ring(rect, radius::M, &response, ui);
     }
-    response.widget_info(|| {
-        let mut info = WidgetInfo::labeled(Role::Button, enabled, button.name);
-        if button.selected {
-            info.selected = Some(true);
-        }
-        info
-    });
-    if button.hint.is_empty() { response } else { response.on_hover_text(tr(button.hint, ui)) }
+    let mut info = WidgetInfo::labeled(Role::Button, enabled, say(button.name, ui));
+    info.selected = button.selected.then_some(true);
+    describe(&response, &info);
+    if button.hint.is_empty() { response } else { response.on_hover_text(say(button.hint, ui)) }
 }
 
 /// A small square button that is only an icon.
-pub(crate) fn icon_button_ui(icon: Icon, name: &str, ui: &mut Ui) -> Response {
+pub(crate) fn icon_button_ui<'a>(icon: Icon, name: impl Into<Text<'a>>, ui: &mut Ui) -> Response {
     button_ui(Button::icon_only(icon, name), ui)
 }
 
 /// Words that are pressed, underlined within a sentence: `open…`.
-pub(crate) fn link_ui(text: &str, ui: &mut Ui) -> Response {
+pub(crate) fn link_ui(text: Text<'_>, ui: &mut Ui) -> Response {
     let palette = palette_of(ui);
     let enabled = ui.is_enabled();
     let galley = line_of(&[Run::new(text, Type::Body, palette.text)], f32::INFINITY, ui);
@@ -226,6 +225,6 @@ pub(crate) fn link_ui(text: &str, ui: &mut Ui) -> Response {
         Stroke::new(theme_of(ui).hairline(), under),
     );
     focus_ring(at, radius::S, &response, ui);
-    response.widget_info(|| WidgetInfo::labeled(Role::Link, enabled, text));
+    describe(&response, &WidgetInfo::labeled(Role::Link, enabled, say(text, ui)));
     response
 }

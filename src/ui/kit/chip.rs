@@ -1,8 +1,9 @@
 //! Small words on a coloured ground, and the letter that stands for a clip.
 
+use super::assistive::describe;
 use super::icon::Icon;
 use super::paint::{Run, line_of, put};
-use crate::ui::language::tr;
+use crate::ui::language::{Text, Word, say};
 use crate::ui::theme::{Palette, Type, palette_of, radius, theme_of};
 use eframe::egui::{
     Align2, Color32, Painter, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo,
@@ -91,13 +92,13 @@ impl Part {
 }
 
 /// How large a chip is.
-pub(crate) fn chip_size(text: &str, ui: &Ui) -> Vec2 {
+pub(crate) fn chip_size(text: Text<'_>, ui: &Ui) -> Vec2 {
     line_of(&[Run::new(text, Type::SmallStrong, Color32::PLACEHOLDER)], f32::INFINITY, ui).size()
         + vec2(16.0, 6.0)
 }
 
 /// Draws a chip whose right end lies at `right_center`; where it lies then.
-pub(crate) fn paint_chip(text: &str, mood: Mood, right_center: Pos2, ui: &Ui) -> Rect {
+pub(crate) fn paint_chip(text: Text<'_>, mood: Mood, right_center: Pos2, ui: &Ui) -> Rect {
     let (ink, ground) = mood.colors(palette_of(ui));
     let galley = line_of(&[Run::new(text, Type::SmallStrong, ink)], f32::INFINITY, ui);
     let rect = Align2::RIGHT_CENTER.anchor_size(right_center, galley.size() + vec2(16.0, 6.0));
@@ -116,18 +117,23 @@ pub(crate) fn paint_badge(part: Part, rect: Rect, ui: &Ui) {
         dot(rect.center(), ink, 1.6 * theme_of(ui).scale(), ui.painter());
     } else {
         ui.painter().rect_filled(rect, radius::S + 1, fill);
-        let galley = line_of(&[Run::new(part.letter(), Type::SmallStrong, ink)], f32::INFINITY, ui);
+        let galley = line_of(
+            &[Run::new(Text::Data(part.letter()), Type::SmallStrong, ink)],
+            f32::INFINITY,
+            ui,
+        );
         put(ui.painter(), rect.center(), Align2::CENTER_CENTER, galley);
     }
 }
 
 /// A film under way: a red dot and how long it is, `0:07`, left of `right_center`.
-pub(crate) fn recording_ui(name: &str, secs: f64, right_center: Pos2, ui: &mut Ui) -> Rect {
+pub(crate) fn recording_ui(name: Word, secs: f64, right_center: Pos2, ui: &mut Ui) -> Rect {
     let palette = palette_of(ui);
     let scale = theme_of(ui).scale();
     let whole = secs.max(0.0) as u64;
     let time = format!("{}:{:02}", whole / 60, whole % 60);
-    let galley = line_of(&[Run::new(&time, Type::SmallStrong, palette.text)], f32::INFINITY, ui);
+    let galley =
+        line_of(&[Run::new(Text::Data(&time), Type::SmallStrong, palette.text)], f32::INFINITY, ui);
     let height = (24.0 * scale).round();
     let size = vec2(galley.size().x + 32.0 * scale, height);
     let rect = Align2::RIGHT_CENTER.anchor_size(right_center, size);
@@ -135,9 +141,10 @@ pub(crate) fn recording_ui(name: &str, secs: f64, right_center: Pos2, ui: &mut U
     ui.painter().rect(rect, height / 2.0, palette.panel_raised, line, StrokeKind::Inside);
     dot(rect.left_center() + vec2(13.0 * scale, 0.0), palette.bad, 4.5 * scale, ui.painter());
     put(ui.painter(), rect.right_center() - vec2(10.0 * scale, 0.0), Align2::RIGHT_CENTER, galley);
-    let response = ui.interact(rect, ui.make_persistent_id(("recording", name)), Sense::hover());
-    let said = format!("{}, {time}", tr(name, ui));
-    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &said));
+    let response =
+        ui.interact(rect, ui.make_persistent_id(("recording", name.english())), Sense::hover());
+    let said = format!("{}, {time}", say(name, ui));
+    describe(&response, &WidgetInfo::labeled(Role::Label, true, said));
     rect
 }
 

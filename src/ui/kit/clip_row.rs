@@ -1,9 +1,10 @@
 //! A clip in the library.
 
+use super::assistive::describe;
 use super::chip::{Part, paint_badge};
 use super::icon::{Icon, paint_icon};
 use super::paint::{Run, focus_ring, full_width, line_of, paragraph, put};
-use crate::ui::language::tr;
+use crate::ui::language::{Text, Word, say};
 use crate::ui::theme::{HIT, Type, palette_of, radius, space, theme_of};
 use eframe::egui::{
     Align2, Color32, CursorIcon, Id, Rect, Response, Role, Sense, Stroke, Ui, Vec2, WidgetInfo,
@@ -14,17 +15,17 @@ use eframe::egui::{
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ClipRow<'a> {
     /// Its name.
-    pub(crate) name: &'a str,
+    pub(crate) name: Text<'a>,
     /// Length, rate, joints: `3.9 s · 120 fps · 30 joints`. Wraps.
-    pub(crate) detail: &'a str,
+    pub(crate) detail: Text<'a>,
     /// The part it plays now.
     pub(crate) part: Part,
     /// What was odd in its file, for the warning sign's hint; empty if nothing was.
-    pub(crate) warning: &'a str,
+    pub(crate) warning: Text<'a>,
     /// Seen or edited at the moment.
     pub(crate) selected: bool,
     /// What may be done with it: the signs shown while the pointer is on the row, with their names.
-    pub(crate) actions: &'a [(Icon, &'a str)],
+    pub(crate) actions: &'a [(Icon, Word)],
 }
 
 /// What was done to a row of the library.
@@ -55,7 +56,7 @@ pub(crate) fn clip_row_ui(row: ClipRow<'_>, ui: &mut Ui) -> ClipRowResponse {
     let name_height = (18.0 * scale).round();
     let height = (name_height + detail.size().y + 2.0 * pad).max(44.0 * scale).round();
     let rect = full_width(height, ui);
-    let id = ui.make_persistent_id(("clip", row.name));
+    let id = ui.make_persistent_id(("clip", row.name.english()));
     let response =
         ui.interact(rect, id, Sense::click_and_drag()).on_hover_cursor(CursorIcon::PointingHand);
 
@@ -75,11 +76,8 @@ pub(crate) fn clip_row_ui(row: ClipRow<'_>, ui: &mut Ui) -> ClipRowResponse {
 
     let show_actions = (hovered || response.has_focus()) && !row.actions.is_empty();
     let actions_width = if show_actions { row.actions.len() as f32 * HIT + 2.0 } else { 0.0 };
-    let name = line_of(
-        &[Run::new(row.name, Type::Strong, palette.text).own(true)],
-        text_width - actions_width,
-        ui,
-    );
+    let name =
+        line_of(&[Run::new(row.name, Type::Strong, palette.text)], text_width - actions_width, ui);
     let middle = rect.top() + pad + name_height / 2.0;
     put(ui.painter(), pos2(rect.left() + text_left, middle), Align2::LEFT_CENTER, name);
     put(
@@ -89,27 +87,17 @@ pub(crate) fn clip_row_ui(row: ClipRow<'_>, ui: &mut Ui) -> ClipRowResponse {
         detail,
     );
     focus_ring(rect.shrink(2.0), radius::M, &response, ui);
-    response.widget_info(|| {
-        WidgetInfo::selected(
-            Role::Button,
-            ui.is_enabled(),
-            row.selected,
-            format!("{}, {}", row.name, row.detail),
-        )
-    });
+    let name = say(row.name, ui);
+    let said = format!("{name}, {}", say(row.detail, ui));
+    describe(&response, &WidgetInfo::selected(Role::Button, ui.is_enabled(), row.selected, said));
 
     let badge_hit = badge.expand((HIT - badge_side).max(0.0) / 2.0 + 4.0);
     let badge_response = ui
         .interact(badge_hit, id.with("badge"), Sense::click())
         .on_hover_cursor(CursorIcon::PointingHand);
     focus_ring(badge, radius::S, &badge_response, ui);
-    badge_response.widget_info(|| {
-        WidgetInfo::labeled(
-            Role::Button,
-            ui.is_enabled(),
-            format!("{}: {}", row.name, row.part.letter()),
-        )
-    });
+    let said = format!("{name}: {}", row.part.letter());
+    describe(&badge_response, &WidgetInfo::labeled(Role::Button, ui.is_enabled(), said));
     if badge_response.hovered() {
         let ring = Stroke::new(1.5, palette.text);
         ui.painter().rect_stroke(
@@ -125,8 +113,8 @@ pub(crate) fn clip_row_ui(row: ClipRow<'_>, ui: &mut Ui) -> ClipRowResponse {
         let at = Rect::from_center_size(pos2(right - HIT / 2.0, middle), Vec2::splat(HIT));
         let sign = ui.interact(at, id.with("warning"), Sense::hover());
         paint_icon(Icon::Warning, at.shrink(4.5), palette.warning, ui.painter());
-        sign.widget_info(|| WidgetInfo::labeled(Role::Label, true, row.warning));
-        sign.on_hover_text(tr(row.warning, ui));
+        describe(&sign, &WidgetInfo::labeled(Role::Label, true, say(row.warning, ui)));
+        sign.on_hover_text(say(row.warning, ui));
         right -= HIT;
     }
     let mut action = None;
@@ -151,7 +139,7 @@ pub(crate) fn clip_row_ui(row: ClipRow<'_>, ui: &mut Ui) -> ClipRowResponse {
 /// An icon inside another widget, pressed by itself.
 pub(super) fn small_icon_ui(
     icon: Icon,
-    name: &str,
+    name: Word,
     id: Id,
     rect: Rect,
     ground: Color32,
@@ -173,6 +161,6 @@ pub(super) fn small_icon_ui(
         ui.painter(),
     );
     focus_ring(rect, radius::S, &response, ui);
-    response.widget_info(|| WidgetInfo::labeled(Role::Button, ui.is_enabled(), name));
-    response.on_hover_text(tr(name, ui))
+    describe(&response, &WidgetInfo::labeled(Role::Button, ui.is_enabled(), say(name, ui)));
+    response.on_hover_text(say(name, ui))
 }

@@ -1,16 +1,19 @@
 //! Costs beside each other, each split into what it is made of.
 
+use super::assistive::describe;
 use super::paint::{Run, focus_ring, full_width, line_of, put};
+use crate::ui::language::{Text, Word, say};
 use crate::ui::theme::{HIT, Type, palette_of, radius, space, theme_of};
 use eframe::egui::{
     Align2, Color32, CursorIcon, Rangef, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2,
 };
+use segue_text::Message;
 
 /// One cost.
 #[derive(Clone, Debug)]
 pub(crate) struct CostRow {
     /// What costs that.
-    pub(crate) name: String,
+    pub(crate) name: Message,
     /// Its parts, in the order of the names.
     pub(crate) parts: Vec<f32>,
     /// Stands out: it plays, or was chosen.
@@ -25,7 +28,7 @@ pub(crate) struct CostBars<'a> {
     /// The rows, the first for comparison.
     pub(crate) rows: &'a [CostRow],
     /// Names of the parts, with their colours.
-    pub(crate) parts: &'a [(&'a str, Color32)],
+    pub(crate) parts: &'a [(Word, Color32)],
 }
 
 /// What the pointer does with the rows.
@@ -51,14 +54,9 @@ pub(crate) fn cost_bars_ui(bars: &CostBars<'_>, ui: &mut Ui) -> CostResponse {
         let response = ui
             .interact(rect, ui.make_persistent_id(("cost", index)), Sense::click())
             .on_hover_cursor(CursorIcon::PointingHand);
-        response.widget_info(|| {
-            WidgetInfo::selected(
-                Role::Button,
-                true,
-                row.shown,
-                format!("{}: {:.decimals$}", row.name, total(row)),
-            )
-        });
+        let cost = format!("{:.decimals$}", total(row));
+        let said = format!("{}: {cost}", say(&row.name, ui));
+        describe(&response, &WidgetInfo::selected(Role::Button, true, row.shown, said));
         if response.clicked() {
             found.clicked = Some(index);
         }
@@ -71,11 +69,7 @@ pub(crate) fn cost_bars_ui(bars: &CostBars<'_>, ui: &mut Ui) -> CostResponse {
         }
         let step = if row.strong { Type::SmallStrong } else { Type::Small };
         let ink = if row.strong { palette.text } else { palette.muted };
-        let number = line_of(
-            &[Run::new(&format!("{:.decimals$}", total(row)), step, ink)],
-            f32::INFINITY,
-            ui,
-        );
+        let number = line_of(&[Run::new(Text::Data(&cost), step, ink)], f32::INFINITY, ui);
         let first = rect.top() + 0.28 * rect.height();
         let number = put(ui.painter(), pos2(rect.right(), first), Align2::RIGHT_CENTER, number);
         let name =
@@ -100,7 +94,7 @@ pub(crate) fn cost_bars_ui(bars: &CostBars<'_>, ui: &mut Ui) -> CostResponse {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(space::M, 2.0);
         for (name, color) in bars.parts {
-            let galley = line_of(&[Run::new(name, Type::Small, palette.muted)], f32::INFINITY, ui);
+            let galley = line_of(&[Run::new(*name, Type::Small, palette.muted)], f32::INFINITY, ui);
             let (_, rect) = ui.allocate_space(galley.size() + vec2(12.0, 0.0));
             let square =
                 Rect::from_center_size(pos2(rect.left() + 4.0, rect.center().y), vec2(8.0, 8.0));

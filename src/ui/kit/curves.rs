@@ -2,15 +2,15 @@
 
 use super::paint::{Run, line_of, put};
 use super::time_axis::{TimeAxis, hovered_time, nice_step};
-use crate::ui::language::tr;
+use crate::ui::language::{Text, Word, say};
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{Align2, Color32, Rect, Response, Stroke, StrokeKind, Ui, pos2, vec2};
 
 /// One curve.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Series<'a> {
     /// Its name, short: `A`, `result`.
-    pub(crate) name: &'a str,
+    pub(crate) name: Text<'a>,
     /// Its colour as a line.
     pub(crate) color: Color32,
     /// Its colour as text.
@@ -22,12 +22,12 @@ pub(crate) struct Series<'a> {
 }
 
 /// Curves over one axis of values.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Curves<'a> {
     /// What they show, for the space before them: `speed`.
-    pub(crate) title: &'a str,
+    pub(crate) title: Word,
     /// The unit of their values.
-    pub(crate) unit: &'a str,
+    pub(crate) unit: Word,
     /// Digits after the point when a value is read off.
     pub(crate) decimals: usize,
     /// Always within sight: such as 0 for speeds.
@@ -106,7 +106,8 @@ pub(super) fn curves_ui(
     for value in marks() {
         let y = y_of(value);
         let text = format!("{value:.decimals$}").replace('-', "−");
-        let label = line_of(&[Run::new(&text, Type::Small, palette.muted)], f32::INFINITY, ui);
+        let label =
+            line_of(&[Run::new(Text::Data(&text), Type::Small, palette.muted)], f32::INFINITY, ui);
         put(ui.painter(), pos2(plot.left() - space::S, y), Align2::RIGHT_CENTER, label);
     }
 }
@@ -114,12 +115,13 @@ pub(super) fn curves_ui(
 /// The names of the curves in their colours, in the space before them.
 pub(super) fn key_ui(curves: &Curves<'_>, area: Rect, ui: &Ui) {
     let palette = palette_of(ui);
-    let title = format!("{} {}", tr(curves.title, ui), tr(curves.unit, ui));
-    let title = line_of(&[Run::new(title.trim(), Type::Small, palette.muted)], area.width(), ui);
+    let title = format!("{} {}", say(curves.title, ui), say(curves.unit, ui));
+    let title = Run::new(Text::Data(title.trim()), Type::Small, palette.muted);
+    let title = line_of(&[title], area.width(), ui);
     let at = put(ui.painter(), area.left_top() + vec2(0.0, space::S), Align2::LEFT_TOP, title);
     // Letters share a line; words have one each.
     let (letters, words): (Vec<_>, Vec<_>) =
-        curves.series.iter().partition(|series| series.name.chars().count() == 1);
+        curves.series.iter().partition(|series| series.name.english().chars().count() == 1);
     let lines = if words.len() > 1 {
         std::iter::once(letters).chain(words.into_iter().map(|word| vec![word])).collect()
     } else {
@@ -130,7 +132,7 @@ pub(super) fn key_ui(curves: &Curves<'_>, area: Rect, ui: &Ui) {
         let mut runs = Vec::new();
         for (index, series) in line.iter().enumerate() {
             if index > 0 {
-                runs.push(Run::new("·", Type::Small, palette.muted).after(space::XS));
+                runs.push(Run::new(Text::Data("·"), Type::Small, palette.muted).after(space::XS));
             }
             runs.push(Run::new(series.name, Type::Small, series.ink).after(if index > 0 {
                 space::XS
@@ -186,10 +188,10 @@ pub(super) fn hover_ui(
         return;
     }
     let seconds = format!("{time:.2} s");
-    let mut runs = vec![Run::new(&seconds, Type::Small, palette.muted)];
+    let mut runs = vec![Run::new(Text::Data(&seconds), Type::Small, palette.muted)];
     for (value, series) in &written {
         runs.push(Run::new(series.name, Type::Small, series.ink).after(space::M));
-        runs.push(Run::new(value, Type::SmallStrong, palette.text).after(space::XS));
+        runs.push(Run::new(Text::Data(value), Type::SmallStrong, palette.text).after(space::XS));
     }
     runs.push(Run::new(curves.unit, Type::Small, palette.muted).after(space::XS));
     let galley = line_of(&runs, f32::INFINITY, ui);
@@ -237,7 +239,7 @@ mod tests {
     fn bounds_hold_all_that_is_finite() {
         let points = [[0.0, 1.0], [1.0, f64::INFINITY], [2.0, 5.0]];
         let series = [Series {
-            name: "A",
+            name: Text::Data("A"),
             color: Color32::RED,
             ink: Color32::RED,
             strong: true,

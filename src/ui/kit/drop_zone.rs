@@ -2,6 +2,7 @@
 
 use super::button::link_ui;
 use super::paint::{Run, line_of, paragraph, put};
+use crate::ui::language::{Text, Word};
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{
     Align, Align2, Color32, Layout, Rect, Shape, Stroke, Ui, UiBuilder, pos2, vec2,
@@ -11,8 +12,8 @@ use std::f32::consts::FRAC_PI_2;
 /// A dashed field with a sentence and links below it. `hot` while files hang over the window. Which
 /// link was pressed.
 pub(crate) fn drop_zone_ui(
-    sentence: &str,
-    links: &[&str],
+    sentence: Word,
+    links: &[Word],
     hot: bool,
     ui: &mut Ui,
 ) -> Option<usize> {
@@ -32,9 +33,9 @@ pub(crate) fn drop_zone_ui(
     let text_rect =
         put(ui.painter(), pos2(rect.center().x, rect.top() + space::M), Align2::CENTER_TOP, text);
 
-    let dot = line_of(&[Run::new("·", Type::Body, palette.muted)], f32::INFINITY, ui);
+    let dot = line_of(&[Run::new(Text::Data("·"), Type::Body, palette.muted)], f32::INFINITY, ui);
     let widths = links.iter().map(|link| {
-        line_of(&[Run::new(link, Type::Body, Color32::PLACEHOLDER)], f32::INFINITY, ui).size().x
+        line_of(&[Run::new(*link, Type::Body, Color32::PLACEHOLDER)], f32::INFINITY, ui).size().x
     });
     let gaps = links.len().saturating_sub(1) as f32 * (dot.size().x + 2.0 * space::S);
     let total = widths.sum::<f32>() + gaps;
@@ -44,7 +45,7 @@ pub(crate) fn drop_zone_ui(
     );
     let mut pressed = None;
     let builder = UiBuilder::new()
-        .id_salt(sentence)
+        .id_salt(sentence.english())
         .max_rect(row)
         .layout(Layout::left_to_right(Align::Center));
     // A child of its own: the zone's space is taken already.
@@ -55,7 +56,7 @@ pub(crate) fn drop_zone_ui(
             let (_, at) = inner.allocate_space(dot.size());
             put(inner.painter(), at.center(), Align2::CENTER_CENTER, dot.clone());
         }
-        if link_ui(link, &mut inner).clicked() {
+        if link_ui(Text::Word(*link), &mut inner).clicked() {
             pressed = Some(index);
         }
     }

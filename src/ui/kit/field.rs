@@ -1,7 +1,8 @@
 //! Words to type, and values only to read.
 
+use super::assistive::describe;
 use super::paint::{Run, faded, full_width, line_of, put};
-use crate::ui::language::tr;
+use crate::ui::language::{Text, Word, say};
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{
     Align2, Key, Margin, Response, Role, Sense, TextEdit, Ui, WidgetInfo, pos2, vec2,
@@ -18,20 +19,20 @@ pub(crate) struct FieldResponse {
 
 /// A line of text to type, as wide as the panel. `name` is its accessible name, `hint` stands in it
 /// while it is empty.
-pub(crate) fn text_field_ui(
-    name: &str,
-    hint: &str,
+pub(crate) fn text_field_ui<'a>(
+    name: Word,
+    hint: impl Into<Text<'a>>,
     text: &mut String,
     ui: &mut Ui,
 ) -> FieldResponse {
     let theme = theme_of(ui);
     let size = vec2(ui.available_width(), theme.row_height());
     let edit = TextEdit::singleline(text)
-        .hint_text(tr(hint, ui))
+        .hint_text(say(hint, ui))
         .font(theme.font(Type::Body))
         .margin(Margin::symmetric(8, 5))
         .desired_width(size.x);
-    let response = ui.add_sized(size, edit).accessible_name(name);
+    let response = ui.add_sized(size, edit).accessible_name(say(name, ui));
     // egui may report the loss of the focus in two frames; the text is finished once.
     let typing_id = response.id.with("typing");
     let was_typing = ui.data(|data| data.get_temp(typing_id)).unwrap_or(false);
@@ -43,11 +44,11 @@ pub(crate) fn text_field_ui(
 
 /// A value that is found, not set: the label left, the number and its unit right, as in a slider's
 /// row.
-pub(crate) fn value_row_ui(label: &str, value: &str, unit: &str, ui: &mut Ui) -> Response {
+pub(crate) fn value_row_ui(label: Word, value: &str, unit: Word, ui: &mut Ui) -> Response {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let enabled = ui.is_enabled();
     let row = full_width((22.0 * theme.scale()).round(), ui);
-    let mut runs = vec![Run::new(value, Type::Number, faded(palette.text, enabled))];
+    let mut runs = vec![Run::new(Text::Data(value), Type::Number, faded(palette.text, enabled))];
     if !unit.is_empty() {
         runs.push(Run::new(unit, Type::Label, faded(palette.muted, enabled)).after(space::XS));
     }
@@ -59,8 +60,9 @@ pub(crate) fn value_row_ui(label: &str, value: &str, unit: &str, ui: &mut Ui) ->
         ui,
     );
     put(ui.painter(), pos2(row.left(), row.center().y), Align2::LEFT_CENTER, label_galley);
-    let response = ui.interact(row, ui.make_persistent_id(("value", label)), Sense::hover());
-    let said = format!("{}: {value} {}", tr(label, ui), tr(unit, ui));
-    response.widget_info(|| WidgetInfo::labeled(Role::Label, enabled, &said));
+    let response =
+        ui.interact(row, ui.make_persistent_id(("value", label.english())), Sense::hover());
+    let said = format!("{}: {value} {}", say(label, ui), say(unit, ui));
+    describe(&response, &WidgetInfo::labeled(Role::Label, enabled, said));
     response
 }

@@ -3,6 +3,7 @@
 
 use super::timeline::Moment;
 use super::*;
+use crate::ui::language::{Text, Word};
 use crate::ui::theme::{Palette, Theme, Type, palette_of, space, theme_of};
 use eframe::egui::{
     self, Align, CentralPanel, Frame, Layout, Margin, Panel, Rect, RectAlign, ScrollArea, Shape,
@@ -12,6 +13,7 @@ use egui_kittest::{
     Harness,
     kittest::{NodeT as _, Queryable as _},
 };
+use segue_text::Message;
 
 /// What the mock remembers between frames: enough to be played with.
 #[derive(Clone, Debug)]
@@ -57,17 +59,17 @@ impl Default for Mock {
     }
 }
 
-const LABS: [(usize, &str); 10] = [
-    (0, "View"),
-    (1, "Make"),
-    (2, "Blend"),
-    (3, "Transition"),
-    (4, "Speed"),
-    (5, "Loop"),
-    (6, "Warp"),
-    (7, "Graph"),
-    (8, "Path"),
-    (9, "Match"),
+const LABS: [(usize, Word); 10] = [
+    (0, Word::new("View")),
+    (1, Word::new("Make")),
+    (2, Word::new("Blend")),
+    (3, Word::new("Transition")),
+    (4, Word::new("Speed")),
+    (5, Word::new("Loop")),
+    (6, Word::new("Warp")),
+    (7, Word::new("Graph")),
+    (8, Word::new("Path")),
+    (9, Word::new("Match")),
 ];
 
 const CLIPS: [(&str, &str, Part, &str); 5] = [
@@ -133,41 +135,57 @@ fn top_ui(mock: &mut Mock, phone: bool, ui: &mut Ui) {
         let scale = theme_of(ui).scale();
         let (_, logo) = ui.allocate_space(vec2(22.0, 18.0) * scale);
         paint_logo(logo, p.a, p.b, ui.painter());
-        let name = paint::line_of(&[paint::Run::new("Segue", Type::Title, p.text)], 200.0, ui);
+        let name =
+            paint::line_of(&[paint::Run::new(Word::new("Segue"), Type::Title, p.text)], 200.0, ui);
         let (_, at) = ui.allocate_space(name.size());
         paint::put(ui.painter(), at.left_center(), egui::Align2::LEFT_CENTER, name);
         ui.add_space(space::S);
         let buttons = if phone { 130.0 } else { 430.0 * scale };
         let width = ui.available_width() - buttons;
-        if let Some(lab) = tabs_ui(["Lab", "More labs"], mock.lab, &LABS, width, ui) {
+        if let Some(lab) =
+            tabs_ui([Word::new("Lab"), Word::new("More labs")], mock.lab, &LABS, width, ui)
+        {
             mock.lab = lab;
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             button_ui(
-                Button::new(if phone { "Link" } else { "Copy link" }).primary().icon(Icon::Link),
+                Button::new(Text::Data(if phone { "Link" } else { "Copy link" }))
+                    .primary()
+                    .icon(Icon::Link),
                 ui,
             );
             if phone {
-                icon_button_ui(Icon::Menu, "Menu", ui);
+                icon_button_ui(Icon::Menu, Word::new("Menu"), ui);
             } else {
-                icon_button_ui(Icon::Contrast, "Dark or light", ui);
-                icon_button_ui(Icon::Redo, "Redo", ui);
-                icon_button_ui(Icon::Undo, "Undo", ui);
-                button_ui(Button::new("Lessons"), ui);
-                let compare = button_ui(Button::new("Compare · 3").trailing(Icon::ChevronDown), ui);
+                icon_button_ui(Icon::Contrast, Word::new("Dark or light"), ui);
+                icon_button_ui(Icon::Redo, Word::new("Redo"), ui);
+                icon_button_ui(Icon::Undo, Word::new("Undo"), ui);
+                button_ui(Button::new(Word::new("Lessons")), ui);
+                let compare = button_ui(
+                    Button::new(Word::new("Compare · 3")).trailing(Icon::ChevronDown),
+                    ui,
+                );
                 menu_ui(&compare, RectAlign::BOTTOM_END, |ui| {
                     menu_item_ui(
-                        MenuItem { text: "Three windows", chosen: true, ..MenuItem::default() },
+                        MenuItem {
+                            text: Word::new("Three windows").into(),
+                            chosen: true,
+                            ..MenuItem::default()
+                        },
                         ui,
                     );
                     menu_item_ui(
-                        MenuItem { text: "Three methods", shortcut: "⇧3", ..MenuItem::default() },
+                        MenuItem {
+                            text: Word::new("Three methods").into(),
+                            shortcut: Word::new("⇧3").into(),
+                            ..MenuItem::default()
+                        },
                         ui,
                     );
                     menu_line_ui(ui);
                     menu_item_ui(
                         MenuItem {
-                            text: "Only one pane",
+                            text: Word::new("Only one pane").into(),
                             icon: Some(Icon::Close),
                             ..MenuItem::default()
                         },
@@ -183,90 +201,122 @@ fn library_ui(_mock: &mut Mock, ui: &mut Ui) {
     ui.spacing_mut().item_spacing.y = 2.0;
     ui.horizontal(|ui| {
         ui.add_space(space::S);
-        ui.vertical(|ui| section_header_ui("Library", ui));
+        ui.vertical(|ui| section_header_ui(Word::new("Library"), ui));
     });
-    let actions = [(Icon::Pencil, "Rename"), (Icon::Trash, "Remove")];
+    let actions = [(Icon::Pencil, Word::new("Rename")), (Icon::Trash, Word::new("Remove"))];
     for (index, (name, detail, part, warning)) in CLIPS.into_iter().enumerate() {
         clip_row_ui(
-            ClipRow { name, detail, part, warning, selected: index == 2, actions: &actions },
+            ClipRow {
+                name: Text::Data(name),
+                detail: Text::Data(detail),
+                part,
+                warning: Text::Data(warning),
+                selected: index == 2,
+                actions: &actions,
+            },
             ui,
         );
     }
     ui.add_space(space::M);
     ui.scope(|ui| {
-        drop_zone_ui("Drop BVH, ASF + AMC, GLB", &["open…", "samples"], false, ui);
+        drop_zone_ui(
+            Word::new("Drop BVH, ASF + AMC, GLB"),
+            &[Word::new("open…"), Word::new("samples")],
+            false,
+            ui,
+        );
     });
     ui.add_space(space::M);
-    progress_row_ui("Distance matrix", Some(0.62), "1,240 of 2,000", ui);
+    progress_row_ui(Word::new("Distance matrix"), Some(0.62), Word::new("1,240 of 2,000"), ui);
 }
 
 fn parameters_ui(mock: &mut Mock, ui: &mut Ui) {
     ui.spacing_mut().item_spacing.y = space::S;
-    section_header_ui("Blend", ui);
-    if let Some(mode) =
-        segmented_ui("Method", mock.mode, &[(0, "cut"), (1, "dissolve"), (2, "inertialize")], ui)
-    {
+    section_header_ui(Word::new("Blend"), ui);
+    if let Some(mode) = segmented_ui(
+        Word::new("Method"),
+        mock.mode,
+        &[(0, Word::new("cut")), (1, Word::new("dissolve")), (2, Word::new("inertialize"))],
+        ui,
+    ) {
         mock.mode = mode;
     }
     ui.add_space(space::XS);
     let seconds = format!("{:.2} s", mock.window / 60.0);
     let p = palette_of(ui);
     let marks = [Mark { value: 15.0, color: p.muted }, Mark { value: 10.0, color: p.muted }];
-    let row = SliderRow::new("Blend window", 1.0..=60.0, 15.0)
+    let row = SliderRow::new(Word::new("Blend window"), 1.0..=60.0, 15.0)
         .whole()
-        .unit("frames")
+        .unit(Word::new("frames"))
         .secondary(&seconds)
         .marks(&marks);
-    let row = row.help("How long A fades into B. Longer is smoother but slower to respond; shorter is snappier but pops.");
+    let row = row.help(Word::new("How long A fades into B. Longer is smoother but slower to respond; shorter is snappier but pops."));
     mock.window = slider_row_ui(mock.window, &row, ui).changed.unwrap_or(mock.window);
-    let row = SliderRow::new("Leave A at", 0.0..=3.9, 2.0).step(0.01).unit("s");
-    mock.leave = slider_row_ui(mock.leave, &row, ui).changed.unwrap_or(mock.leave);
     let row =
-        SliderRow::new("Enter B at", 0.0..=1.4, 0.2).step(0.01).unit("s").source(Source::Auto);
-    slider_row_ui(0.13, &row.help("Found automatically: best match of both windows, 4.1 cm."), ui);
-    let row = SliderRow::new("Half-life", 0.02..=2.0, 0.2).step(0.01).unit("s").log();
+        SliderRow::new(Word::new("Leave A at"), 0.0..=3.9, 2.0).step(0.01).unit(Word::new("s"));
+    mock.leave = slider_row_ui(mock.leave, &row, ui).changed.unwrap_or(mock.leave);
+    let row = SliderRow::new(Word::new("Enter B at"), 0.0..=1.4, 0.2)
+        .step(0.01)
+        .unit(Word::new("s"))
+        .source(Source::Auto);
+    slider_row_ui(
+        0.13,
+        &row.help(Word::new("Found automatically: best match of both windows, 4.1 cm.")),
+        ui,
+    );
+    let row = SliderRow::new(Word::new("Half-life"), 0.02..=2.0, 0.2)
+        .step(0.01)
+        .unit(Word::new("s"))
+        .log();
     mock.half_life = slider_row_ui(mock.half_life, &row, ui).changed.unwrap_or(mock.half_life);
-    if let Some(curve) =
-        segmented_ui("Curve", mock.curve, &[(0, "smooth"), (1, "linear"), (2, "smoother")], ui)
-    {
+    if let Some(curve) = segmented_ui(
+        Word::new("Curve"),
+        mock.curve,
+        &[(0, Word::new("smooth")), (1, Word::new("linear")), (2, Word::new("smoother"))],
+        ui,
+    ) {
         mock.curve = curve;
     }
     ui.add_space(space::XS);
     ui.spacing_mut().item_spacing.y = 2.0;
-    if let Some(on) = switch_row_ui("Align to A", mock.align, ui) {
+    if let Some(on) = switch_row_ui(Word::new("Align to A"), mock.align, ui) {
         mock.align = on;
     }
-    switch_row_ui("Blend root by velocity", true, ui);
-    switch_row_ui("Foot lock", false, ui);
+    switch_row_ui(Word::new("Blend root by velocity"), true, ui);
+    switch_row_ui(Word::new("Foot lock"), false, ui);
     ui.add_space(space::XS);
     if let Some(space) = choice_row_ui(
-        "Blend in",
+        Word::new("Blend in"),
         mock.space,
-        &[(0, "joint rotations"), (1, "world space"), (2, "exponential map")],
+        &[
+            (0, Word::new("joint rotations")),
+            (1, Word::new("world space")),
+            (2, Word::new("exponential map")),
+        ],
         ui,
     ) {
         mock.space = space;
     }
     ui.add_space(space::S);
     ui.horizontal(|ui| {
-        button_ui(Button::new("Swap").icon(Icon::Swap), ui);
-        button_ui(Button::new("Reset").quiet().icon(Icon::Undo), ui);
-        button_ui(Button::icon_only(Icon::Trash, "Remove").quiet(), ui);
+        button_ui(Button::new(Word::new("Swap")).icon(Icon::Swap), ui);
+        button_ui(Button::new(Word::new("Reset")).quiet().icon(Icon::Undo), ui);
+        button_ui(Button::icon_only(Icon::Trash, Word::new("Remove")).quiet(), ui);
     });
 }
 
 fn stage_ui(mock: &Mock, phone: bool, ui: &mut Ui) {
     let p = palette_of(ui);
     let stage = ui.available_rect_before_wrap();
-    let panes: &[(&str, &str, &str, Mood)] = &[
-        ("30", "0.50 s", "smoothest", Mood::Good),
-        ("15", "0.25 s", "", Mood::Plain),
-        ("10", "0.17 s", "roughest", Mood::Bad),
+    let panes = [
+        ("30", "0.50 s", Word::new("smoothest"), Mood::Good),
+        ("15", "0.25 s", Word::default(), Mood::Plain),
+        ("10", "0.17 s", Word::new("roughest"), Mood::Bad),
     ];
     let count = if phone { 1 } else { 3 };
     let mut footer_top = stage.bottom();
     let width = (stage.width() / count as f32).floor();
-    for (index, &(strong, secondary, chip, mood)) in panes.iter().take(count).enumerate() {
+    for (index, (strong, secondary, chip, mood)) in panes.into_iter().take(count).enumerate() {
         let pane = Rect::from_min_size(
             pos2(stage.left() + index as f32 * width, stage.top()),
             vec2(width, stage.height()),
@@ -275,44 +325,56 @@ fn stage_ui(mock: &Mock, phone: bool, ui: &mut Ui) {
         if index > 0 {
             ui.painter().vline(pane.left(), pane.y_range(), Stroke::new(1.0, p.line));
         }
-        pane_header_ui(&PaneTitle { strong, text: "frames", secondary, chip, mood }, pane, ui);
+        let (strong, secondary) = (Message::data(strong), Message::data(secondary));
+        let text = Message::word("frames");
+        let title = PaneTitle { strong: &strong, text: &text, secondary: &secondary, chip, mood };
+        pane_header_ui(&title, pane, ui);
         let rank = [Rank::Best, Rank::Middle, Rank::Worst][index];
         let metrics = [
             Metric {
                 value: ["41", "126", "214"][index],
-                label: "velocity jump °/s",
+                label: Word::new("velocity jump °/s"),
                 rank,
-                hint: "How much the speed of the joints jumps.",
+                hint: Word::new("How much the speed of the joints jumps."),
             },
             Metric {
                 value: ["0.6", "0.9", "1.8"][index],
-                label: "slide cm",
+                label: Word::new("slide cm"),
                 rank: Rank::Middle,
-                hint: "",
+                hint: Word::default(),
             },
             Metric {
                 value: ["0.38", "0.19", "0.12"][index],
-                label: "lag s",
+                label: Word::new("lag s"),
                 rank: Rank::Middle,
-                hint: "",
+                hint: Word::default(),
             },
-            Metric { value: "0°", label: "spin", rank: Rank::Middle, hint: "" },
+            Metric {
+                value: "0°",
+                label: Word::new("spin"),
+                rank: Rank::Middle,
+                hint: Word::default(),
+            },
         ];
         footer_top = footer_top.min(pane_footer_ui(&metrics, pane, ui).top());
     }
     if mock.caption && !phone {
         let above = stage.with_max_y(footer_top - space::S);
         caption_ui(
-            "Same walk, same instant. Watch the right foot: the shorter the window, the harder the burst into the run.",
+            Word::new(
+                "Same walk, same instant. Watch the right foot: the shorter the window, the harder the burst into the run.",
+            ),
             above,
             ui,
         );
     }
     if mock.notices {
+        let read = Message::word("walk.bvh was read: 470 frames.");
         let long = "pirouette.bvh: 3 of 4,712 numbers could not be read and were taken from the frame before. The rest is as it was recorded.";
+        let long = Message::word(long);
         let notices = [
-            Notice { text: "walk.bvh was read: 470 frames.", mood: Mood::Good, action: "" },
-            Notice { text: long, mood: Mood::Warning, action: "Show the lines" },
+            Notice { text: &read, mood: Mood::Good, action: Word::default() },
+            Notice { text: &long, mood: Mood::Warning, action: Word::new("Show the lines") },
         ];
         toasts_ui(&notices, stage, ui);
     }
@@ -361,7 +423,11 @@ fn time_ui(mock: &mut Mock, phone: bool, ui: &mut Ui) {
         now: mock.now,
         frame: (mock.now * 120.0).round() as usize,
         frames: 612,
-        caption: if phone { "A walk → B run" } else { "right foot · speed" },
+        caption: if phone {
+            Word::new("A walk → B run").into()
+        } else {
+            Word::new("right foot · speed").into()
+        },
     };
     match transport_ui(&transport, ui) {
         Some(TransportEvent::SetPlaying(playing)) => mock.playing = playing,
@@ -372,8 +438,8 @@ fn time_ui(mock: &mut Mock, phone: bool, ui: &mut Ui) {
     let tracks = [
         Track {
             part: Part::A,
-            label: "A walk",
-            name: "walk",
+            label: Word::new("A walk").into(),
+            name: Word::new("walk").into(),
             start: 0.0,
             end: to,
             fade_in: 0.0,
@@ -381,8 +447,8 @@ fn time_ui(mock: &mut Mock, phone: bool, ui: &mut Ui) {
         },
         Track {
             part: Part::B,
-            label: "B run",
-            name: "run",
+            label: Word::new("B run").into(),
+            name: Word::new("run").into(),
             start: from,
             end: 5.8,
             fade_in: to - from,
@@ -404,10 +470,10 @@ fn time_ui(mock: &mut Mock, phone: bool, ui: &mut Ui) {
     };
     let result: Vec<[f64; 2]> = wave(1.0, 0.0, 0.0..6.0).iter().map(blend).collect();
     let series = [
-        Series { name: "A", color: p.a, ink: p.a_ink, strong: false, points: &a },
-        Series { name: "B", color: p.b, ink: p.b_ink, strong: false, points: &b },
+        Series { name: Word::new("A").into(), color: p.a, ink: p.a_ink, strong: false, points: &a },
+        Series { name: Word::new("B").into(), color: p.b, ink: p.b_ink, strong: false, points: &b },
         Series {
-            name: "result",
+            name: Word::new("result").into(),
             color: p.accent,
             ink: p.accent_ink,
             strong: true,
@@ -415,11 +481,16 @@ fn time_ui(mock: &mut Mock, phone: bool, ui: &mut Ui) {
         },
     ];
     let moments = [
-        Moment { time: 1.2, color: p.muted, name: "foot planted" },
-        Moment { time: 3.05, color: p.bad, name: "foot slides" },
+        Moment { time: 1.2, color: p.muted, name: Word::new("foot planted") },
+        Moment { time: 3.05, color: p.bad, name: Word::new("foot slides") },
     ];
-    let curves =
-        Curves { title: "speed", unit: "m/s", decimals: 2, include: Some(0.0), series: &series };
+    let curves = Curves {
+        title: Word::new("speed"),
+        unit: Word::new("m/s"),
+        decimals: 2,
+        include: Some(0.0),
+        series: &series,
+    };
     let timeline = Timeline {
         duration: 5.8,
         now: mock.now,

@@ -1,13 +1,16 @@
 //! How far apart every moment of one clip is from every moment of another: a field of colours with
 //! curves and pins on it.
 
+use super::assistive::describe;
 use super::paint::{Run, focus_ring, line_of, put};
 use super::time_axis::nice_step;
+use crate::ui::language::{Text, Word, say};
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{
     Align2, Color32, CornerRadius, CursorIcon, Id, Pos2, Rangef, Rect, Response, Role, Sense,
     Shape, Stroke, StrokeKind, TextureId, Ui, WidgetInfo, pos2, vec2,
 };
+use segue_text::Message;
 use std::ops::Range;
 
 /// Colours of a picture of distances: more than an eye tells apart.
@@ -55,7 +58,7 @@ pub(crate) type Feet = [Vec<Range<f64>>; 2];
 #[derive(Clone, Debug)]
 pub(crate) struct HeatMap<'a> {
     /// The accessible name.
-    pub(crate) label: &'a str,
+    pub(crate) label: Word,
     /// The colours, of the part `field` of both times; none while they are unknown.
     pub(crate) texture: Option<TextureId>,
     /// From and to of what the texture shows, of both clips, seconds.
@@ -63,7 +66,7 @@ pub(crate) struct HeatMap<'a> {
     /// How long both clips are, seconds.
     pub(crate) spans: [f64; 2],
     /// The names of both axes.
-    pub(crate) names: [&'a str; 2],
+    pub(crate) names: [Word; 2],
     /// When feet stand.
     pub(crate) feet: &'a [Feet; 2],
     /// Curves, the most important last.
@@ -141,9 +144,9 @@ pub(crate) fn heat_map_ui(map: &HeatMap<'_>, most_height: f32, ui: &mut Ui) -> V
     let field =
         Rect::from_min_size(pos2(whole.left() + margin.x, whole.top()), vec2(width, height));
     let axes = Axes { rect: field, spans: map.spans };
-    let id = ui.make_persistent_id(map.label);
+    let id = ui.make_persistent_id(map.label.english());
     let response = ui.interact(field, id, Sense::click_and_drag());
-    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, map.label));
+    describe(&response, &WidgetInfo::labeled(Role::Image, true, say(map.label, ui)));
     let events = events(map, &axes, &response, ui);
 
     let painter = ui.painter_at(field.expand(1.0));
@@ -233,9 +236,13 @@ fn sides_ui(map: &HeatMap<'_>, axes: &Axes, stripes: f32, ui: &Ui) {
         let ink = [palette.a_ink, palette.b_ink][clip];
         for mark in 0..=(map.spans[clip] / step) as usize {
             let secs = mark as f64 * step;
-            let words = if mark == 0 { map.names[clip].to_owned() } else { format!("{secs}") };
-            let color = if mark == 0 { ink } else { palette.muted };
-            let galley = line_of(&[Run::new(&words, Type::Small, color)], 60.0, ui);
+            let number = format!("{secs}");
+            let (words, color) = if mark == 0 {
+                (Text::Word(map.names[clip]), ink)
+            } else {
+                (Text::Data(&number), palette.muted)
+            };
+            let galley = line_of(&[Run::new(words, Type::Small, color)], 60.0, ui);
             let at = axes.at([secs, secs]);
             if clip == 0 {
                 let anchor = if mark == 0 { Align2::LEFT_TOP } else { Align2::CENTER_TOP };
@@ -310,7 +317,7 @@ fn events(map: &HeatMap<'_>, axes: &Axes, response: &Response, ui: &Ui) -> Vec<H
 }
 
 /// What the colours mean: from alike to far apart.
-pub(crate) fn heat_legend_ui(low: &str, high: &str, ui: &mut Ui) {
+pub(crate) fn heat_legend_ui([low, high]: &[Message; 2], ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let height = (14.0 * theme.scale()).round();
     let row = super::paint::full_width(height, ui);

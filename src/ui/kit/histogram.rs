@@ -2,14 +2,15 @@
 
 use super::assistive::{Adjustable, requested};
 use super::paint::{Run, focus_ring, full_width, line_of, put};
-use crate::ui::theme::{Type, palette_of, radius, theme_of};
+use crate::ui::language::{Text, Word, say};
+use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{Align2, CursorIcon, EventFilter, Key, Rect, Sense, Stroke, Ui, pos2};
 
 /// What it shows.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Histogram<'a> {
     /// The accessible name.
-    pub(crate) label: &'a str,
+    pub(crate) label: Word,
     /// How many values lie in each bin.
     pub(crate) counts: &'a [u32],
     /// How wide a bin is, in the unit of the value.
@@ -19,7 +20,7 @@ pub(crate) struct Histogram<'a> {
     /// The smallest place of the line, and how far one step of it is.
     pub(crate) step: f64,
     /// The unit.
-    pub(crate) unit: &'a str,
+    pub(crate) unit: Word,
 }
 
 /// What was asked of it.
@@ -43,7 +44,7 @@ pub(crate) fn histogram_ui(histogram: &Histogram<'_>, ui: &mut Ui) -> HistogramR
     let end = bins as f64 * histogram.bin;
     let x_of = |value: f64| plot.left() + (value / end).clamp(0.0, 1.0) as f32 * plot.width();
 
-    let id = ui.make_persistent_id(histogram.label);
+    let id = ui.make_persistent_id(histogram.label.english());
     let response = ui
         .interact(plot, id, Sense::click_and_drag())
         .on_hover_cursor(CursorIcon::ResizeHorizontal);
@@ -73,11 +74,11 @@ pub(crate) fn histogram_ui(histogram: &Histogram<'_>, ui: &mut Ui) -> HistogramR
     }
     let value = out.changed.unwrap_or(histogram.value);
     let adjustable = Adjustable {
-        name: histogram.label,
+        name: say(histogram.label, ui),
         value,
         range,
         step: histogram.step,
-        said: format!("{value:.1} {}", histogram.unit).trim_end().to_owned(),
+        said: format!("{value:.1} {}", say(histogram.unit, ui)).trim_end().to_owned(),
         help: String::new(),
     };
     adjustable.describe(&response, ui);
@@ -114,10 +115,12 @@ pub(crate) fn histogram_ui(histogram: &Histogram<'_>, ui: &mut Ui) -> HistogramR
     for (share, anchor) in
         [(0.0, Align2::LEFT_TOP), (0.5, Align2::CENTER_TOP), (1.0, Align2::RIGHT_TOP)]
     {
-        let unit = if share == 1.0 { histogram.unit } else { "" };
-        let words = format!("{:.0} {unit}", share * end);
-        let galley =
-            line_of(&[Run::new(words.trim_end(), Type::Small, palette.muted)], plot.width(), ui);
+        let number = format!("{:.0}", share * end);
+        let mut runs = vec![Run::new(Text::Data(&number), Type::Small, palette.muted)];
+        if share == 1.0 {
+            runs.push(Run::new(histogram.unit, Type::Small, palette.muted).after(space::XS));
+        }
+        let galley = line_of(&runs, plot.width(), ui);
         put(
             ui.painter(),
             pos2(plot.left() + share as f32 * plot.width(), plot.bottom() + 1.0),
@@ -151,12 +154,12 @@ mod tests {
         let counts = [1, 2, 3, 9, 40, 30, 20, 10, 5, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1];
         let of = |value| {
             shown_bins(&Histogram {
-                label: "",
+                label: Word::default(),
                 counts: &counts,
                 bin: 0.5,
                 value,
                 step: 0.1,
-                unit: "cm",
+                unit: Word::default(),
             })
         };
         assert_eq!(of(1.0), 8);

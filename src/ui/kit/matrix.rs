@@ -1,12 +1,15 @@
 //! A large square of values as a picture that one can go into: tiles that are made when they are
 //! seen, marks on them, and the names of its parts along both sides.
 
+use super::assistive::describe;
 use super::paint::{Run, focus_ring, line_of, put};
+use crate::ui::language::{Word, say};
 use crate::ui::theme::{Type, palette_of, radius, theme_of};
 use eframe::egui::{
     Align2, Color32, CursorIcon, EventFilter, Id, Key, Pos2, Rect, Role, Sense, Stroke, StrokeKind,
     TextureId, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
+use segue_text::Message;
 
 /// Texels of a tile, to a side.
 pub(crate) const TILE: usize = 256;
@@ -38,14 +41,14 @@ pub(crate) struct MatrixMark {
 /// All that is shown.
 pub(crate) struct Matrix<'a> {
     /// The accessible name.
-    pub(crate) label: &'a str,
+    pub(crate) label: Word,
     /// Rows, and columns.
     pub(crate) size: usize,
     /// Tiles with so many cells to a texel, a power of two, or more are quickly made; finer ones
     /// take their time.
     pub(crate) known: usize,
     /// Names of the parts, each with the row at which it begins.
-    pub(crate) parts: &'a [(usize, &'a str)],
+    pub(crate) parts: &'a [(usize, Message)],
     /// Marks, the most important first.
     pub(crate) marks: &'a [MatrixMark],
     /// The mark that is lit.
@@ -110,7 +113,7 @@ pub(crate) fn matrix_ui(
     let side = (side.min(ui.available_width()) - margin).max(60.0).floor();
     let (_, whole) = ui.allocate_space(Vec2::splat(side + margin));
     let field = Rect::from_min_size(whole.min + Vec2::splat(margin), Vec2::splat(side));
-    let id = ui.make_persistent_id(matrix.label);
+    let id = ui.make_persistent_id(matrix.label.english());
     let size = matrix.size.max(1) as f32;
     let kept: Option<(usize, f32, Window)> = ui.data(|data| data.get_temp(id));
     let mut window = kept
@@ -121,7 +124,7 @@ pub(crate) fn matrix_ui(
     let is_whole = window.cells >= 0.999 * size / side;
     let sense = if is_whole { Sense::click() } else { Sense::click_and_drag() };
     let response = ui.interact(field, id, sense);
-    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, matrix.label));
+    describe(&response, &WidgetInfo::labeled(Role::Image, true, say(matrix.label, ui)));
     window = moved(window, (size, side), field, &response, ui);
     ui.data_mut(|data| data.insert_temp::<(usize, f32, Window)>(id, (matrix.size, side, window)));
     let place =
@@ -166,8 +169,8 @@ pub(crate) fn matrix_ui(
         }
     }
     let line = Stroke::new(theme.hairline(), palette.line_strong);
-    for &(start, _) in matrix.parts.iter().skip(1) {
-        let at = place(start as f32, start as f32);
+    for (start, _) in matrix.parts.iter().skip(1) {
+        let at = place(*start as f32, *start as f32);
         painter.vline(at.x, field.y_range(), line);
         painter.hline(field.x_range(), at.y, line);
     }
@@ -302,9 +305,9 @@ fn names_ui(
     ui: &Ui,
 ) {
     let palette = palette_of(ui);
-    for (index, &(start, name)) in matrix.parts.iter().enumerate() {
+    for (index, (start, name)) in matrix.parts.iter().enumerate() {
         let end = matrix.parts.get(index + 1).map_or(matrix.size, |next| next.0);
-        let (from, to) = (place(start as f32, start as f32), place(end as f32, end as f32));
+        let (from, to) = (place(*start as f32, *start as f32), place(end as f32, end as f32));
         for vertical in [false, true] {
             let (low, high) = if vertical {
                 (from.y.max(field.top()), to.y.min(field.bottom()))
@@ -361,7 +364,7 @@ mod tests {
             })
             .collect();
         let matrix = Matrix {
-            label: "",
+            label: Word::default(),
             size: 1000,
             known: 1,
             parts: &[],

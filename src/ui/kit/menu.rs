@@ -1,7 +1,9 @@
 //! Lists that open: menus behind a button, and a choice among many.
 
+use super::assistive::describe;
 use super::icon::{Icon, paint_icon};
 use super::paint::{Run, faded, focus_ring, full_width, line_of, put};
+use crate::ui::language::{Text, say};
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{
     Align2, CursorIcon, InnerResponse, Popup, PopupCloseBehavior, Rect, RectAlign, Response, Role,
@@ -12,11 +14,11 @@ use eframe::egui::{
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct MenuItem<'a> {
     /// What it does.
-    pub(crate) text: &'a str,
+    pub(crate) text: Text<'a>,
     /// The sign before it.
     pub(crate) icon: Option<Icon>,
     /// The keys that do the same, at the right.
-    pub(crate) shortcut: &'a str,
+    pub(crate) shortcut: Text<'a>,
     /// The one in force: it wears a tick.
     pub(crate) chosen: bool,
 }
@@ -80,7 +82,8 @@ pub(crate) fn menu_item_ui(item: MenuItem<'_>, ui: &mut Ui) -> Response {
         shortcut,
     );
     focus_ring(rect.shrink(2.0), radius::M, &response, ui);
-    response.widget_info(|| WidgetInfo::selected(Role::MenuItem, enabled, item.chosen, item.text));
+    let name = say(item.text, ui);
+    describe(&response, &WidgetInfo::selected(Role::MenuItem, enabled, item.chosen, name));
     response
 }
 
@@ -94,18 +97,30 @@ pub(crate) fn menu_line_ui(ui: &mut Ui) {
 
 /// A parameter with many possible values: the label left, the chosen value right, the others in a
 /// menu. What was chosen anew.
-pub(crate) fn choice_row_ui<T: Copy + PartialEq>(
-    label: &str,
+pub(crate) fn choice_row_ui<'a, T: Copy + PartialEq>(
+    label: impl Into<Text<'a>>,
     chosen: T,
-    options: &[(T, &str)],
+    options: &[(T, impl Into<Text<'a>> + Copy)],
+    ui: &mut Ui,
+) -> Option<T> {
+    let options: Vec<(T, Text<'_>)> =
+        options.iter().map(|&(value, text)| (value, text.into())).collect();
+    shown_choice_row_ui(label.into(), chosen, &options, ui)
+}
+
+fn shown_choice_row_ui<T: Copy + PartialEq>(
+    label: Text<'_>,
+    chosen: T,
+    options: &[(T, Text<'_>)],
     ui: &mut Ui,
 ) -> Option<T> {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let enabled = ui.is_enabled();
-    let id = ui.make_persistent_id(label);
+    let id = ui.make_persistent_id(label.english());
     let row = full_width(theme.row_height(), ui);
     let response = ui.interact(row, id, Sense::click()).on_hover_cursor(CursorIcon::PointingHand);
-    let current = options.iter().find(|option| option.0 == chosen).map_or("", |option| option.1);
+    let current =
+        options.iter().find(|option| option.0 == chosen).map_or(Text::EMPTY, |option| option.1);
 
     let chevron = (14.0 * theme.scale()).round();
     let name = line_of(
@@ -141,11 +156,9 @@ pub(crate) fn choice_row_ui<T: Copy + PartialEq>(
     );
     put(ui.painter(), row.left_center(), Align2::LEFT_CENTER, label_galley);
     focus_ring(field, radius::M, &response, ui);
-    response.widget_info(|| {
-        let mut info = WidgetInfo::labeled(Role::ComboBox, enabled, label);
-        info.current_text_value = Some(current.to_owned());
-        info
-    });
+    let mut info = WidgetInfo::labeled(Role::ComboBox, enabled, say(label, ui));
+    info.current_text_value = Some(say(current, ui));
+    describe(&response, &info);
 
     let picked = menu_ui(&response.with_new_rect(field), RectAlign::BOTTOM_END, |ui| {
         let mut picked = None;

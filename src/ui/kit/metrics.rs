@@ -1,8 +1,9 @@
 //! Measured numbers in a row: large, with what they measure below.
 
+use super::assistive::describe;
 use super::paint::{Run, line_of, put};
-use super::words::Words;
-use crate::ui::language::tr;
+use super::words;
+use crate::ui::language::{Text, Word, say};
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Align2, Galley, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 use std::sync::Arc;
@@ -25,11 +26,11 @@ pub(crate) struct Metric<'a> {
     /// The number as it is written, sign and degree included.
     pub(crate) value: &'a str,
     /// What it measures and in which unit: `slide cm`.
-    pub(crate) label: &'a str,
+    pub(crate) label: Word,
     /// How it compares.
     pub(crate) rank: Rank,
     /// What it means, in a sentence, for the hint.
-    pub(crate) hint: &'a str,
+    pub(crate) hint: Word,
 }
 
 /// Numbers side by side, in further rows where there is no room. The best and the worst are marked
@@ -49,10 +50,10 @@ pub(crate) fn metric_strip_ui(metrics: &[Metric<'_>], ui: &mut Ui) {
         );
         put(ui.painter(), pos2(rect.left(), rect.top() + 0.56 * height), Align2::LEFT_TOP, label);
         let response = ui.interact(rect, ui.make_persistent_id(("metric", index)), Sense::hover());
-        let said = format!("{} {} {}", metric.value, tr(metric.label, ui), tr(word, ui));
-        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &said));
+        let said = format!("{} {} {}", metric.value, say(metric.label, ui), say(word, ui));
+        describe(&response, &WidgetInfo::labeled(Role::Label, true, said));
         if !metric.hint.is_empty() {
-            response.on_hover_text(tr(metric.hint, ui));
+            response.on_hover_text(say(metric.hint, ui));
         }
     }
 }
@@ -67,14 +68,14 @@ fn row_height(ui: &Ui) -> f32 {
 }
 
 /// The number with its verdict, what it measures, and the verdict's word.
-fn galleys(metric: &Metric<'_>, ui: &Ui) -> (Arc<Galley>, Arc<Galley>, &'static str) {
-    let (palette, words) = (palette_of(ui), Words::of(ui));
+fn galleys(metric: &Metric<'_>, ui: &Ui) -> (Arc<Galley>, Arc<Galley>, Word) {
+    let palette = palette_of(ui);
     let (ink, word) = match metric.rank {
-        Rank::Middle => (palette.text, ""),
-        Rank::Best => (palette.good, words.best),
-        Rank::Worst => (palette.bad, words.worst),
+        Rank::Middle => (palette.text, Word::default()),
+        Rank::Best => (palette.good, words::BEST),
+        Rank::Worst => (palette.bad, words::WORST),
     };
-    let mut number = vec![Run::new(metric.value, Type::Metric, ink)];
+    let mut number = vec![Run::new(Text::Data(metric.value), Type::Metric, ink)];
     if !word.is_empty() {
         number.push(Run::new(word, Type::Small, ink).after(space::XS + 1.0));
     }

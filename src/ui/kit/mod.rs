@@ -46,7 +46,7 @@ mod tree;
 mod weight_curve;
 mod words;
 
-pub(crate) use assistive::set_role;
+pub(crate) use assistive::{describe, set_role};
 pub(crate) use button::{Button, button_ui, icon_button_ui};
 pub(crate) use chip::{Mood, Part, recording_ui};
 pub(crate) use clip_row::{ClipRow, clip_row_ui};
@@ -79,4 +79,5 @@ pub(crate) use timeline::{Moment, Stripe, Timeline, TimelineEvent, Track, timeli
 pub(crate) use transport::{Transport, TransportEvent, transport_ui};
 pub(crate) use tree::{Tree, TreeRow, tree_ui};
 pub(crate) use weight_curve::{WeightCurveEvent, WeightCurveRow, weight_curve_ui};
-pub(crate) use words::ENGLISH;
+#[cfg(all(test, feature = "ui-tests"))]
+pub(crate) use words::DISMISS;

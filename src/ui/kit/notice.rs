@@ -1,26 +1,29 @@
 //! What the app has to say: a caption over the stage, a notice that can be dismissed, a task under
 //! way.
 
+use super::assistive::describe;
 use super::button::{Button, button_ui, icon_button_ui};
 use super::chip::Mood;
 use super::icon::{Icon, paint_icon};
 use super::paint::{Run, full_width, line_of, paragraph, put};
-use super::words::Words;
+use super::words;
+use crate::ui::language::{Text, Word, say};
 use crate::ui::theme::{HIT, Type, palette_of, radius, space, theme_of};
 use eframe::egui::{
     Align, Align2, Area, Color32, Frame, Id, Layout, Margin, Order, Rect, Role, ScrollArea, Sense,
     Shadow, Stroke, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
+use segue_text::Message;
 
 /// Something to be told once.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Notice<'a> {
     /// What happened, and what to do about it. As long as it needs.
-    pub(crate) text: &'a str,
+    pub(crate) text: &'a Message,
     /// How grave it is.
     pub(crate) mood: Mood,
     /// A button beside it; none if empty.
-    pub(crate) action: &'a str,
+    pub(crate) action: Word,
 }
 
 /// What was done to a notice.
@@ -34,7 +37,7 @@ pub(crate) enum NoticeEvent {
 
 /// A notice as wide as the panel it stands in.
 pub(crate) fn notice_ui(notice: &Notice<'_>, ui: &mut Ui) -> Option<NoticeEvent> {
-    let (theme, palette, words) = (theme_of(ui), palette_of(ui), Words::of(ui));
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
     let scale = theme.scale();
     let (ink, wash) = notice.mood.colors(palette);
     let mut event = None;
@@ -57,14 +60,15 @@ pub(crate) fn notice_ui(notice: &Notice<'_>, ui: &mut Ui) -> Option<NoticeEvent>
             Align2::LEFT_TOP.anchor_size(row.left_top() + vec2(0.0, 1.0), vec2(sign, sign));
         paint_icon(notice.mood.icon(), sign_rect, ink, ui.painter());
         let at = put(ui.painter(), row.left_top() + vec2(text_left, 0.0), Align2::LEFT_TOP, text);
-        let label = ui.interact(at, ui.make_persistent_id(("notice", notice.text)), Sense::hover());
-        label.widget_info(|| WidgetInfo::labeled(Role::Alert, true, notice.text));
+        let english = notice.text.to_string();
+        let label = ui.interact(at, ui.make_persistent_id(("notice", &english)), Sense::hover());
+        describe(&label, &WidgetInfo::labeled(Role::Alert, true, say(notice.text, ui)));
         let close =
             Rect::from_min_size(pos2(row.right() - HIT + 4.0, row.top() - 4.0), vec2(HIT, HIT));
-        let close_id = ui.make_persistent_id(("dismiss", notice.text));
+        let close_id = ui.make_persistent_id(("dismiss", &english));
         let hit = super::clip_row::small_icon_ui(
             Icon::Close,
-            words.dismiss,
+            words::DISMISS,
             close_id,
             close,
             Color32::TRANSPARENT,
@@ -135,7 +139,8 @@ pub(crate) fn toasts_ui(
 
 /// One sentence on a round ground, centred on `center_bottom`: what to look at. Wraps on narrow
 /// stages.
-pub(crate) fn caption_ui(text: &str, stage: Rect, ui: &mut Ui) -> Rect {
+pub(crate) fn caption_ui<'a>(text: impl Into<Text<'a>>, stage: Rect, ui: &mut Ui) -> Rect {
+    let text = text.into();
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let padding = vec2(space::L, space::S);
     let galley =
@@ -149,39 +154,53 @@ pub(crate) fn caption_ui(text: &str, stage: Rect, ui: &mut Ui) -> Rect {
     let stroke = Stroke::new(theme.hairline(), palette.line);
     ui.painter().rect(rect, corner, palette.panel_raised, stroke, eframe::egui::StrokeKind::Inside);
     put(ui.painter(), rect.center(), Align2::CENTER_CENTER, galley);
-    let response = ui.interact(rect, ui.make_persistent_id(("caption", text)), Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, text));
+    let id = ui.make_persistent_id(("caption", text.english()));
+    let response = ui.interact(rect, id, Sense::hover());
+    describe(&response, &WidgetInfo::labeled(Role::Label, true, say(text, ui)));
     rect
 }
 
 /// A task under way: what it does, how far it is (`None`: unknown), and a button that stops it. Was
 /// that pressed?
-pub(crate) fn progress_row_ui(label: &str, done: Option<f32>, detail: &str, ui: &mut Ui) -> bool {
-    progress_ui(label, done, detail, true, ui)
+pub(crate) fn progress_row_ui<'a>(
+    label: impl Into<Text<'a>>,
+    done: Option<f32>,
+    detail: impl Into<Text<'a>>,
+    ui: &mut Ui,
+) -> bool {
+    progress_ui(label.into(), done, detail.into(), true, ui)
 }
 
 /// A task that is over before anybody wants to stop it.
-pub(crate) fn brief_progress_ui(label: &str, done: f32, detail: &str, ui: &mut Ui) {
-    progress_ui(label, Some(done), detail, false, ui);
+pub(crate) fn brief_progress_ui<'a>(
+    label: Word,
+    done: f32,
+    detail: impl Into<Text<'a>>,
+    ui: &mut Ui,
+) {
+    progress_ui(label.into(), Some(done), detail.into(), false, ui);
 }
 
 fn progress_ui(
-    label: &str,
+    label: Text<'_>,
     done: Option<f32>,
-    detail: &str,
+    detail: Text<'_>,
     can_be_stopped: bool,
     ui: &mut Ui,
 ) -> bool {
-    let (theme, palette, words) = (theme_of(ui), palette_of(ui), Words::of(ui));
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
     let scale = theme.scale();
     let width = ui.available_width();
     let head_height = theme.row_height();
     let (_, rect) = ui.allocate_space(vec2(width, head_height + 6.0 * scale));
     let head = Rect::from_min_size(rect.min, vec2(width, head_height));
-    let builder =
-        UiBuilder::new().id_salt(label).max_rect(head).layout(Layout::right_to_left(Align::Center));
+    let builder = UiBuilder::new()
+        .id_salt(label.english())
+        .max_rect(head)
+        .layout(Layout::right_to_left(Align::Center));
     let mut inner = ui.new_child(builder);
-    let stopped = can_be_stopped && icon_button_ui(Icon::Close, words.cancel, &mut inner).clicked();
+    let stopped =
+        can_be_stopped && icon_button_ui(Icon::Close, words::CANCEL, &mut inner).clicked();
     let right = if can_be_stopped { inner.min_rect().left() - space::XS } else { head.right() };
     // What it does comes first; how far it is takes what is left, and the bar says it too.
     let galley = line_of(&[Run::new(label, Type::Label, palette.text)], right - head.left(), ui);
@@ -206,11 +225,10 @@ fn progress_ui(
         track.y_range(),
     );
     ui.painter().rect_filled(bar, 2.0 * scale, palette.accent);
-    let response = ui.interact(track, ui.make_persistent_id(("progress", label)), Sense::hover());
-    response.widget_info(|| {
-        let mut info = WidgetInfo::labeled(Role::ProgressIndicator, true, label);
-        info.value = done.map(f64::from);
-        info
-    });
+    let id = ui.make_persistent_id(("progress", label.english()));
+    let response = ui.interact(track, id, Sense::hover());
+    let mut info = WidgetInfo::labeled(Role::ProgressIndicator, true, say(label, ui));
+    info.value = done.map(f64::from);
+    describe(&response, &info);
     stopped
 }

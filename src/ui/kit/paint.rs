@@ -1,6 +1,6 @@
 //! What the widgets share: setting text, the ring around what has the keyboard, fades.
 
-use crate::ui::language::tr;
+use crate::ui::language::{Text, say};
 use crate::ui::theme::{Theme, Type, palette_of, theme_of};
 use eframe::egui::{
     self, Align, Align2, Color32, CornerRadius, FontId, Galley, Id, Mesh, Painter, Pos2, Rect,
@@ -10,34 +10,25 @@ use eframe::egui::{
     text::{LayoutJob, TextFormat, TextWrapping},
     vec2,
 };
-use std::borrow::Cow;
 use std::sync::Arc;
 
 /// One run of text in one font and colour.
 #[derive(Clone, Debug)]
 pub(crate) struct Run<'a> {
     /// What it says.
-    pub(crate) text: &'a str,
+    pub(crate) text: Text<'a>,
     /// Its step of the type scale.
     pub(crate) step: Type,
     /// Its colour.
     pub(crate) color: Color32,
     /// Space before it, in points.
     pub(crate) gap: f32,
-    /// It is the user's own word, such as the name of a file: no language changes it.
-    pub(crate) own: bool,
 }
 
 impl<'a> Run<'a> {
     /// A run that follows without a gap.
-    pub(crate) fn new(text: &'a str, step: Type, color: Color32) -> Self {
-        Self { text, step, color, gap: 0.0, own: false }
-    }
-
-    /// The same as a word of the user's, in whatever language.
-    pub(crate) fn own(mut self, own: bool) -> Self {
-        self.own = own;
-        self
+    pub(crate) fn new(text: impl Into<Text<'a>>, step: Type, color: Color32) -> Self {
+        Self { text: text.into(), step, color, gap: 0.0 }
     }
 
     /// The same with space before it.
@@ -64,14 +55,13 @@ pub(crate) fn line_of(runs: &[Run<'_>], max_width: f32, ui: &Ui) -> Arc<Galley> 
     for run in runs {
         let mut format = format(theme, run.step, run.color);
         format.line_height = Some(baseline_height(format.font_id.size, largest));
-        let text = if run.own { Cow::Borrowed(run.text) } else { tr(run.text, ui) };
-        job.append(&text, run.gap, format);
+        job.append(&say(run.text, ui), run.gap, format);
     }
     ui.fonts_mut(|fonts| fonts.layout_job(job))
 }
 
 /// The line height that puts text of `size` on one baseline with text of size `largest`, set as
-/// [`format`] sets it.
+/// [`format()`] sets it.
 ///
 /// egui aligns the lower edges of line boxes and centres text in a box of given height. With ascent
 /// `a` and descent `d` (shares of the size), the baseline lies `(height + (a - d) size) / 2` below
@@ -83,15 +73,15 @@ fn baseline_height(size: f32, largest: f32) -> f32 {
 }
 
 /// Sets text in as many lines as it needs.
-pub(crate) fn paragraph(
-    text: &str,
+pub(crate) fn paragraph<'a>(
+    text: impl Into<Text<'a>>,
     step: Type,
     color: Color32,
     max_width: f32,
     ui: &Ui,
 ) -> Arc<Galley> {
     let theme = theme_of(ui);
-    let mut job = LayoutJob::single_section(tr(text, ui).into_owned(), format(theme, step, color));
+    let mut job = LayoutJob::single_section(say(text, ui), format(theme, step, color));
     job.wrap.max_width = max_width.max(1.0);
     ui.fonts_mut(|fonts| fonts.layout_job(job))
 }

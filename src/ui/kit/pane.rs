@@ -1,25 +1,27 @@
 //! What lies over the stage: the one difference of a pane at its top, its numbers at its bottom.
 
+use super::assistive::describe;
 use super::chip::{Mood, chip_size, paint_chip};
 use super::metrics::{Metric, metric_strip_height, metric_strip_ui};
 use super::paint::{Run, line_of, put};
-use crate::ui::language::tr;
+use crate::ui::language::{Text, Word, say};
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{
     Align2, Direction, Rect, Role, Sense, Shape, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
+use segue_text::Message;
 
 /// What a pane says of itself.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct PaneTitle<'a> {
     /// The number or word that tells this pane from the others: `30`.
-    pub(crate) strong: &'a str,
+    pub(crate) strong: &'a Message,
     /// What it counts: `frames`.
-    pub(crate) text: &'a str,
+    pub(crate) text: &'a Message,
     /// The same said in another way, quietly: `0.50 s`.
-    pub(crate) secondary: &'a str,
+    pub(crate) secondary: &'a Message,
     /// The verdict, as a chip; none if empty.
-    pub(crate) chip: &'a str,
+    pub(crate) chip: Word,
     /// The colour of the verdict.
     pub(crate) mood: Mood,
 }
@@ -35,9 +37,9 @@ pub(crate) fn pane_header_ui(title: &PaneTitle<'_>, pane: Rect, ui: &mut Ui) -> 
     let strip = Rect::from_min_size(pane.min, vec2(pane.width(), pane_header_height(ui)));
     scrim(strip, Direction::TopDown, ui);
     let mut right = strip.right() - space::M;
-    if !title.chip.is_empty() && chip_size(title.chip, ui).x < strip.width() * 0.5 {
-        right =
-            paint_chip(title.chip, title.mood, pos2(right, strip.center().y), ui).left() - space::S;
+    if !title.chip.is_empty() && chip_size(title.chip.into(), ui).x < strip.width() * 0.5 {
+        right = paint_chip(title.chip.into(), title.mood, pos2(right, strip.center().y), ui).left()
+            - space::S;
     }
     let left = strip.left() + space::M;
     let mut runs = vec![Run::new(title.strong, Type::Title, palette.text)];
@@ -46,7 +48,7 @@ pub(crate) fn pane_header_ui(title: &PaneTitle<'_>, pane: Rect, ui: &mut Ui) -> 
     }
     let essential = runs.len();
     if !title.secondary.is_empty() {
-        runs.push(Run::new("·", Type::Body, palette.muted).after(space::XS + 1.0));
+        runs.push(Run::new(Text::Data("·"), Type::Body, palette.muted).after(space::XS + 1.0));
         runs.push(Run::new(title.secondary, Type::Body, palette.muted).after(space::XS + 1.0));
     }
     // Where there is little room, what is said twice gives way before anything is cut.
@@ -55,11 +57,13 @@ pub(crate) fn pane_header_ui(title: &PaneTitle<'_>, pane: Rect, ui: &mut Ui) -> 
     put(ui.painter(), pos2(left, strip.center().y), Align2::LEFT_CENTER, galley);
     let response = ui.interact(
         strip,
-        ui.make_persistent_id(("pane", pane.min.x.to_bits(), title.strong)),
+        ui.make_persistent_id(("pane", pane.min.x.to_bits(), title.strong.to_string())),
         Sense::hover(),
     );
-    let said = [title.strong, title.text, title.secondary, &tr(title.chip, ui)].join(" ");
-    response.widget_info(|| WidgetInfo::labeled(Role::Heading, true, &said));
+    let words = [title.strong, title.text, title.secondary].map(Text::from);
+    let said = words.into_iter().chain([title.chip.into()]).map(|part| say(part, ui));
+    let said = said.collect::<Vec<_>>().join(" ");
+    describe(&response, &WidgetInfo::labeled(Role::Heading, true, said));
     strip
 }
 

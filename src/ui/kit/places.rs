@@ -1,18 +1,21 @@
 //! All clips in a row, and the place in them that plays: it runs along its clip and jumps to
 //! another.
 
+use super::assistive::describe;
 use super::paint::{Run, line_of, put};
+use crate::ui::language::{Word, say};
 use crate::ui::theme::{Type, palette_of, theme_of};
 use eframe::egui::{
     Align2, Color32, Rangef, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };
+use segue_text::Message;
 use std::ops::Range;
 
 /// A clip.
 #[derive(Clone, Debug)]
-pub(crate) struct PlaceBar<'a> {
+pub(crate) struct PlaceBar {
     /// What it is called.
-    pub(crate) name: &'a str,
+    pub(crate) name: Message,
     /// How many frames it has.
     pub(crate) frames: usize,
     /// What its stretches are, by colour.
@@ -43,9 +46,9 @@ pub(crate) struct Chosen {
 #[derive(Clone, Debug)]
 pub(crate) struct Places<'a> {
     /// The accessible name.
-    pub(crate) label: &'a str,
+    pub(crate) label: Word,
     /// The clips.
-    pub(crate) bars: &'a [PlaceBar<'a>],
+    pub(crate) bars: &'a [PlaceBar],
     /// 2 where there are mirror images.
     pub(crate) rows: usize,
     /// What plays.
@@ -57,7 +60,7 @@ pub(crate) struct Places<'a> {
     /// Frames that could be gone to.
     pub(crate) marks: &'a [StripPlace],
     /// Names of the colours.
-    pub(crate) legend: &'a [(&'a str, Color32)],
+    pub(crate) legend: &'a [(Word, Color32)],
 }
 
 /// Draws the strip `height` points high; the stretch that is just being chosen by dragging along a
@@ -66,8 +69,8 @@ pub(crate) fn places_ui(places: &Places<'_>, height: f32, ui: &mut Ui) -> Option
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let scale = theme.scale();
     let (_, whole) = ui.allocate_space(vec2(ui.available_width(), height));
-    let response = ui.interact(whole, ui.make_persistent_id(places.label), Sense::drag());
-    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, places.label));
+    let response = ui.interact(whole, ui.make_persistent_id(places.label.english()), Sense::drag());
+    describe(&response, &WidgetInfo::labeled(Role::Image, true, say(places.label, ui)));
     let legend = (16.0 * scale).round();
     let rows = places.rows.max(1);
     let pitch = ((whole.height() - legend) / rows as f32).floor();
@@ -146,7 +149,7 @@ pub(crate) fn places_ui(places: &Places<'_>, height: f32, ui: &mut Ui) -> Option
     let base = whole.bottom() - 0.5 * legend;
     let mut x = whole.right();
     for (name, color) in places.legend.iter().rev() {
-        let galley = line_of(&[Run::new(name, Type::Small, palette.muted)], f32::INFINITY, ui);
+        let galley = line_of(&[Run::new(*name, Type::Small, palette.muted)], f32::INFINITY, ui);
         let rect = put(&painter, pos2(x, base), Align2::RIGHT_CENTER, galley);
         let square = Rect::from_center_size(pos2(rect.left() - 8.0, base), vec2(8.0, 8.0));
         painter.rect_filled(square, 2, color.gamma_multiply(0.75));
@@ -154,7 +157,7 @@ pub(crate) fn places_ui(places: &Places<'_>, height: f32, ui: &mut Ui) -> Option
     }
     if let Some(bar) = named {
         let galley =
-            line_of(&[Run::new(bar.name, Type::Small, palette.text)], x - whole.left(), ui);
+            line_of(&[Run::new(&bar.name, Type::Small, palette.text)], x - whole.left(), ui);
         put(&painter, pos2(whole.left(), base), Align2::LEFT_CENTER, galley);
     }
     dragged

@@ -1,15 +1,24 @@
 //! A small curve of one value along the way, filled down to its zero.
 
+use super::assistive::describe;
 use super::paint::full_width;
+use crate::ui::language::say;
 use crate::ui::theme::{palette_of, radius, theme_of};
 use eframe::egui::{Color32, Pos2, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2};
+use segue_text::Message;
 
 /// More points than a panel is wide only cost time.
 const COLUMNS: usize = 240;
 
 /// Draws values (along the way, value) from 0 to `most`; `label` tells a screen reader what it
 /// shows.
-pub(crate) fn profile_ui(label: &str, points: &[[f64; 2]], most: f64, color: Color32, ui: &mut Ui) {
+pub(crate) fn profile_ui(
+    label: &Message,
+    points: &[[f64; 2]],
+    most: f64,
+    color: Color32,
+    ui: &mut Ui,
+) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let rect = full_width((44.0 * theme.scale()).round(), ui);
     ui.painter().rect_filled(rect, radius::S, palette.panel_raised);
@@ -33,6 +42,7 @@ pub(crate) fn profile_ui(label: &str, points: &[[f64; 2]], most: f64, color: Col
         ui.painter().add(Shape::convex_polygon(corners, wash, Stroke::NONE));
     }
     ui.painter().add(Shape::line(line, Stroke::new(1.5 * theme.scale(), color)));
-    let response = ui.interact(rect, ui.make_persistent_id(label), Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, label));
+    let id = ui.make_persistent_id(label.to_string());
+    let response = ui.interact(rect, id, Sense::hover());
+    describe(&response, &WidgetInfo::labeled(Role::Image, true, say(label, ui)));
 }

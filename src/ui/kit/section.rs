@@ -1,8 +1,9 @@
 //! What divides a panel: headings and hairlines.
 
+use super::assistive::describe;
 use super::icon::{Icon, paint_icon};
 use super::paint::{Run, full_width, line_of, put};
-use crate::ui::language::tr;
+use crate::ui::language::{Text, Word, say};
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{
     Align, Align2, CollapsingHeader, Color32, Layout, Rect, RichText, Role, Sense, Ui, UiBuilder,
@@ -11,46 +12,52 @@ use eframe::egui::{
 
 /// The heading of a section, set in quiet capitals. Returns the line it stands on, for a button at
 /// its right end.
-pub(crate) fn section_header_ui(title: &str, ui: &mut Ui) -> Rect {
+pub(crate) fn section_header_ui(title: Word, ui: &mut Ui) -> Rect {
     let rect = full_width((24.0 * theme_of(ui).scale()).round(), ui);
-    let capitals = tr(title, ui).to_uppercase();
-    let galley =
-        line_of(&[Run::new(&capitals, Type::Caps, palette_of(ui).muted)], rect.width(), ui);
+    let capitals = say(title, ui).to_uppercase();
+    let run = Run::new(Text::Data(&capitals), Type::Caps, palette_of(ui).muted);
+    let galley = line_of(&[run], rect.width(), ui);
     put(ui.painter(), rect.left_center(), Align2::LEFT_CENTER, galley);
-    let id = ui.make_persistent_id(("heading", title));
-    ui.interact(rect, id, Sense::hover())
-        .widget_info(|| WidgetInfo::labeled(Role::Heading, true, title));
+    let id = ui.make_persistent_id(("heading", title.english()));
+    let response = ui.interact(rect, id, Sense::hover());
+    describe(&response, &WidgetInfo::labeled(Role::Heading, true, say(title, ui)));
     rect
 }
 
 /// A quiet word at the right end of a heading's line.
-pub(crate) fn section_mark_ui(words: &str, header: Rect, ui: &mut Ui) {
+pub(crate) fn section_mark_ui(words: Word, header: Rect, ui: &mut Ui) {
     let at = header.shrink2(vec2(space::XS, 0.0));
     let mut ui =
         ui.new_child(UiBuilder::new().max_rect(at).layout(Layout::right_to_left(Align::Center)));
     let (font, muted) = (theme_of(&ui).font(Type::Small), palette_of(&ui).muted);
-    ui.label(RichText::new(tr(words, &ui)).font(font).color(muted));
+    ui.label(RichText::new(say(words, &ui)).font(font).color(muted));
 }
 
 /// A section that is folded until it is asked for. Whether its content was shown.
-pub(crate) fn folded_ui(title: &str, ui: &mut Ui, content: impl FnOnce(&mut Ui)) -> bool {
-    let words = RichText::new(tr(title, ui))
+pub(crate) fn folded_ui<'a>(
+    title: impl Into<Text<'a>>,
+    ui: &mut Ui,
+    content: impl FnOnce(&mut Ui),
+) -> bool {
+    let title = title.into();
+    let words = RichText::new(say(title, ui))
         .font(theme_of(ui).font(Type::Strong))
         .color(palette_of(ui).muted);
-    let header = CollapsingHeader::new(words).id_salt(title).icon(|ui, openness, response| {
-        let sign = if openness < 0.5 { Icon::ChevronRight } else { Icon::ChevronDown };
-        let palette = palette_of(ui);
-        let ink = if response.hovered() { palette.text } else { palette.muted };
-        let side = (14.0 * theme_of(ui).scale()).round();
-        let at = Rect::from_center_size(response.rect.center(), vec2(side, side));
-        paint_icon(sign, at, ink, ui.painter());
-    });
+    let header =
+        CollapsingHeader::new(words).id_salt(title.english()).icon(|ui, openness, response| {
+            let sign = if openness < 0.5 { Icon::ChevronRight } else { Icon::ChevronDown };
+            let palette = palette_of(ui);
+            let ink = if response.hovered() { palette.text } else { palette.muted };
+            let side = (14.0 * theme_of(ui).scale()).round();
+            let at = Rect::from_center_size(response.rect.center(), vec2(side, side));
+            paint_icon(sign, at, ink, ui.painter());
+        });
     let shown = header.show_unindented(ui, content);
     shown.body_response.is_some()
 }
 
 /// A sentence about what stands above or below it.
-pub(crate) fn note_ui(words: &str, color: Color32, ui: &mut Ui) {
-    ui.label(RichText::new(tr(words, ui)).font(theme_of(ui).font(Type::Small)).color(color));
+pub(crate) fn note_ui<'a>(words: impl Into<Text<'a>>, color: Color32, ui: &mut Ui) {
+    ui.label(RichText::new(say(words, ui)).font(theme_of(ui).font(Type::Small)).color(color));
     ui.add_space(space::XS);
 }

@@ -1,9 +1,9 @@
 //! One of a few, all of them visible: cut | dissolve | inertialize.
 
-use super::assistive::set_role;
+use super::assistive::{describe, set_role};
 use super::paint::{Run, faded, focus_ring, full_width, line_of, put};
-use super::words::Words;
-use crate::ui::language::tr;
+use super::words;
+use crate::ui::language::{Word, say};
 use crate::ui::theme::{Type, palette_of, radius, theme_of};
 use eframe::egui::{
     Align2, Color32, CursorIcon, EventFilter, Id, Key, Label, Rect, RichText, Role, Sense, Stroke,
@@ -12,10 +12,10 @@ use eframe::egui::{
 
 /// What a choice among a few is about, above it. `true` when a double click on it asks for the
 /// default.
-pub(crate) fn segmented_label_ui(label: &str, ui: &mut Ui) -> bool {
-    let words = RichText::new(tr(label, ui)).font(theme_of(ui).font(Type::Label));
+pub(crate) fn segmented_label_ui(label: Word, ui: &mut Ui) -> bool {
+    let words = RichText::new(say(label, ui)).font(theme_of(ui).font(Type::Label));
     let response = ui.add(Label::new(words).selectable(false).sense(Sense::CLICK));
-    response.on_hover_text(tr(Words::of(ui).reset_hint, ui)).double_clicked()
+    response.on_hover_text(say(words::RESET_HINT, ui)).double_clicked()
 }
 
 /// A choice among a few, as wide as the panel. `label` is its accessible name; what was chosen
@@ -23,15 +23,15 @@ pub(crate) fn segmented_label_ui(label: &str, ui: &mut Ui) -> bool {
 ///
 /// With the keyboard on it, the arrow keys go from one to the next.
 pub(crate) fn segmented_ui<T: Copy + PartialEq>(
-    label: &str,
+    label: Word,
     chosen: T,
-    options: &[(T, &str)],
+    options: &[(T, Word)],
     ui: &mut Ui,
 ) -> Option<T> {
     if options.is_empty() {
         return None;
     }
-    let id = ui.make_persistent_id(label);
+    let id = ui.make_persistent_id(label.english());
     let picked = ui.scope(|ui| {
         set_role(Role::RadioGroup, label, ui);
         segments_ui(id, chosen, options, ui)
@@ -42,7 +42,7 @@ pub(crate) fn segmented_ui<T: Copy + PartialEq>(
 fn segments_ui<T: Copy + PartialEq>(
     id: Id,
     chosen: T,
-    options: &[(T, &str)],
+    options: &[(T, Word)],
     ui: &mut Ui,
 ) -> Option<T> {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
@@ -109,7 +109,8 @@ fn segments_ui<T: Copy + PartialEq>(
             line_of(&[Run::new(name, step, faded(color, enabled))], rect.width() - 6.0, ui);
         put(ui.painter(), rect.center(), Align2::CENTER_CENTER, galley);
         focus_ring(rect, radius::S, &response, ui);
-        response.widget_info(|| WidgetInfo::selected(Role::RadioButton, enabled, is_chosen, name));
+        let name = say(name, ui);
+        describe(&response, &WidgetInfo::selected(Role::RadioButton, enabled, is_chosen, name));
         // A hairline between two that are both not chosen.
         if index > 0 && !is_chosen && current != Some(index - 1) {
             let tone = if enabled { palette.line } else { Color32::TRANSPARENT };

@@ -1,5 +1,7 @@
 //! A stick under the thumb: how far and which way it is pushed.
 
+use super::assistive::describe;
+use crate::ui::language::{Word, say};
 use crate::ui::theme::{palette_of, theme_of};
 use eframe::egui::{CursorIcon, Pos2, Rect, Role, Sense, Stroke, Ui, Vec2, WidgetInfo, vec2};
 
@@ -15,14 +17,14 @@ pub(crate) fn stick_size(ui: &Ui) -> f32 {
 
 /// Draws it about `center`, pushed as `shown` says while no hand is on it: each from -1 to 1, to
 /// the right and up. What the hand asks for, no longer than 1; nothing while it is let go.
-pub(crate) fn stick_ui(label: &str, center: Pos2, shown: Vec2, ui: &mut Ui) -> Option<Vec2> {
+pub(crate) fn stick_ui(label: Word, center: Pos2, shown: Vec2, ui: &mut Ui) -> Option<Vec2> {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let radius = RADIUS * theme.scale();
     let rect = Rect::from_center_size(center, Vec2::splat(2.0 * radius));
     let response = ui
-        .interact(rect, ui.make_persistent_id(label), Sense::drag())
+        .interact(rect, ui.make_persistent_id(label.english()), Sense::drag())
         .on_hover_cursor(CursorIcon::Grab);
-    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, label));
+    describe(&response, &WidgetInfo::labeled(Role::Image, true, say(label, ui)));
     let reach = radius - 0.5 * KNOB * theme.scale();
     let held = response.dragged() || response.is_pointer_button_down_on();
     let pushed = response.interact_pointer_pos().filter(|_| held).map(|pos| {

@@ -1,12 +1,15 @@
 //! Clips end to end, as bars, with an arc for every way from one place to another.
 
+use super::assistive::describe;
 use super::paint::{Run, focus_ring, line_of, put};
+use crate::ui::language::{Word, say};
 use crate::ui::theme::{Type, palette_of, radius, theme_of};
 use eframe::egui::epaint::CubicBezierShape;
 use eframe::egui::{
     Align2, Color32, CursorIcon, Pos2, Rangef, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2,
     vec2,
 };
+use segue_text::Message;
 
 /// What becomes of who comes here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,9 +50,9 @@ pub(crate) struct Arc {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Strip<'a> {
     /// The accessible name.
-    pub(crate) label: &'a str,
+    pub(crate) label: Word,
     /// The bars: name, and how long each is.
-    pub(crate) bars: &'a [(&'a str, usize)],
+    pub(crate) bars: &'a [(Message, usize)],
     /// Their parts.
     pub(crate) stretches: &'a [Stretch],
     /// The arcs.
@@ -103,9 +106,9 @@ pub(crate) fn strip_ui(strip: &Strip<'_>, height: f32, ui: &mut Ui) -> StripResp
         starts.get(bar).map_or(whole.left(), |start| start.1 + (frame - start.0 as f32) * per_frame)
     };
 
-    let id = ui.make_persistent_id(strip.label);
+    let id = ui.make_persistent_id(strip.label.english());
     let response = ui.interact(whole, id, Sense::click());
-    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, strip.label));
+    describe(&response, &WidgetInfo::labeled(Role::Image, true, say(strip.label, ui)));
     let top = whole.top() + 3.0;
     let room = (bars.min - top).max(8.0);
     let curve = |arc: &Arc| {

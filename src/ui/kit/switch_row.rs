@@ -1,16 +1,18 @@
 //! Yes or no: a label, the word, a switch.
 
+use super::assistive::describe;
 use super::paint::{Run, faded, focus_ring, full_width, line_of, put};
-use super::words::Words;
+use super::words;
+use crate::ui::language::{Word, say};
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Align2, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 
 /// A row that is switched by a click anywhere on it. Returns what it was switched to, if it was.
-pub(crate) fn switch_row_ui(label: &str, on: bool, ui: &mut Ui) -> Option<bool> {
-    let (theme, palette, words) = (theme_of(ui), palette_of(ui), Words::of(ui));
+pub(crate) fn switch_row_ui(label: Word, on: bool, ui: &mut Ui) -> Option<bool> {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
     let enabled = ui.is_enabled();
     let scale = theme.scale();
-    let id = ui.make_persistent_id(label);
+    let id = ui.make_persistent_id(label.english());
     let row = full_width(theme.row_height(), ui);
     let response = ui.interact(row, id, Sense::click());
     let switched = response.clicked().then_some(!on);
@@ -37,7 +39,7 @@ pub(crate) fn switch_row_ui(label: &str, on: bool, ui: &mut Ui) -> Option<bool> 
         faded(off_tone.lerp_to_gamma(palette.accent_text, t), enabled),
     );
 
-    let (word, tone) = if shown { (words.on, palette.text) } else { (words.off, palette.muted) };
+    let (word, tone) = if shown { (words::ON, palette.text) } else { (words::OFF, palette.muted) };
     let word = line_of(
         &[Run::new(word, if shown { Type::Strong } else { Type::Label }, faded(tone, enabled))],
         f32::INFINITY,
@@ -56,6 +58,6 @@ pub(crate) fn switch_row_ui(label: &str, on: bool, ui: &mut Ui) -> Option<bool> 
     );
     put(ui.painter(), row.left_center(), Align2::LEFT_CENTER, label_galley);
     focus_ring(track, 10, &response, ui);
-    response.widget_info(|| WidgetInfo::selected(Role::Switch, enabled, shown, label));
+    describe(&response, &WidgetInfo::selected(Role::Switch, enabled, shown, say(label, ui)));
     switched
 }

@@ -1,10 +1,11 @@
 //! The labs, side by side; behind a menu where there is no room for all.
 
-use super::assistive::set_role;
+use super::assistive::{describe, set_role};
 use super::button::{Button, button_ui};
 use super::icon::Icon;
 use super::menu::{MenuItem, menu_item_ui, menu_ui};
 use super::paint::{Run, focus_ring, line_of, put};
+use crate::ui::language::{Word, say};
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{
     Align2, Color32, CursorIcon, RectAlign, Response, Role, Sense, Stroke, StrokeKind, Ui,
@@ -19,15 +20,15 @@ const LEAST_TABS: usize = 3;
 /// shown, with all in its menu. `names` are those of the tabs and of the menu with the rest. What
 /// was chosen anew.
 pub(crate) fn tabs_ui<T: Copy + PartialEq>(
-    [name, more]: [&str; 2],
+    [name, more]: [Word; 2],
     chosen: T,
-    options: &[(T, &str)],
+    options: &[(T, Word)],
     width: f32,
     ui: &mut Ui,
 ) -> Option<T> {
     let theme = theme_of(ui);
     let pad = 10.0 * theme.scale();
-    let size_of = |text: &str| {
+    let size_of = |text: Word| {
         line_of(&[Run::new(text, Type::Strong, Color32::PLACEHOLDER)], f32::INFINITY, ui).size().x
             + 2.0 * pad
     };
@@ -37,7 +38,7 @@ pub(crate) fn tabs_ui<T: Copy + PartialEq>(
     let shown = fitting(&widths, at, width, theme.row_height() + space::S);
     let mut picked = None;
     if shown.len() < LEAST_TABS.min(options.len()) {
-        let current = options.get(at).map_or("", |option| option.1);
+        let current = options.get(at).map_or(Word::default(), |option| option.1);
         let opener = button_ui(Button::new(current).trailing(Icon::ChevronDown).name(name), ui);
         picked = menu_of(&opener, chosen, options.iter().copied());
         return picked.filter(|&value| value != chosen);
@@ -88,7 +89,7 @@ fn fitting(widths: &[f32], chosen: usize, width: f32, rest: f32) -> Vec<usize> {
     Vec::new()
 }
 
-fn tab_ui(text: &str, width: f32, is_chosen: bool, ui: &mut Ui) -> bool {
+fn tab_ui(text: Word, width: f32, is_chosen: bool, ui: &mut Ui) -> bool {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let (rect, response) = ui.allocate_exact_size(vec2(width, theme.row_height()), Sense::click());
     let response = response.on_hover_cursor(CursorIcon::PointingHand);
@@ -103,19 +104,21 @@ fn tab_ui(text: &str, width: f32, is_chosen: bool, ui: &mut Ui) -> bool {
     let galley = line_of(&[Run::new(text, step, ink)], f32::INFINITY, ui);
     put(ui.painter(), rect.center(), Align2::CENTER_CENTER, galley);
     focus_ring(rect, radius::M, &response, ui);
-    response.widget_info(|| WidgetInfo::selected(Role::Tab, ui.is_enabled(), is_chosen, text));
+    let name = say(text, ui);
+    describe(&response, &WidgetInfo::selected(Role::Tab, ui.is_enabled(), is_chosen, name));
     response.clicked()
 }
 
-fn menu_of<'a, T: Copy + PartialEq>(
+fn menu_of<T: Copy + PartialEq>(
     opener: &Response,
     chosen: T,
-    options: impl Iterator<Item = (T, &'a str)>,
+    options: impl Iterator<Item = (T, Word)>,
 ) -> Option<T> {
     let mut picked = None;
     menu_ui(opener, RectAlign::BOTTOM_START, |ui| {
         for (value, text) in options {
-            let item = MenuItem { text, chosen: value == chosen, ..MenuItem::default() };
+            let item =
+                MenuItem { text: text.into(), chosen: value == chosen, ..MenuItem::default() };
             if menu_item_ui(item, ui).clicked() {
                 picked = Some(value);
             }

@@ -2,6 +2,7 @@
 
 use super::notice::notice_ui;
 use super::*;
+use crate::ui::language::{Text, Word};
 use crate::ui::theme::Theme;
 use eframe::egui::{
     self, Event, Key, Modifiers, PointerButton, Pos2, Role, Ui, accesskit::Toggled, pos2, vec2,
@@ -10,6 +11,7 @@ use egui_kittest::{
     Harness,
     kittest::{NodeT as _, Queryable as _},
 };
+use segue_text::Message;
 
 /// A panel 300 points wide with one widget, and a record of what it returned.
 fn bench<S: 'static>(state: S, widget: impl Fn(&mut S, &mut Ui) + 'static) -> Harness<'static, S> {
@@ -53,9 +55,9 @@ struct Slid {
 
 fn slider(value: f64, source: Source) -> Harness<'static, Slid> {
     bench(Slid { value, source, ..Slid::default() }, |state, ui| {
-        let row = SliderRow::new("Blend window", 0.0..=100.0, 15.0)
+        let row = SliderRow::new(Word::new("Blend window"), 0.0..=100.0, 15.0)
             .step(1.0)
-            .unit("frames")
+            .unit(Word::new("frames"))
             .source(state.source);
         let out = slider_row_ui(state.value, &row, ui);
         state.changes += usize::from(out.changed.is_some());
@@ -179,8 +181,9 @@ fn the_word_auto_gives_a_value_back_to_the_app() {
 #[test]
 fn a_text_field_is_finished_by_enter_and_not_by_escape() {
     let mut harness = bench((String::new(), 0), |(text, committed), ui| {
-        *committed += usize::from(text_field_ui("Name", "a name", text, ui).committed);
-        value_row_ui("Distance", "4.1", "cm", ui);
+        *committed +=
+            usize::from(text_field_ui(Word::new("Name"), Word::new("a name"), text, ui).committed);
+        value_row_ui(Word::new("Distance"), "4.1", Word::new("cm"), ui);
     });
     for (typed, key, expected) in [("draft", Key::Escape, 0), ("done", Key::Enter, 1)] {
         harness.get_by_label("Name").click();
@@ -212,7 +215,7 @@ fn screen_readers_can_read_and_set_a_slider() {
 #[test]
 fn a_switch_turns_by_click_and_by_key() {
     let mut harness = bench(false, |on, ui| {
-        if let Some(asked) = switch_row_ui("Foot lock", *on, ui) {
+        if let Some(asked) = switch_row_ui(Word::new("Foot lock"), *on, ui) {
             *on = asked;
         }
     });
@@ -231,9 +234,12 @@ fn a_switch_turns_by_click_and_by_key() {
 #[test]
 fn segments_are_chosen_by_click_and_by_arrows() {
     let mut harness = bench((0, 0), |(chosen, asked), ui| {
-        if let Some(value) =
-            segmented_ui("Method", *chosen, &[(0, "cut"), (1, "dissolve"), (2, "inertialize")], ui)
-        {
+        if let Some(value) = segmented_ui(
+            Word::new("Method"),
+            *chosen,
+            &[(0, Word::new("cut")), (1, Word::new("dissolve")), (2, Word::new("inertialize"))],
+            ui,
+        ) {
             (*chosen, *asked) = (value, *asked + 1);
         }
     });
@@ -261,9 +267,9 @@ fn segments_are_chosen_by_click_and_by_arrows() {
 fn a_choice_opens_and_closes_and_says_what_was_chosen() {
     let mut harness = bench('a', |chosen, ui| {
         if let Some(value) = choice_row_ui(
-            "Blend in",
+            Word::new("Blend in"),
             *chosen,
-            &[('a', "joint rotations"), ('b', "world space")],
+            &[('a', Word::new("joint rotations")), ('b', Word::new("world space"))],
             ui,
         ) {
             *chosen = value;
@@ -282,10 +288,10 @@ fn a_choice_opens_and_closes_and_says_what_was_chosen() {
 #[test]
 fn a_clip_its_letter_and_its_actions_are_told_apart() {
     let mut harness = bench(Vec::new(), |done: &mut Vec<String>, ui| {
-        let actions = [(Icon::Pencil, "Rename"), (Icon::Trash, "Remove")];
+        let actions = [(Icon::Pencil, Word::new("Rename")), (Icon::Trash, Word::new("Remove"))];
         let row = ClipRow {
-            name: "walk",
-            detail: "3.9 s",
+            name: Text::Data("walk"),
+            detail: Text::Data("3.9 s"),
             part: Part::A,
             actions: &actions,
             ..ClipRow::default()
@@ -316,8 +322,13 @@ fn notices_are_dismissed_and_acted_on_and_tasks_are_stopped() {
         (Vec::new(), false),
         |(events, stopped): &mut (Vec<NoticeEvent>, bool), ui| {
             let text = "A long notice that needs more than one line in a panel as narrow as this one is, and is not cut.";
-            events.extend(notice_ui(&Notice { text, mood: Mood::Warning, action: "Show" }, ui));
-            *stopped |= progress_row_ui("Distance matrix", Some(0.5), "half", ui);
+            let text = &Message::word(text);
+            events.extend(notice_ui(
+                &Notice { text, mood: Mood::Warning, action: Word::new("Show") },
+                ui,
+            ));
+            *stopped |=
+                progress_row_ui(Word::new("Distance matrix"), Some(0.5), Word::new("half"), ui);
         },
     );
     harness.get_by_label("Dismiss").click();
@@ -347,7 +358,13 @@ fn timeline() -> Harness<'static, Timed> {
         let points: Vec<[f64; 2]> =
             (0..=100_u32).map(|i| [f64::from(i) / 10.0, f64::from(i)]).collect();
         let ink = egui::Color32::WHITE;
-        let series = [Series { name: "result", color: ink, ink, strong: true, points: &points }];
+        let series = [Series {
+            name: Word::new("result").into(),
+            color: ink,
+            ink,
+            strong: true,
+            points: &points,
+        }];
         let view = Timeline {
             duration: 10.0,
             now: state.now,
@@ -356,8 +373,8 @@ fn timeline() -> Harness<'static, Timed> {
             transition_editable: true,
             out_point: Some(9.0),
             curves: Some(Curves {
-                title: "speed",
-                unit: "m/s",
+                title: Word::new("speed"),
+                unit: Word::new("m/s"),
                 decimals: 1,
                 include: None,
                 series: &series,
@@ -446,7 +463,7 @@ fn transport_asks_to_play_step_and_change_speed() {
                     now: 0.5,
                     frame: 15,
                     frames: 90,
-                    caption: "speed",
+                    caption: Word::new("speed").into(),
                 };
                 events.extend(transport_ui(&view, ui));
             },
@@ -469,11 +486,19 @@ fn transport_asks_to_play_step_and_change_speed() {
 
 #[test]
 fn tabs_fold_into_a_menu_where_there_is_no_room() {
-    const LABS: [(usize, &str); 4] = [(0, "View"), (1, "Blend"), (2, "Transition"), (3, "Graph")];
+    const LABS: [(usize, Word); 4] = [
+        (0, Word::new("View")),
+        (1, Word::new("Blend")),
+        (2, Word::new("Transition")),
+        (3, Word::new("Graph")),
+    ];
     for (width, folded) in [(600.0, false), (120.0, true)] {
         let mut harness = bench(1, move |chosen, ui| {
-            let picked =
-                ui.horizontal(|ui| tabs_ui(["Lab", "More labs"], *chosen, &LABS, width, ui)).inner;
+            let picked = ui
+                .horizontal(|ui| {
+                    tabs_ui([Word::new("Lab"), Word::new("More labs")], *chosen, &LABS, width, ui)
+                })
+                .inner;
             *chosen = picked.unwrap_or(*chosen);
         });
         assert_eq!(harness.query_by_role_and_label(Role::Button, "Lab").is_some(), folded);
@@ -502,10 +527,13 @@ fn of_many_tabs_those_without_room_stand_in_a_menu() {
         "Graph",
         "Path",
     ];
-    let labs: Vec<(usize, &str)> = NAMES.into_iter().enumerate().collect();
+    let labs: Vec<(usize, Word)> = NAMES.into_iter().map(Word::new).enumerate().collect();
     let mut harness = bench(0, move |chosen, ui| {
-        let picked =
-            ui.horizontal(|ui| tabs_ui(["Lab", "More labs"], *chosen, &labs, 280.0, ui)).inner;
+        let picked = ui
+            .horizontal(|ui| {
+                tabs_ui([Word::new("Lab"), Word::new("More labs")], *chosen, &labs, 280.0, ui)
+            })
+            .inner;
         *chosen = picked.unwrap_or(*chosen);
     });
     assert!(harness.query_by_label("Blend").is_some() && harness.query_by_label("Path").is_none());

@@ -1,12 +1,12 @@
 //! The row above the timeline: play, where we are, and how fast.
 
-use super::assistive::readable_ui;
+use super::assistive::{describe, readable_ui};
 use super::button::{Button, button_ui, icon_button_ui};
 use super::icon::{Icon, paint_icon};
 use super::menu::{MenuItem, menu_item_ui, menu_ui};
 use super::paint::{Run, focus_ring, line_of, put};
-use super::words::Words;
-use crate::ui::language::tr;
+use super::words;
+use crate::ui::language::{Text, say};
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{
     Align, Align2, CursorIcon, Layout, RectAlign, Role, Sense, Ui, UiBuilder, WidgetInfo, pos2,
@@ -32,7 +32,7 @@ pub(crate) struct Transport<'a> {
     /// How many frames there are.
     pub(crate) frames: usize,
     /// What the curves below show, at the right end: `right foot · speed m/s`.
-    pub(crate) caption: &'a str,
+    pub(crate) caption: Text<'a>,
 }
 
 /// What was asked of time.
@@ -50,7 +50,7 @@ pub(crate) enum TransportEvent {
 
 /// Play, steps, speed, the time and the frame; the caption at the right where there is room.
 pub(crate) fn transport_ui(transport: &Transport<'_>, ui: &mut Ui) -> Option<TransportEvent> {
-    let (theme, palette, words) = (theme_of(ui), palette_of(ui), Words::of(ui));
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
     let scale = theme.scale();
     let height = transport_height(ui);
     let width = ui.available_width();
@@ -70,14 +70,17 @@ pub(crate) fn transport_ui(transport: &Transport<'_>, ui: &mut Ui) -> Option<Tra
         }
         ui.add_space(space::XS);
         if !narrow {
-            if icon_button_ui(Icon::StepBack, words.step_back, ui).clicked() {
+            if icon_button_ui(Icon::StepBack, words::STEP_BACK, ui).clicked() {
                 event = Some(TransportEvent::Step(-1));
             }
-            if icon_button_ui(Icon::StepForward, words.step_forward, ui).clicked() {
+            if icon_button_ui(Icon::StepForward, words::STEP_FORWARD, ui).clicked() {
                 event = Some(TransportEvent::Step(1));
             }
-            if button_ui(Button::icon_only(Icon::Loop, words.repeat).selected(transport.repeat), ui)
-                .clicked()
+            if button_ui(
+                Button::icon_only(Icon::Loop, words::REPEAT).selected(transport.repeat),
+                ui,
+            )
+            .clicked()
             {
                 event = Some(TransportEvent::SetRepeat(!transport.repeat));
             }
@@ -87,10 +90,10 @@ pub(crate) fn transport_ui(transport: &Transport<'_>, ui: &mut Ui) -> Option<Tra
         }
         ui.add_space(space::XS);
         let time = format!("{:.2} s", transport.now);
-        let frame = format!("{} {} / {}", tr(words.frame, ui), transport.frame, transport.frames);
-        let mut runs = vec![Run::new(&time, Type::Strong, palette.text)];
+        let frame = format!("{} {} / {}", say(words::FRAME, ui), transport.frame, transport.frames);
+        let mut runs = vec![Run::new(Text::Data(&time), Type::Strong, palette.text)];
         if !narrow {
-            runs.push(Run::new(&frame, Type::Body, palette.muted).after(space::M));
+            runs.push(Run::new(Text::Data(&frame), Type::Body, palette.muted).after(space::M));
         }
         let galley = line_of(&runs, f32::INFINITY, ui);
         // As wide as the widest it becomes, so that what follows holds still.
@@ -113,7 +116,7 @@ pub(crate) fn transport_height(ui: &Ui) -> f32 {
 
 /// The round button that starts and stops time. Was it pressed?
 pub(crate) fn play_button_ui(playing: bool, ui: &mut Ui) -> bool {
-    let (palette, words) = (palette_of(ui), Words::of(ui));
+    let palette = palette_of(ui);
     let side = (34.0 * theme_of(ui).scale()).round();
     let (rect, response) = ui.allocate_exact_size(vec2(side, side), Sense::click());
     let response = response.on_hover_cursor(CursorIcon::PointingHand);
@@ -130,24 +133,24 @@ pub(crate) fn play_button_ui(playing: bool, ui: &mut Ui) -> bool {
         ui.painter(),
     );
     focus_ring(rect, (side / 2.0) as u8, &response, ui);
-    let name = if playing { words.pause } else { words.play };
-    response.widget_info(|| WidgetInfo::labeled(Role::Button, ui.is_enabled(), name));
+    let name = if playing { words::PAUSE } else { words::PLAY };
+    describe(&response, &WidgetInfo::labeled(Role::Button, ui.is_enabled(), say(name, ui)));
     let clicked = response.clicked();
-    response.on_hover_text(tr(name, ui));
+    response.on_hover_text(say(name, ui));
     clicked
 }
 
 fn speed_ui(speed: f64, ui: &mut Ui) -> Option<f64> {
-    let words = Words::of(ui);
     let said = format!("{speed}×");
-    let name = format!("{}: {said}", tr(words.speed, ui));
-    let opener = button_ui(Button::new(&said).quiet().name(&name).hint(words.speed), ui);
+    let name = format!("{}: {said}", say(words::SPEED, ui));
+    let button = Button::new(Text::Data(&said)).quiet();
+    let opener = button_ui(button.name(Text::Data(&name)).hint(words::SPEED), ui);
     let mut picked = None;
     menu_ui(&opener, RectAlign::TOP_START, |ui| {
         for value in SPEEDS {
             if menu_item_ui(
                 MenuItem {
-                    text: &format!("{value}×"),
+                    text: Text::Data(&format!("{value}×")),
                     chosen: value == speed,
                     ..MenuItem::default()
                 },

@@ -1,8 +1,9 @@
 //! Things in a hierarchy, one of them chosen: joints of a skeleton.
 
+use super::assistive::describe;
 use super::icon::{Icon, paint_icon};
 use super::paint::{Run, faded, focus_ring, line_of, put};
-use crate::ui::language::{say, tr};
+use crate::ui::language::{Text, Word, say};
 use crate::ui::theme::{HIT, Type, palette_of, radius, space, theme_of};
 use eframe::egui::accesskit::Action;
 use eframe::egui::{
@@ -16,7 +17,7 @@ use std::collections::BTreeSet;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tree<'a> {
     /// Its accessible name.
-    pub(crate) label: &'a str,
+    pub(crate) label: Word,
     /// The parent of every item.
     pub(crate) parents: &'a [Option<usize>],
     /// The item that is chosen.
@@ -31,7 +32,7 @@ pub(crate) struct TreeRow {
     /// The item's name.
     pub(crate) name: String,
     /// A word at the right end.
-    pub(crate) detail: String,
+    pub(crate) detail: Word,
     /// What appears when the pointer rests on it.
     pub(crate) hint: Message,
 }
@@ -57,7 +58,7 @@ pub(crate) fn tree_ui(
     row_of: impl Fn(usize) -> TreeRow,
     ui: &mut Ui,
 ) -> Option<usize> {
-    let id = ui.make_persistent_id(tree.label);
+    let id = ui.make_persistent_id(tree.label.english());
     let mut folded: BTreeSet<usize> = ui.data_mut(|data| data.get_temp(id)).unwrap_or_default();
     let rows = open_rows(tree.parents, &folded);
     let height = (HIT * theme_of(ui).scale()).round();
@@ -76,7 +77,8 @@ pub(crate) fn tree_ui(
             .max_height(tree.max_height)
             .auto_shrink([false, true]);
         let shown = area.show_rows(ui, height, rows.len(), |ui, range| {
-            ui.response().widget_info(|| WidgetInfo::labeled(Role::Tree, true, tree.label));
+            let name = say(tree.label, ui);
+            describe(&ui.response(), &WidgetInfo::labeled(Role::Tree, true, name));
             let (_, space) =
                 ui.allocate_space(vec2(ui.available_width(), height * range.len() as f32));
             let place = |index: usize| {
@@ -249,7 +251,7 @@ fn row_ui(
         );
     }
     let detail = line_of(
-        &[Run::new(&says.detail, Type::Small, faded(palette.muted, enabled))],
+        &[Run::new(says.detail, Type::Small, faded(palette.muted, enabled))],
         rect.width() * 0.5,
         ui,
     );
@@ -263,7 +265,7 @@ fn row_ui(
         if is_chosen { (Type::Strong, palette.accent_ink) } else { (Type::Body, palette.text) };
     let left = chevron.right() + 2.0;
     let name = line_of(
-        &[Run::new(&says.name, step, faded(ink, enabled)).own(true)],
+        &[Run::new(Text::Data(&says.name), step, faded(ink, enabled))],
         right.left() - space::S - left,
         ui,
     );
@@ -272,9 +274,9 @@ fn row_ui(
     let said = if says.detail.is_empty() {
         says.name.clone()
     } else {
-        format!("{}, {}", says.name, tr(&says.detail, ui))
+        format!("{}, {}", says.name, say(says.detail, ui))
     };
-    response.widget_info(|| WidgetInfo::labeled(Role::TreeItem, enabled, &said));
+    describe(&response, &WidgetInfo::labeled(Role::TreeItem, enabled, said));
     response.ctx.accesskit_node_builder(response.id, |node| {
         node.set_selected(is_chosen);
         node.set_level(row.depth + 1);

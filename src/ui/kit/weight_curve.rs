@@ -1,8 +1,9 @@
 //! A weight over time as a curve through keys that a hand can move.
 
+use super::assistive::describe;
 use super::keys::keys_pressed;
 use super::paint::{Run, focus_ring, line_of, put};
-use crate::ui::language::{say, tr};
+use crate::ui::language::{Word, say};
 use crate::ui::theme::{Type, palette_of, radius, theme_of};
 use eframe::egui::{
     Align2, CursorIcon, Id, Key, Mesh, Pos2, Rect, Role, Sense, Shape, Stroke, StrokeKind, Ui,
@@ -17,7 +18,7 @@ type CurveKey = (usize, usize);
 #[derive(Clone, Debug)]
 pub(crate) struct WeightCurveRow<'a> {
     /// The accessible name.
-    pub(crate) label: &'a str,
+    pub(crate) label: Word,
     /// The keys, in the order of time.
     pub(crate) keys: &'a [CurveKey],
     /// The curve through them: weights at equal distances, 0 to 1.
@@ -25,7 +26,7 @@ pub(crate) struct WeightCurveRow<'a> {
     /// Share of the time that is shown now, 0 to 1.
     pub(crate) now: Option<f64>,
     /// What stands at the ends of the weight: full, and none.
-    pub(crate) ends: [&'a str; 2],
+    pub(crate) ends: [Word; 2],
 }
 
 /// What was asked of it.
@@ -50,9 +51,9 @@ pub(crate) fn weight_curve_ui(row: &WeightCurveRow<'_>, ui: &mut Ui) -> Vec<Weig
     let (_, whole) = ui.allocate_space(vec2(ui.available_width(), (HEIGHT * scale).round()));
     // Keys at the ends are whole, too.
     let field = whole.shrink((REACH * 0.5 * scale).round());
-    let id = ui.make_persistent_id(row.label);
+    let id = ui.make_persistent_id(row.label.english());
     let ground = ui.interact(whole, id, Sense::click_and_drag());
-    ground.widget_info(|| WidgetInfo::labeled(Role::Image, true, row.label));
+    describe(&ground, &WidgetInfo::labeled(Role::Image, true, say(row.label, ui)));
     let place = |key: CurveKey| {
         let share = |per_cent: usize| per_cent as f32 / 100.0;
         pos2(
@@ -153,12 +154,11 @@ pub(crate) fn weight_curve_ui(row: &WeightCurveRow<'_>, ui: &mut Ui) -> Vec<Weig
         let response = ui.interact(handle, id.with(index), Sense::focusable_noninteractive());
         let name = msg!(
             "{label}: {weight} % at {time} %",
-            label = tr(row.label, ui).into_owned(),
+            label = row.label,
             weight = key.1,
             time = key.0
         );
-        let name = say(&name, ui);
-        response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, &name));
+        describe(&response, &WidgetInfo::labeled(Role::Slider, true, say(&name, ui)));
         if let Some(changed) = response.has_focus().then(|| worked(row.keys, index, ui)).flatten() {
             events.extend([changed, WeightCurveEvent::Settled]);
         }

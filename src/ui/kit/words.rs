@@ -1,92 +1,46 @@
-//! The few words that the kit itself says. Everything else is handed in by the panels, in the
-//! language of the app.
+//! The few words that the kit itself says. All others are handed in by the panels.
 
-use eframe::egui::{Context, Id, Ui};
+use crate::ui::language::Word;
 
-/// What the kit's widgets say by themselves: states, accessible names and hints.
-#[derive(Debug, PartialEq, Eq)]
-pub(crate) struct Words {
-    /// A switch that is on.
-    pub(crate) on: &'static str,
-    /// A switch that is off.
-    pub(crate) off: &'static str,
-    /// A value that the app chooses.
-    pub(crate) auto: &'static str,
-    /// The best of several.
-    pub(crate) best: &'static str,
-    /// The worst of several.
-    pub(crate) worst: &'static str,
-    /// Start time running.
-    pub(crate) play: &'static str,
-    /// Stop time.
-    pub(crate) pause: &'static str,
-    /// One frame back.
-    pub(crate) step_back: &'static str,
-    /// One frame on.
-    pub(crate) step_forward: &'static str,
-    /// Start again at the end.
-    pub(crate) repeat: &'static str,
-    /// How fast time runs.
-    pub(crate) speed: &'static str,
-    /// Before the frame's number.
-    pub(crate) frame: &'static str,
-    /// The strip that one scrubs along.
-    pub(crate) timeline: &'static str,
-    /// The handle where the loop begins.
-    pub(crate) in_point: &'static str,
-    /// The handle where the loop ends.
-    pub(crate) out_point: &'static str,
-    /// The edge where the transition begins.
-    pub(crate) transition_start: &'static str,
-    /// The edge where the transition ends.
-    pub(crate) transition_end: &'static str,
-    /// Take a notice away.
-    pub(crate) dismiss: &'static str,
-    /// Stop a task.
-    pub(crate) cancel: &'static str,
-    /// Hint on a slider's value.
-    pub(crate) type_value: &'static str,
-    /// Hint on a slider's label.
-    pub(crate) reset_hint: &'static str,
-}
-
-/// The kit's words in English.
-pub(crate) static ENGLISH: Words = Words {
-    on: "on",
-    off: "off",
-    auto: "auto",
-    best: "best",
-    worst: "worst",
-    play: "Play",
-    pause: "Pause",
-    step_back: "One frame back",
-    step_forward: "One frame forward",
-    repeat: "Repeat",
-    speed: "Speed",
-    frame: "frame",
-    timeline: "Timeline",
-    in_point: "Loop start",
-    out_point: "Loop end",
-    transition_start: "Transition start",
-    transition_end: "Transition end",
-    dismiss: "Dismiss",
-    cancel: "Cancel",
-    type_value: "Click to type a value",
-    reset_hint: "Double-click to reset",
-};
-
-fn words_id() -> Id {
-    Id::unique("segue kit words")
-}
-
-impl Words {
-    /// From now on, the widgets of this context speak these words.
-    pub(crate) fn install(&'static self, ctx: &Context) {
-        ctx.data_mut(|data| data.insert_temp::<&'static Self>(words_id(), self));
-    }
-
-    /// The words of this context; English where none were installed.
-    pub(crate) fn of(ui: &Ui) -> &'static Self {
-        ui.ctx().data(|data| data.get_temp::<&'static Self>(words_id())).unwrap_or(&ENGLISH)
-    }
-}
+/// The state of a switch that is on.
+pub(super) const ON: Word = Word::new("on");
+/// The state of a switch that is off.
+pub(super) const OFF: Word = Word::new("off");
+/// The sign of a value that the app chooses.
+pub(super) const AUTO: Word = Word::new("auto");
+/// The sign of the best of several numbers.
+pub(super) const BEST: Word = Word::new("best");
+/// The sign of the worst of several numbers.
+pub(super) const WORST: Word = Word::new("worst");
+/// The button that starts playback.
+pub(super) const PLAY: Word = Word::new("Play");
+/// The button that pauses playback.
+pub(super) const PAUSE: Word = Word::new("Pause");
+/// The button that goes back by a frame.
+pub(super) const STEP_BACK: Word = Word::new("One frame back");
+/// The button that goes on by a frame.
+pub(super) const STEP_FORWARD: Word = Word::new("One frame forward");
+/// The switch by which playback starts again at the end.
+pub(super) const REPEAT: Word = Word::new("Repeat");
+/// The menu of playback speeds.
+pub(super) const SPEED: Word = Word::new("Speed");
+/// The word before the number of a frame.
+pub(super) const FRAME: Word = Word::new("frame");
+/// The accessible name of the timeline.
+pub(super) const TIMELINE: Word = Word::new("Timeline");
+/// The handle where the loop begins.
+pub(super) const IN_POINT: Word = Word::new("Loop start");
+/// The handle where the loop ends.
+pub(super) const OUT_POINT: Word = Word::new("Loop end");
+/// The edge where the transition begins.
+pub(super) const TRANSITION_START: Word = Word::new("Transition start");
+/// The edge where the transition ends.
+pub(super) const TRANSITION_END: Word = Word::new("Transition end");
+/// The button that closes a notice.
+pub(crate) const DISMISS: Word = Word::new("Dismiss");
+/// The button that stops a task.
+pub(super) const CANCEL: Word = Word::new("Cancel");
+/// The hint on a slider's value.
+pub(super) const TYPE_VALUE: Word = Word::new("Click to type a value");
+/// The hint on the label of a slider or a choice.
+pub(super) const RESET_HINT: Word = Word::new("Double-click to reset");

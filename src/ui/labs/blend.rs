@@ -2,6 +2,7 @@
 
 use crate::ui::kit;
 use crate::ui::labs::lab_ui::{Compares, Edge, LabUi, Shown, Title};
+use crate::ui::language::Word;
 use crate::ui::out::Out;
 use crate::ui::rows::{
     Detail, compare_ui, foot_rows_ui, lab_label, pair_ui, param_row_ui, place_rows_ui,
@@ -35,7 +36,7 @@ fn title(shown: &Shown<'_>) -> Title {
 }
 
 /// Returns the hint for first visitors, while it is about what is on the stage.
-pub(crate) fn welcome(session: &Session) -> Option<&'static str> {
+pub(crate) fn welcome(session: &Session) -> Option<Word> {
     is_welcome(session).then_some(text::WELCOME_HINT)
 }
 

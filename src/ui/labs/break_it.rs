@@ -1,7 +1,7 @@
 //! The classic mistakes of the Transition lab: one at a time, and what each of them looks like.
 
 use crate::ui::kit::{self, Button};
-use crate::ui::language::tr;
+use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::rows::{Detail, param_row_ui};
 use crate::ui::text;
@@ -27,7 +27,7 @@ pub(super) fn break_it_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         if !sentence.is_empty() {
             let color = if shows { palette_of(ui).muted } else { palette_of(ui).warning };
             ui.label(
-                RichText::new(tr(sentence, ui)).font(theme_of(ui).font(Type::Small)).color(color),
+                RichText::new(say(sentence, ui)).font(theme_of(ui).font(Type::Small)).color(color),
             );
         }
     }

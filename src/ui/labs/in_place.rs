@@ -2,7 +2,6 @@
 
 use crate::ui::kit;
 use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
-use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::rows::{
     Detail, clip_sets_ui, foot_rows_ui, lab_label, param_row_ui, save_result_ui, slot_row_ui,
@@ -34,7 +33,7 @@ fn in_place_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut U
     clip_sets_ui(session, out, ui);
     slot_row_ui(Slot::A, session, out, ui);
     if let Some(problem) = session.panes().first().and_then(|pane| pane.problem.as_ref()) {
-        kit::note_ui(&say(&problem.to_sentence(), ui), palette_of(ui).warning, ui);
+        kit::note_ui(&problem.to_sentence(), palette_of(ui).warning, ui);
     }
     ui.add_space(space::S);
     param_row_ui(Key::RootWay, &Detail::default(), session, out, ui);

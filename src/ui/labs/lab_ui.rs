@@ -1,5 +1,6 @@
 //! The parts that every lab has on the page, as types.
 
+use crate::ui::language::Word;
 use crate::ui::out::Out;
 use crate::ui::state::UiState;
 use eframe::egui::Ui;
@@ -16,7 +17,7 @@ pub(crate) struct LabUi {
     /// The title of a pane.
     pub(crate) title: fn(&Shown<'_>) -> Title,
     /// What to look at on the stage, in one line.
-    pub(crate) hint: fn(&Session) -> Option<&'static str>,
+    pub(crate) hint: fn(&Session) -> Option<Word>,
     /// Takes a line that was drawn over the ground; `None` where none can be drawn.
     pub(crate) take_line: Option<TakeLine>,
 }

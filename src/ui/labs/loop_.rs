@@ -2,7 +2,6 @@
 
 use crate::ui::kit::{self, Button};
 use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
-use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::rows::clip_sets_ui;
 use crate::ui::rows::{Detail, param_row_ui};
@@ -66,8 +65,7 @@ pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     if let Some(distance_cm) =
         distance_cm.filter(|_| poor && automatic(Key::LoopFrom) && automatic(Key::LoopTo))
     {
-        let words = text::poor_ends(distance_cm);
-        kit::note_ui(&say(&words, ui), palette_of(ui).warning, ui);
+        kit::note_ui(&text::poor_ends(distance_cm), palette_of(ui).warning, ui);
     }
     param_row_ui(Key::LoopMethod, &Detail::default(), session, out, ui);
     // With several methods side by side, what any of them has to set is there.
@@ -104,6 +102,6 @@ pub(super) fn compare_loops(session: &Session, out: &mut Out) {
 fn found_sentence(cycle: Option<Cycle>) -> Message {
     match cycle.map(|cycle| cycle.made) {
         Some(CycleMade::Cut { distance_cm, .. }) => text::ends_found(distance_cm),
-        _ => Message::word(text::FOUND).sentence(),
+        _ => Message::from(text::FOUND).sentence(),
     }
 }

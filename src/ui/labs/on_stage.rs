@@ -4,15 +4,17 @@
 use super::path::ground_line::{GroundLine, ground_line};
 use super::path::hand::path_of;
 use super::{match_, of, path};
+use crate::ui::language::Word;
 use crate::ui::out::Out;
 use crate::ui::state::{Layout, UiState};
 use crate::ui::text;
 use eframe::egui::{Rect, Response, Ui};
 use segue_scene::{Highlights, PathMarks};
 use segue_session::{CycleMade, Pane, Session};
+use segue_text::Message;
 
 /// Returns what to look at, in one line.
-pub(crate) fn hint(session: &Session) -> Option<&'static str> {
+pub(crate) fn hint(session: &Session) -> Option<Word> {
     (of(session.params().lab()).hint)(session)
 }
 
@@ -79,12 +81,12 @@ pub(crate) fn controls_ui(
 }
 
 /// Returns what a lab says about the last thing that was done on the stage.
-pub(crate) fn note(session: &Session, state: &UiState, ui: &Ui) -> Option<String> {
-    path::is_open(session).then(|| path::stage::note(state, ui)).flatten()
+pub(crate) fn note(session: &Session, state: &UiState) -> Option<Message> {
+    path::is_open(session).then(|| path::stage::note(state)).flatten()
 }
 
 /// Returns a warning about the result of a pane, in a word.
-pub(crate) fn warning(session: &Session, pane: &Pane) -> Option<&'static str> {
+pub(crate) fn warning(session: &Session, pane: &Pane) -> Option<Word> {
     let cycle = pane.outcome.as_ref().and_then(|outcome| outcome.cycle);
     // A gait was asked for a speed that neither clip nor anything between them has.
     let is_beyond = matches!(

@@ -8,11 +8,12 @@ pub(crate) mod stage;
 use crate::ui::kit::{self, Button, Icon};
 use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
 use crate::ui::labs::path::hand::path_of;
-use crate::ui::language::{say, tr};
+use crate::ui::language::{Word, say};
 use crate::ui::out::Out;
-use crate::ui::rows::{Detail, param_row_ui};
-use crate::ui::rows::{clip_sets_ui, clip_titles};
-use crate::ui::rows::{foot_rows_ui, lab_label, save_result_ui, slot_row_ui};
+use crate::ui::rows::{
+    Detail, add_clip_ui, clip_sets_ui, foot_rows_ui, lab_label, param_row_ui, save_result_ui,
+    slot_row_ui,
+};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
@@ -63,7 +64,7 @@ pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     let pane = session.panes().first();
     let path = pane.and_then(|pane| path_of(session, pane));
     if let Some(problem) = pane.and_then(|pane| pane.problem.as_ref()) {
-        kit::note_ui(&say(&problem.to_sentence(), ui), palette.warning, ui);
+        kit::note_ui(&problem.to_sentence(), palette.warning, ui);
     }
     ui.add_space(space::S);
     let edited = path.filter(|path| path.is_edited);
@@ -92,7 +93,7 @@ pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         out.reset(Key::Path);
     }
     if let Some(said) = &state.labs.path.said {
-        kit::note_ui(&say(said, ui), palette.warning, ui);
+        kit::note_ui(said, palette.warning, ui);
     }
     if let Some(path) = path {
         warnings_ui(path, ui);
@@ -137,7 +138,9 @@ fn points_ui(path: &PathFacts, session: &Session, state: &mut UiState, out: &mut
         }
         for key in [Key::PinStart, Key::PinEnd] {
             let on = session.params().is_on(key);
-            let button = Button::new(key.param().label).hint(key.param().help).selected(on);
+            let button = Button::new(Word::new(key.param().label))
+                .hint(Word::new(key.param().help))
+                .selected(on);
             if kit::button_ui(button, ui).clicked() {
                 state.labs.path.said = None;
                 out.toggle(key, on);
@@ -150,12 +153,12 @@ fn points_ui(path: &PathFacts, session: &Session, state: &mut UiState, out: &mut
         || text::POINTS_HELP.into(),
         |(index, place)| text::chosen_point(index, points.len(), place),
     );
-    kit::note_ui(&say(&words, ui), palette_of(ui).muted, ui);
+    kit::note_ui(&words, palette_of(ui).muted, ui);
 }
 
 /// What is done with the whole path.
 fn whole_ui(path: &PathFacts, session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    ui.label(RichText::new(tr(text::WHOLE_PATH, ui)).font(theme_of(ui).font(Type::Label)));
+    ui.label(RichText::new(say(text::WHOLE_PATH, ui)).font(theme_of(ui).font(Type::Label)));
     let turn = |degrees: f64| PathEdit::Rotate { radians: degrees.to_radians() };
     let grid_m = session.params().number(Key::PathGrid);
     let spline = path.curve.spline();
@@ -192,17 +195,17 @@ fn warnings_ui(path: &PathFacts, ui: &mut Ui) {
     let fps = path.fitted.motion().clip().fps();
     let warning = palette_of(ui).warning;
     for turn in path.hard_turns.iter().take(MOST_WARNINGS) {
-        kit::note_ui(&say(&text::hard_turn(turn, fps), ui), warning, ui);
+        kit::note_ui(&text::hard_turn(turn, fps), warning, ui);
     }
     if path.hard_turns.len() > MOST_WARNINGS {
         let more = text::more_hard_turns(path.hard_turns.len() - MOST_WARNINGS);
-        kit::note_ui(&say(&more, ui), warning, ui);
+        kit::note_ui(&more, warning, ui);
     }
 }
 
 /// How the path is fitted to the motion, and how well.
 fn fit_ui(path: Option<&PathFacts>, session: &Session, out: &mut Out, ui: &mut Ui) {
-    ui.label(RichText::new(tr(text::FIT, ui)).font(theme_of(ui).font(Type::Strong)));
+    ui.label(RichText::new(say(text::FIT, ui)).font(theme_of(ui).font(Type::Strong)));
     let on = session.compare().is_some_and(|compare| compare.key == Key::ControlPoints);
     // The rows of what is compared have the way back.
     if !on && kit::button_ui(Button::new(text::FOUR_EIGHT_SIXTEEN), ui).clicked() {
@@ -218,7 +221,6 @@ fn fit_ui(path: Option<&PathFacts>, session: &Session, out: &mut Out, ui: &mut U
         path.fitted.places().get(error.frame).map_or(0.0, |place| place.along_m),
     );
     let color = palette_of(ui).a;
-    let words = say(&words, ui);
     kit::profile_ui(&words, path.fitted.errors_cm(), error.most_cm, color, ui);
     kit::note_ui(&words, palette_of(ui).muted, ui);
 }
@@ -239,7 +241,7 @@ fn company_ui(
     ui: &mut Ui,
 ) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
-    ui.label(RichText::new(tr(text::COMPANY, ui)).font(theme.font(Type::Strong)));
+    ui.label(RichText::new(say(text::COMPANY, ui)).font(theme.font(Type::Strong)));
     for (place, companion) in session.extra_characters().iter().enumerate() {
         ui.push_id(("companion", place), |ui| {
             let row = kit::paint::full_width(theme.row_height(), ui);
@@ -253,9 +255,8 @@ fn company_ui(
             let buttons =
                 Rect::from_min_max(pos2(row.right() - 2.0 * side - space::XS, row.top()), row.max);
             let title = session.clip_title(&companion.name);
-            let shown = say(&title, ui);
             let name = kit::paint::line_of(
-                &[kit::paint::Run::new(&shown, Type::Body, palette.text)],
+                &[kit::paint::Run::new(&title, Type::Body, palette.text)],
                 buttons.left() - row.left() - 2.0 * space::L,
                 ui,
             );
@@ -268,13 +269,13 @@ fn company_ui(
             ui.scope_builder(UiBuilder::new().max_rect(buttons), |ui| {
                 ui.horizontal(|ui| {
                     ui.spacing_mut().item_spacing.x = space::XS;
-                    let edit = say(&text::edit_companion(title.clone()), ui);
+                    let edit = text::edit_companion(title.clone());
                     if kit::icon_button_ui(Icon::Swap, &edit, ui).clicked() {
                         state.labs.path.chosen = None;
                         out.commands
                             .push(Command::ExtraCharacters(ExtraCharacterCommand::Edit(place)));
                     }
-                    let leave = say(&text::companion_leaves(title), ui);
+                    let leave = text::companion_leaves(title.clone());
                     if kit::icon_button_ui(Icon::Close, &leave, ui).clicked() {
                         out.commands
                             .push(Command::ExtraCharacters(ExtraCharacterCommand::Remove(place)));
@@ -282,7 +283,7 @@ fn company_ui(
                 });
             });
             if let Err(problem) = &companion.motion {
-                kit::note_ui(&say(&problem.to_sentence(), ui), palette.warning, ui);
+                kit::note_ui(&problem.to_sentence(), palette.warning, ui);
             }
         });
     }
@@ -291,14 +292,8 @@ fn company_ui(
         out.commands
             .push(Command::ExtraCharacters(ExtraCharacterCommand::AddResult(state.saved_pane)));
     }
-    let entries = session.library().entries();
-    let titles = clip_titles(session, ui);
-    let clips = titles.iter().map(String::as_str).enumerate();
-    let options: Vec<(usize, &str)> =
-        std::iter::once((usize::MAX, text::CHOOSE_CLIP)).chain(clips).collect();
-    let picked = kit::choice_row_ui(text::ADD_CLIP, usize::MAX, &options, ui);
-    if let Some(entry) = picked.and_then(|index| entries.get(index)) {
-        out.commands.push(Command::ExtraCharacters(ExtraCharacterCommand::Add(entry.id.clone())));
+    if let Some(id) = add_clip_ui(session, |_| true, ui) {
+        out.commands.push(Command::ExtraCharacters(ExtraCharacterCommand::Add(id)));
     }
     kit::note_ui(text::COMPANY_HELP, palette.muted, ui);
 }

@@ -5,7 +5,7 @@ use crate::ui::kit::{
     WeightCurveRow,
 };
 use crate::ui::labs::lab_ui::{Compares, Edge, LabUi, Shown, Title};
-use crate::ui::language::{say, tr};
+use crate::ui::language::{Text, Word, say};
 use crate::ui::out::Out;
 use crate::ui::rows::clip_sets_ui;
 use crate::ui::rows::{Detail, param_row_ui};
@@ -118,7 +118,7 @@ fn weight_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         compare_ui(Key::WarpWeight, session, out, ui);
     } else {
         ui.label(
-            RichText::new(tr(Key::WarpCurve.param().label, ui))
+            RichText::new(say(Word::new(Key::WarpCurve.param().label), ui))
                 .font(theme_of(ui).font(Type::Label)),
         );
         let curve = weight_curve(keys);
@@ -126,7 +126,7 @@ fn weight_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
             (0..=CURVE_POINTS).map(|k| curve.at(k as f64 / CURVE_POINTS as f64)).collect();
         let duration = session.duration_secs();
         let row = WeightCurveRow {
-            label: Key::WarpCurve.param().label,
+            label: Word::new(Key::WarpCurve.param().label),
             keys,
             curve: &points,
             now: (duration > 0.0).then(|| session.now_secs() / duration),
@@ -188,13 +188,13 @@ fn also_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
                 out.commands.push(Command::Settle);
             }
             ui.vertical(|ui| {
-                if let Some(chosen) = clip_choice_ui(&label, id, session, ui) {
+                if let Some(chosen) = clip_choice_ui(Text::Data(&label), id, session, ui) {
                     set(with((chosen, *weight)), out);
                     out.commands.push(Command::Settle);
                 }
             });
         });
-        let share = say(&text::weight_of(index), ui);
+        let share = text::weight_of(index);
         let response =
             kit::slider_row_ui(*weight, &SliderRow::new(&share, 0.0..=1.0, 0.0).step(0.01), ui);
         if let Some(weight) = response.changed {
@@ -207,7 +207,9 @@ fn also_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     }
     if also.len() < MAX_WEIGHTED_CLIPS
         && kit::button_ui(
-            Button::new(text::BLEND_MORE).icon(Icon::Plus).hint(Key::WarpAlso.param().help),
+            Button::new(text::BLEND_MORE)
+                .icon(Icon::Plus)
+                .hint(Word::new(Key::WarpAlso.param().help)),
             ui,
         )
         .clicked()
@@ -240,10 +242,11 @@ fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let job = session.jobs().into_iter().find(|job| job.kind == JobKind::Registering);
     let waits = job.map(|job| {
         let percent = 100.0 * job.progress;
-        say(&msg!("Comparing all frames… {percent:.0} %", percent), ui)
+        msg!("Comparing all frames… {percent:.0} %", percent)
     });
     let Some(map) = session.distance_map() else {
-        kit::note_ui(waits.as_deref().unwrap_or(text::EMPTY_PANE), palette.muted, ui);
+        let words = waits.unwrap_or_else(|| text::EMPTY_PANE.into());
+        kit::note_ui(&words, palette.muted, ui);
         return;
     };
     let picture = picture_of(map, ui);
@@ -277,7 +280,7 @@ fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
         texture: picture.as_ref().map(|picture| picture.texture.id()),
         field,
         spans,
-        names: ["A, s", "B"],
+        names: [Word::new("A, s"), Word::new("B")],
         feet: &feet,
         curves: &curves,
         pins: &pin_secs,
@@ -290,11 +293,10 @@ fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     }
     ui.add_space(space::XS);
     if let Some(picture) = &picture {
-        let [low, high] = text::heat_ends(picture.range_cm).map(|end| say(&end, ui));
-        kit::heat_legend_ui(&low, &high, ui);
+        kit::heat_legend_ui(&text::heat_ends(picture.range_cm), ui);
     }
     let pair = state.labs.register.hovered_pair.or(now.filter(inside));
-    let known = pair.map(|frames| say(&text::pair_apart(secs(frames), map.cm_at(frames)), ui));
+    let known = pair.map(|frames| text::pair_apart(secs(frames), map.cm_at(frames)));
     kit::note_ui(&waits.or(known).unwrap_or_default(), palette.muted, ui);
     if pins.is_empty() {
         kit::note_ui(text::MAP_HELP, palette.muted, ui);
@@ -310,7 +312,7 @@ fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
         });
     }
     if let Some(problem) = session.panes().first().and_then(|pane| pane.problem.as_ref()) {
-        kit::note_ui(&say(&problem.to_sentence(), ui), palette.warning, ui);
+        kit::note_ui(&problem.to_sentence(), palette.warning, ui);
     }
     ui.add_space(space::S);
 }

@@ -2,7 +2,7 @@
 
 use crate::ui::kit::{self, Button, Mark, Part};
 use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
-use crate::ui::language::say;
+use crate::ui::language::Word;
 use crate::ui::out::Out;
 use crate::ui::rows::clip_sets_ui;
 use crate::ui::rows::{Detail, param_row_ui};
@@ -61,7 +61,7 @@ pub(super) fn speed_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
     }
     param_row_ui(Key::Speed, &detail, session, out, ui);
     if let (Some(warning), None) = (warning, session.compare()) {
-        kit::note_ui(&say(&warning, ui), palette.warning, ui);
+        kit::note_ui(&warning, palette.warning, ui);
     }
     let on = session.compare().is_some_and(|compare| compare.key == Key::Speed);
     // The rows of what is compared have the way back.
@@ -70,7 +70,7 @@ pub(super) fn speed_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
     }
     ui.add_space(space::S);
     param_row_ui(Key::PhaseAlign, &Detail::default(), session, out, ui);
-    kit::note_ui(Key::PhaseAlign.param().help, palette.muted, ui);
+    kit::note_ui(Word::new(Key::PhaseAlign.param().help), palette.muted, ui);
     foot_rows_ui(session, out, ui);
     ui.add_space(space::S);
     save_result_ui(session, state, out, ui);

@@ -3,6 +3,7 @@
 use super::break_it::break_it_ui;
 use crate::ui::kit::{self, Button};
 use crate::ui::labs::lab_ui::{Compares, Edge, LabUi, Shown, Title};
+use crate::ui::language::Word;
 use crate::ui::out::Out;
 use crate::ui::rows::{
     Detail, compare_ui, foot_rows_ui, lab_label, pair_ui, param_row_ui, place_rows_ui,
@@ -120,8 +121,8 @@ fn half_life_ruler_ui(half_life_secs: f64, fps: f64, ui: &mut Ui) {
         [(text::HALF_LEFT, 0.5), (text::TENTH_LEFT, 0.1), (text::HUNDREDTH_LEFT, 0.01)]
     {
         let secs = spring::secs_until(half_life_secs, share);
-        kit::value_row_ui(label, &format!("{secs:.2}"), "s", ui);
+        kit::value_row_ui(label, &format!("{secs:.2}"), Word::new("s"), ui);
     }
     let alike = spring::equivalent_window_secs(half_life_secs) * fps;
-    kit::value_row_ui(text::ALIKE_WINDOW, &format!("{alike:.0}"), "frames", ui);
+    kit::value_row_ui(text::ALIKE_WINDOW, &format!("{alike:.0}"), Word::new("frames"), ui);
 }

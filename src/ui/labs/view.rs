@@ -4,7 +4,6 @@ use crate::ui::clip_panel::clip_panel_ui;
 use crate::ui::kit::{self, Button};
 use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
 use crate::ui::labs::toggle_compare;
-use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::rows::{
     Detail, clip_choice_ui, foot_rows_ui, keep_ui, lab_label, param_row_ui, slot_row_ui,
@@ -63,7 +62,7 @@ fn compared_clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let compare = session.compare().filter(|compare| compare.key == Key::A);
     let label = if let Some(compare) = compare {
         for (pane, value) in compare.values.iter().enumerate() {
-            let label = say(&msg!("Clip {number}", number = pane + 1), ui);
+            let label = msg!("Clip {number}", number = pane + 1);
             if let Some(id) =
                 clip_choice_ui(&label, compare.key.param().format(value).as_str(), session, ui)
             {

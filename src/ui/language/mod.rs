@@ -5,16 +5,17 @@
 //! their own; and a language that was chosen by hand is stored with the work and is there again on
 //! the next visit.
 //!
-//! Texts are written in English where they are used, as words or as [`segue_text::Message`]s, and
-//! written out in the language of the interface where they are drawn: by [`say`] for a message, by
-//! [`tr`] for a word, which the widgets of the kit call for all that they are given. The session
-//! knows no language, and links and files stay English. A language is a row of [`LANGUAGES`] and
-//! its files in `assets/lang`, which are fetched when it is first asked for.
+//! Texts are English where they are used, as [`Word`]s or as [`segue_text::Message`]s, and [`say`]
+//! writes them in the language of the interface where they are drawn. The widgets of the kit take a
+//! [`Text`] and call it themselves. The session knows no language, and links and files stay
+//! English. A language is a row of [`LANGUAGES`] and its files in `assets/lang`, which are fetched
+//! when it is first asked for.
 
 mod pack;
+mod text;
 
-pub(crate) use pack::{LanguagePack, PackError, activate_english, say, tr};
-pub(crate) use pack::{skip_words, translate_labels};
+pub(crate) use pack::{LanguagePack, PackError, activate_english, say, skip_words};
+pub(crate) use text::{Text, Word};
 
 use segue_session::Session;
 use segue_session::choices::PageLanguage;
@@ -30,7 +31,7 @@ struct LanguageRow {
     /// Its name, in English.
     name: &'static str,
     /// The name of the button that switches to it.
-    switch: &'static str,
+    switch: Word,
     /// Whether the program itself is written in it, so that it has no files.
     is_built_in: bool,
 }
@@ -41,7 +42,7 @@ static LANGUAGES: [LanguageRow; 2] = [
         tag: PageLanguage::En.word(),
         readers: ("en", &[]),
         name: "English",
-        switch: "Interface in English",
+        switch: Word::new("Interface in English"),
         is_built_in: true,
     },
     // Traditional Chinese as it is written in Taiwan. Simplified Chinese is another one.
@@ -49,7 +50,7 @@ static LANGUAGES: [LanguageRow; 2] = [
         tag: PageLanguage::ZhHant.word(),
         readers: ("zh", &["hant", "tw", "hk", "mo"]),
         name: "Chinese",
-        switch: "Interface in Chinese",
+        switch: Word::new("Interface in Chinese"),
         is_built_in: false,
     },
 ];
@@ -108,7 +109,7 @@ impl Language {
     }
 
     /// Returns the name of the button that switches to it.
-    pub(crate) fn switch(self) -> &'static str {
+    pub(crate) fn switch(self) -> Word {
         self.row().switch
     }
 

@@ -1,11 +1,10 @@
 //! The texts and letters of a language, and how a context comes to show them, as
 //! [`theme_of`](crate::ui::theme::theme_of) is its theme.
 
+use super::text::Text;
 use crate::ui::text;
-use eframe::egui::output::OutputEvent;
-use eframe::egui::{Context, FontData, FullOutput, Id, Plugin, Role, Ui};
+use eframe::egui::{Context, FontData, Id, Ui};
 use segue_text::{Message, Table, ToMessage};
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 #[cfg(all(test, feature = "ui-tests"))]
@@ -74,22 +73,13 @@ impl LanguagePack {
 
     /// Shows the texts of this context in this language from now on.
     pub(crate) fn activate(&self, ctx: &Context) {
-        translate_labels(ctx);
         ctx.data_mut(|data| data.insert_temp(texts_id(), Some(self.texts.clone())));
     }
 }
 
-/// Has the labels that screen readers are told translated from now on. What reads them out of the
-/// output is added after this.
-pub(crate) fn translate_labels(ctx: &Context) {
-    ctx.add_plugin(Labels);
-}
-
 /// Returns the words of the link to the parameters that is the first element of the page.
 pub(crate) fn skip_words(ctx: &Context) -> String {
-    let texts = texts_of(ctx);
-    let found = texts.as_ref().and_then(|texts| texts.find(text::SKIP_TO_PARAMETERS));
-    found.unwrap_or(text::SKIP_TO_PARAMETERS).to_owned()
+    written(text::SKIP_TO_PARAMETERS.into(), ctx)
 }
 
 /// Shows the texts of this context in English from now on, as they are written.
@@ -98,10 +88,9 @@ pub(crate) fn activate_english(ctx: &Context) {
 }
 
 impl Texts {
-    fn find(&self, text: &str) -> Option<&str> {
-        let found = self.table.row(text);
-        self.record(text);
-        found
+    fn find<'a>(&'a self, english: &'a str) -> &'a str {
+        self.record(english);
+        self.table.row(english).unwrap_or(english)
     }
 
     fn write(&self, message: &Message) -> String {
@@ -130,62 +119,23 @@ fn texts_of(ctx: &Context) -> Option<Arc<Texts>> {
     ctx.data(|data| data.get_temp::<Option<Arc<Texts>>>(texts_id())).flatten()
 }
 
-/// Returns a word or sentence of the program in the language of the interface. The widgets of the
-/// kit call this themselves, for all that they are given.
-pub(crate) fn tr<'a>(text: &'a str, ui: &Ui) -> Cow<'a, str> {
-    match texts_of(ui.ctx()).as_ref().and_then(|texts| texts.find(text)) {
-        Some(found) => Cow::Owned(found.to_owned()),
-        None => Cow::Borrowed(text),
-    }
+/// Returns a text in the language of the interface. Not to be called while egui holds its context,
+/// as in a closure for `Ui::data`.
+pub(crate) fn say<'a>(text: impl Into<Text<'a>>, ui: &Ui) -> String {
+    written(text.into(), ui.ctx())
 }
 
-/// Returns a message in the language of the interface. Not to be called while egui holds its
-/// context, as in the closure of `widget_info`.
-pub(crate) fn say(message: &Message, ui: &Ui) -> String {
-    match texts_of(ui.ctx()) {
-        Some(texts) => texts.write(message),
-        None => message.to_string(),
-    }
-}
-
-/// Translates the labels that screen readers are told, which no widget has to think of.
-struct Labels;
-
-impl Plugin for Labels {
-    fn debug_name(&self) -> &'static str {
-        "segue labels"
-    }
-
-    fn output_hook(&mut self, ctx: &Context, output: &mut FullOutput) {
-        let Some(texts) = texts_of(ctx) else {
-            return;
-        };
-        if let Some(update) = &mut output.platform_output.accesskit_update {
-            for (_, node) in &mut update.nodes {
-                if let Some(label) = node.label().and_then(|label| texts.find(label)) {
-                    node.set_label(label);
-                }
-                // A text that is edited is the user's.
-                if !matches!(
-                    node.role(),
-                    Role::TextInput | Role::MultilineTextInput | Role::TextRun
-                ) && let Some(value) = node.value().and_then(|value| texts.find(value))
-                {
-                    node.set_value(value);
-                }
-            }
-        }
-        for event in &mut output.platform_output.events {
-            let (OutputEvent::Clicked(info)
-            | OutputEvent::DoubleClicked(info)
-            | OutputEvent::TripleClicked(info)
-            | OutputEvent::FocusGained(info)
-            | OutputEvent::TextSelectionChanged(info)
-            | OutputEvent::ValueChanged(info)) = event;
-            if let Some(label) = info.label.as_deref().and_then(|label| texts.find(label)) {
-                info.label = Some(label.to_owned());
-            }
-        }
+fn written(text: Text<'_>, ctx: &Context) -> String {
+    match text {
+        Text::Word(word) => match texts_of(ctx) {
+            Some(texts) => texts.find(word.english()).to_owned(),
+            None => word.english().to_owned(),
+        },
+        Text::Message(message) => match texts_of(ctx) {
+            Some(texts) => texts.write(message),
+            None => message.to_string(),
+        },
+        Text::Data(data) => data.to_owned(),
     }
 }
 

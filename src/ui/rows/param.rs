@@ -1,7 +1,7 @@
 //! One parameter of the table as a row of a panel.
 
 use crate::ui::kit::{self, Button, Icon, Mark, SliderResponse, SliderRow, Source};
-use crate::ui::language::{say, tr};
+use crate::ui::language::{Text, Word, say};
 use crate::ui::out::Out;
 use crate::ui::text;
 use crate::ui::theme::palette_of;
@@ -39,24 +39,27 @@ pub(crate) fn param_row_ui(
     let row = ui.push_id(param.name, |ui| match param.kind {
         Kind::Number { .. } => number_ui(key, detail, session, out, ui),
         Kind::Switch => {
-            if let Some(on) = kit::switch_row_ui(param.label, session.params().is_on(key), ui) {
+            if let Some(on) =
+                kit::switch_row_ui(Word::new(param.label), session.params().is_on(key), ui)
+            {
                 out.set_once(key, Value::Switch(on));
             }
         }
         Kind::Choice(choices) => {
-            let options: Vec<(&'static str, &str)> =
-                choices.iter().map(|choice| (choice.key, choice.label)).collect();
+            let label = Word::new(param.label);
+            let options: Vec<(&'static str, Word)> =
+                choices.iter().map(|choice| (choice.key, Word::new(choice.label))).collect();
             if let Some(compare) = session.compare().filter(|compare| compare.key == key) {
                 return compared_choices_ui(compare, &options, out, ui);
             }
             let chosen = session.params().word(key);
             let picked = if choices.len() <= 4 {
-                if kit::segmented_label_ui(param.label, ui) {
+                if kit::segmented_label_ui(label, ui) {
                     out.commands.push(Command::Reset(key));
                 }
-                kit::segmented_ui(param.label, chosen, &options, ui)
+                kit::segmented_ui(label, chosen, &options, ui)
             } else {
-                kit::choice_row_ui(param.label, chosen, &options, ui)
+                kit::choice_row_ui(label, chosen, &options, ui)
             };
             if let Some(word) = picked {
                 out.set_once(key, Value::Choice(word));
@@ -68,7 +71,7 @@ pub(crate) fn param_row_ui(
     });
     // A slider has its sentence below it.
     if matches!(param.kind, Kind::Switch | Kind::Choice(_)) {
-        row.response.on_hover_text(tr(param.help, ui));
+        row.response.on_hover_text(say(Word::new(param.help), ui));
     }
 }
 
@@ -76,12 +79,13 @@ pub(crate) fn param_row_ui(
 /// until another is chosen.
 fn joint_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
     let chosen = session.params().text(key);
-    let mut options: Vec<(&str, &str)> =
-        Role::ALL.iter().map(|role| (role.name(), role.name())).collect();
+    let mut options: Vec<(&str, Text<'_>)> =
+        Role::ALL.iter().map(|role| (role.name(), Word::new(role.name()).into())).collect();
     if !options.iter().any(|(name, _)| *name == chosen) {
-        options.insert(0, (chosen, chosen));
+        options.insert(0, (chosen, Text::Data(chosen)));
     }
-    if let Some(name) = kit::choice_row_ui(key.param().label, chosen, &options, ui) {
+    let label = Word::new(key.param().label);
+    if let Some(name) = kit::choice_row_ui(label, chosen, &options, ui) {
         out.set_once(key, Value::Text(name.to_owned()));
     }
 }
@@ -90,10 +94,10 @@ fn joint_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
 /// file brought one.
 fn character_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
     let brought = session.library().entries().iter().filter(|entry| entry.mesh.is_some());
-    let brought: Vec<(&str, String)> =
-        brought.map(|entry| (entry.id.as_str(), say(&entry.title(), ui))).collect();
-    let options: Vec<(&str, &str)> = std::iter::once(("", text::MADE_BODY))
-        .chain(brought.iter().map(|(id, title)| (*id, title.as_str())))
+    let brought: Vec<(&str, Message)> =
+        brought.map(|entry| (entry.id.as_str(), entry.title())).collect();
+    let options: Vec<(&str, Text<'_>)> = std::iter::once(("", text::MADE_BODY.into()))
+        .chain(brought.iter().map(|(id, title)| (*id, title.into())))
         .collect();
     if options.len() < 2 {
         return;
@@ -101,7 +105,8 @@ fn character_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
     let chosen =
         session.library().find(session.params().text(key)).filter(|entry| entry.mesh.is_some());
     let chosen = chosen.map_or("", |entry| entry.id.as_str());
-    if let Some(id) = kit::choice_row_ui(key.param().label, chosen, &options, ui) {
+    let label = Word::new(key.param().label);
+    if let Some(id) = kit::choice_row_ui(label, chosen, &options, ui) {
         out.set_once(key, Value::Text(id.to_owned()));
     }
 }
@@ -127,8 +132,10 @@ fn number_ui(key: Key, detail: &Detail, session: &Session, out: &mut Out, ui: &m
         .map(|value| Mark { value, color })
         .chain(detail.marks.iter().copied())
         .collect();
-    let mut row =
-        SliderRow::new(param.label, min..=max, default).unit(param.unit).step(step).marks(&marks);
+    let mut row = SliderRow::new(Word::new(param.label), min..=max, default)
+        .unit(Word::new(param.unit))
+        .step(step)
+        .marks(&marks);
     row = if step == 1.0 { row.whole() } else { row.decimals(decimals_of(step).min(2)) };
     if logarithmic {
         row = row.log();
@@ -136,8 +143,7 @@ fn number_ui(key: Key, detail: &Detail, session: &Session, out: &mut Out, ui: &m
     let fps = param.has(InSeconds).then(|| frame_rate(session));
     let in_seconds =
         |value: f64| fps.map_or_else(String::new, |fps| format!("{:.2} s", value / fps));
-    let help = detail.help.as_ref().map(|help| say(help, ui));
-    let help = help.as_deref().unwrap_or(param.help);
+    let help = detail.help.as_ref().map_or(Word::new(param.help).into(), Text::from);
     if let Some(compare) = compare {
         return compared_ui(compare, session.range_of(key), &row, &in_seconds, help, out, ui);
     }
@@ -198,7 +204,7 @@ fn compared_ui(
     range: Option<(f64, f64)>,
     row: &SliderRow<'_>,
     in_seconds: &dyn Fn(f64) -> String,
-    help: &str,
+    help: Text<'_>,
     out: &mut Out,
     ui: &mut Ui,
 ) {
@@ -209,10 +215,10 @@ fn compared_ui(
         let Some(value) = number_of(value) else {
             continue;
         };
-        let (label, secondary) = (label_of(param.label, pane, ui), in_seconds(value));
+        let (label, secondary) = (label_of(param.label, pane), in_seconds(value));
         let row = row.clone().label(&label).secondary(&secondary);
         let response =
-            kit::slider_row_ui(value, &row.help(if pane == last { help } else { "" }), ui);
+            kit::slider_row_ui(value, &row.help(if pane == last { help } else { Text::EMPTY }), ui);
         if let Some(value) = response.changed {
             panes.values[pane] = Value::Number(value);
             out.set(Key::Compare, Value::Compare(Some(panes.clone())));
@@ -223,14 +229,14 @@ fn compared_ui(
 }
 
 /// The label of a parameter's row for one of several panes.
-fn label_of(label: &'static str, pane: usize, ui: &Ui) -> String {
-    say(&msg!("{label} · {number}", label, number = pane + 1), ui)
+fn label_of(label: &'static str, pane: usize) -> Message {
+    msg!("{label} · {number}", label, number = pane + 1)
 }
 
 /// A choice that differs from pane to pane: a row for each of them.
 fn compared_choices_ui(
     compare: &Compare,
-    options: &[(&'static str, &str)],
+    options: &[(&'static str, Word)],
     out: &mut Out,
     ui: &mut Ui,
 ) {
@@ -239,7 +245,7 @@ fn compared_choices_ui(
         let Value::Choice(chosen) = value else {
             continue;
         };
-        let label = label_of(label, pane, ui);
+        let label = label_of(label, pane);
         let picked = ui.push_id(pane, |ui| kit::choice_row_ui(&label, *chosen, options, ui)).inner;
         if let Some(word) = picked {
             let mut panes = compare.clone();
@@ -287,8 +293,8 @@ pub(crate) fn compare_choice_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let compared = session.compare().map(|compare| compare.key);
     let mut keys = std::mem::take(&mut out.rows);
     keys.extend(compared.filter(|key| !keys.contains(key)));
-    let options: Vec<(Option<Key>, &str)> = std::iter::once((None, text::COMPARE_NOTHING))
-        .chain(keys.iter().map(|&key| (Some(key), key.param().label)))
+    let options: Vec<(Option<Key>, Word)> = std::iter::once((None, text::COMPARE_NOTHING))
+        .chain(keys.iter().map(|&key| (Some(key), Word::new(key.param().label))))
         .collect();
     match kit::choice_row_ui(text::SIDE_BY_SIDE, compared, &options, ui) {
         Some(Some(key)) => out.commands.push(Command::Compare(key)),

@@ -1,6 +1,7 @@
 //! Saving a motion as a file: which kind, and how.
 
 use crate::ui::kit::{self, Button, Icon};
+use crate::ui::language::{Text, Word};
 use crate::ui::out::{Action, Out};
 use crate::ui::state::UiState;
 use crate::ui::text;
@@ -11,28 +12,28 @@ use segue_formats::bvh::RotationOrder;
 use segue_session::export::{ExportBody, ExportFormat};
 
 /// What files are saved in, with its name.
-const UNITS: [(Option<f64>, &str); 3] =
-    [(None, text::AS_FILE), (Some(1.0), "m"), (Some(0.01), "cm")];
+const UNITS: [(Option<f64>, Word); 3] =
+    [(None, text::AS_FILE), (Some(1.0), Word::new("m")), (Some(0.01), Word::new("cm"))];
 
 /// Whose body a file has.
-const BODIES: [(ExportBody, &str); 2] =
+const BODIES: [(ExportBody, Word); 2] =
     [(ExportBody::Character, text::BODY_CHARACTER), (ExportBody::Plain, text::BODY_PLAIN)];
 
-const ORDERS: [(Option<RotationOrder>, &str); 7] = [
-    (None, text::AS_FILE),
-    (Some(RotationOrder::Zxy), "Z X Y"),
-    (Some(RotationOrder::Zyx), "Z Y X"),
-    (Some(RotationOrder::Xyz), "X Y Z"),
-    (Some(RotationOrder::Xzy), "X Z Y"),
-    (Some(RotationOrder::Yxz), "Y X Z"),
-    (Some(RotationOrder::Yzx), "Y Z X"),
+const ORDERS: [(Option<RotationOrder>, Text<'_>); 7] = [
+    (None, Text::Word(text::AS_FILE)),
+    (Some(RotationOrder::Zxy), Text::Data("Z X Y")),
+    (Some(RotationOrder::Zyx), Text::Data("Z Y X")),
+    (Some(RotationOrder::Xyz), Text::Data("X Y Z")),
+    (Some(RotationOrder::Xzy), Text::Data("X Z Y")),
+    (Some(RotationOrder::Yxz), Text::Data("Y X Z")),
+    (Some(RotationOrder::Yzx), Text::Data("Y Z X")),
 ];
 
-const RATES: [(Option<f64>, &str); 4] = [
+const RATES: [(Option<f64>, Word); 4] = [
     (None, text::AS_IT_IS),
-    (Some(30.0), "30 fps"),
-    (Some(60.0), "60 fps"),
-    (Some(120.0), "120 fps"),
+    (Some(30.0), Word::new("30 fps")),
+    (Some(60.0), Word::new("60 fps")),
+    (Some(120.0), Word::new("120 fps")),
 ];
 
 /// One row to save a motion, and its options, folded. `which` is a clip's id, or `result:1` for the

@@ -2,6 +2,7 @@
 
 use crate::ui::commands::{UiCommand, command_icon_ui};
 use crate::ui::kit::{self, Button, Icon};
+use crate::ui::language::Text;
 use crate::ui::out::{Action, Out};
 use crate::ui::state::{Filming, UiState};
 use crate::ui::text;
@@ -15,7 +16,7 @@ pub(super) fn pane_switch_ui(count: usize, stage: Rect, state: &mut UiState, ui:
         Rect::from_min_size(pos2(stage.right() - 92.0, stage.top() + 44.0), vec2(84.0, 28.0));
     let label = format!("{} / {count}", state.shown_pane + 1);
     ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
-        if kit::button_ui(Button::new(&label).icon(Icon::Swap), ui).clicked() {
+        if kit::button_ui(Button::new(Text::Data(&label)).icon(Icon::Swap), ui).clicked() {
             state.shown_pane = (state.shown_pane + 1) % count;
         }
     });

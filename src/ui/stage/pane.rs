@@ -3,7 +3,7 @@
 use super::verdicts::{Verdicts, ranking};
 use crate::ui::kit::{self, Metric, Mood, PaneTitle, Rank};
 use crate::ui::labs::{Shown, Title, on_stage, title};
-use crate::ui::language::say;
+use crate::ui::language::{Word, say};
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{self, Align2, Frame, Rect, Ui, UiBuilder, pos2};
@@ -22,7 +22,6 @@ pub(super) fn pane_ui(
 ) -> f32 {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let Title { strong, text, secondary } = pane_words(pane, session);
-    let [strong, text, secondary] = [strong, text, secondary].map(|part| say(&part, ui));
     if pane.is_outdated() {
         // The picture is not the one that is asked for.
         ui.painter().rect_filled(rect, 0.0, palette.stage.sky.gamma_multiply(0.55));
@@ -36,7 +35,7 @@ pub(super) fn pane_ui(
     } else if let Some(warning) = on_stage::warning(session, pane) {
         (warning, Mood::Warning)
     } else {
-        ("", Mood::default())
+        (Word::default(), Mood::default())
     };
     let title = PaneTitle { strong: &strong, text: &text, secondary: &secondary, chip, mood };
     kit::pane_header_ui(&title, rect, ui);
@@ -45,7 +44,6 @@ pub(super) fn pane_ui(
     } else if pane.outcome.is_none() {
         let jobs = session.jobs();
         let words = jobs.first().map_or(text::EMPTY_PANE.into(), text::under_way);
-        let words = say(&words, ui);
         let galley = kit::paint::line_of(
             &[kit::paint::Run::new(&words, Type::Body, palette.muted)],
             rect.width(),
@@ -62,7 +60,7 @@ pub(super) fn pane_ui(
         .iter()
         .filter_map(|row| Some((row, outcome.metric(row.id)?, row.short?)))
         .take(room);
-    let numbers: Vec<(String, &str, Rank, &str)> = shown
+    let numbers: Vec<(String, Word, Rank, Word)> = shown
         .map(|(row, metric, label)| {
             let ranks = ranking(panes, row.id);
             let rank = if ranks.best == Some(index) {
@@ -72,12 +70,12 @@ pub(super) fn pane_ui(
             } else {
                 Rank::Middle
             };
-            (written(row, metric.value), label, rank, row.help)
+            (written(row, metric.value), Word::new(label), rank, Word::new(row.help))
         })
         .collect();
     let strip: Vec<Metric<'_>> = numbers
         .iter()
-        .map(|(value, label, rank, hint)| Metric { value, label, rank: *rank, hint })
+        .map(|(value, label, rank, hint)| Metric { value, label: *label, rank: *rank, hint: *hint })
         .collect();
     kit::pane_footer_ui(&strip, rect, ui).top()
 }

@@ -1,5 +1,6 @@
 //! The interface in Chinese: every lab, and what of it has stayed English.
 
+use super::clips::{loaded, with_file};
 use super::*;
 use segue_session::choices;
 use segue_text::text_of_template;
@@ -104,13 +105,53 @@ fn the_switch_asks_for_the_other_language_and_screen_readers_hear_it() {
     crate::ui::activate_english(&harness.ctx);
     harness.state_mut().state.language = Language::default();
     harness.run();
-    harness.get_by_label(text::COPY_LINK);
-    harness.get_by_label(language().switch()).click();
+    harness.get_by_label(text::COPY_LINK.english());
+    harness.get_by_label(language().switch().english()).click();
     harness.run();
     assert_eq!(
         harness.state().session.params().choice::<choices::PageLanguage>().word(),
         "zh-Hant"
     );
+}
+
+/// The catalogue has rows for the words "Walk" and "walk": clips of these names are the user's all
+/// the same.
+#[test]
+fn name_of_a_users_clip_that_is_also_a_word_stays_as_it_is() {
+    let pack = pack();
+    for name in ["Walk", "walk"] {
+        let mut page = with_file("lab=view&play=off");
+        let id = loaded(&page).id.clone();
+        for command in [Command::Rename(id.clone(), name.into()), Command::Assign(Slot::A, id)] {
+            page.session.apply(command).expect("a clip of the library");
+        }
+        while page.session.work() {}
+        page.state.language = language();
+        let mut harness = harness(DESK, DARK, page);
+        pack.install_fonts(&harness.ctx);
+        harness.run();
+        pack.activate(&harness.ctx);
+        harness.run();
+        let row = format!("{name}, ");
+        let rows =
+            harness.get_all_by_role(Role::Button).filter_map(|row| row.accesskit_node().label());
+        assert_eq!(rows.filter(|label| label.starts_with(&row)).count(), 1, "the library");
+        harness.get_by_role_and_label(Role::Button, &format!("{name}: A"));
+        let choice = harness.get_by_role_and_label(Role::ComboBox, Slot::A.label());
+        assert_eq!(choice.value().as_deref(), Some(name), "the menu of clips");
+        let headings = harness
+            .get_all_by_role(Role::Heading)
+            .filter_map(|title| title.accesskit_node().label());
+        assert_eq!(
+            headings.filter(|label| label.trim() == name).count(),
+            1,
+            "the title of the pane"
+        );
+        // The built-in walk is a word of the program.
+        let built_in =
+            harness.get_all_by_role(Role::Button).filter_map(|row| row.accesskit_node().label());
+        assert_eq!(built_in.filter(|label| label.starts_with("走路, ")).count(), 1);
+    }
 }
 
 /// What the catalogue and the lessons are written with can be set: the letters are in one of the

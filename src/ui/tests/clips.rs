@@ -187,7 +187,7 @@ fn the_library_opens_the_same_panel_under_the_row() {
 #[test]
 fn the_library_tells_how_far_the_work_is_stored() {
     let mut harness = harness(DESK, DARK, page("lab=view&play=off"));
-    for words in [text::SAVED, text::SAVING, text::NOT_ALL_SAVED] {
+    for words in [text::SAVED.english(), text::SAVING.english(), text::NOT_ALL_SAVED.english()] {
         assert!(harness.query_by_label(words).is_none(), "{words} where nothing is stored");
     }
     for (stored, words) in [
@@ -212,7 +212,7 @@ fn memory_in_use_is_shown_once_it_is_more_than_a_quarter() {
             coming: 0,
         });
         harness.run();
-        assert_eq!(harness.query_by_label(text::MEMORY).is_some(), is_shown, "{bytes}");
+        assert_eq!(harness.query_by_label(text::MEMORY.english()).is_some(), is_shown, "{bytes}");
     }
     let memory = harness.state().session.memory().unwrap();
     assert_eq!(text::memory(memory).to_string(), "1234 MB of 3 GB");

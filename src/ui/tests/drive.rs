@@ -208,12 +208,12 @@ fn the_lab_has_room_on_every_page() {
 fn a_stretch_is_tagged_by_hand() {
     let mut harness = harness(DESK, DARK, page(SMALL));
     play(5, &mut harness);
-    press(text::TAGS, &mut harness);
-    press(text::TAG_WHAT_PLAYS, &mut harness);
+    press(text::TAGS.english(), &mut harness);
+    press(text::TAG_WHAT_PLAYS.english(), &mut harness);
     press(&text::tag_as("exclude", false).to_string(), &mut harness);
     let tags = harness.state().session.params().tags();
     let [tag] = tags else { panic!("{tags:?}") };
     assert!(tag.word == "exclude" && tag.secs[1] - tag.secs[0] > 0.2 && !tag.takes_away, "{tag:?}");
-    press(text::TAKE_TAG_AWAY, &mut harness);
+    press(text::TAKE_TAG_AWAY.english(), &mut harness);
     assert!(harness.state().session.params().tags().is_empty());
 }

@@ -14,8 +14,8 @@ fn the_graph_lab_shows_the_walk_the_distances_and_the_graph() {
         ("graph-projector", vec2(1280.0, 720.0), HALL, "lab=graph&play=off&t=12"),
     ] {
         let mut harness = harness(size, theme, page(link));
-        harness.get_by_label(text::ALL_DISTANCES);
-        harness.get_by_label(text::GRAPH_STRIP);
+        harness.get_by_label(text::ALL_DISTANCES.english());
+        harness.get_by_label(text::GRAPH_STRIP.english());
         picture(name, &mut harness);
         harness.get_by_label("First frame only").scroll_to_me();
         harness.run();
@@ -36,13 +36,13 @@ fn the_graph_lab_does_what_is_pressed() {
         harness.run();
     };
     // An arc and a ring under the pointer show both windows; the bar below sends the walk there.
-    let strip = harness.get_by_label(text::GRAPH_STRIP).rect();
+    let strip = harness.get_by_label(text::GRAPH_STRIP.english()).rect();
     let bar = strip.left_bottom() + vec2(0.9 * strip.width(), -20.0);
     harness.drag_at(bar);
     harness.drop_at(bar);
     done(&mut harness);
     assert_eq!(text_of(&harness, Key::GoTo), "0:2");
-    press(text::FORGET_VISITS, &mut harness);
+    press(text::FORGET_VISITS.english(), &mut harness);
     assert_eq!(text_of(&harness, Key::GoTo), "");
     done(&mut harness);
     let (mark, field) = {
@@ -51,7 +51,7 @@ fn the_graph_lab_does_what_is_pressed() {
         let jump = built.graph().jumps()[0];
         let size = built.clips().set().frames() as f32;
         let number = |place| built.clips().set().number(place).unwrap() as f32 + 0.5;
-        let field = harness.get_by_label(text::ALL_DISTANCES).rect();
+        let field = harness.get_by_label(text::ALL_DISTANCES.english()).rect();
         (vec2(number(jump.enter), number(jump.leave)) / size, field)
     };
     let ring = field.min + mark * field.size();
@@ -67,7 +67,7 @@ fn the_graph_lab_does_what_is_pressed() {
     let plays = harness.state().session.params().is_on(Key::Play);
     assert!(plays, "a transition that is asked for is seen, also where all stood still");
     picture("graph-transition-dark", &mut harness);
-    press(text::BACK_TO_WALK, &mut harness);
+    press(text::BACK_TO_WALK.english(), &mut harness);
     done(&mut harness);
     assert!(harness.state().session.graph_walk().is_some_and(|walk| !walk.is_jump));
     // Clips come and go.
@@ -75,14 +75,14 @@ fn the_graph_lab_does_what_is_pressed() {
     press("Remove Walk, turn left", &mut harness);
     done(&mut harness);
     assert_eq!(text_of(&harness, Key::Clips), "walk,walk_right");
-    let add = harness.get_by_label(text::ADD_CLIP);
-    assert_eq!(add.value().as_deref(), Some(text::CHOOSE_CLIP), "no clip is chosen yet");
-    press(text::ADD_CLIP, &mut harness);
+    let add = harness.get_by_label(text::ADD_CLIP.english());
+    assert_eq!(add.value().as_deref(), Some(text::CHOOSE_CLIP.english()), "no clip is chosen yet");
+    press(text::ADD_CLIP.english(), &mut harness);
     press("Slow walk", &mut harness);
     done(&mut harness);
     assert_eq!(text_of(&harness, Key::Clips), "walk,walk_right,slow_walk");
     // A line on the ground.
-    press(text::DRAW_PATH, &mut harness);
+    press(text::DRAW_PATH.english(), &mut harness);
     let stage = harness.state().state.stage;
     harness.drag_at(stage.center());
     for step in 1..6 {
@@ -93,15 +93,15 @@ fn the_graph_lab_does_what_is_pressed() {
     done(&mut harness);
     assert!(harness.state().session.graph_path().len() > 3, "{}", text_of(&harness, Key::WalkPath));
     assert!(harness.state().session.graph_walk().is_some_and(|walk| walk.followed.is_some()));
-    press(text::REMOVE_PATH, &mut harness);
+    press(text::REMOVE_PATH.english(), &mut harness);
     done(&mut harness);
     // Files, and the table.
     press("JSON", &mut harness);
     press("DOT", &mut harness);
     for experiment in text::GRAPH_EXPERIMENTS {
-        press(experiment.name, &mut harness);
+        press(experiment.name.english(), &mut harness);
         done(&mut harness);
-        assert!(harness.state().session.panes().len() > 1, "{}", experiment.name);
+        assert!(harness.state().session.panes().len() > 1, "{}", experiment.name.english());
         for (index, pane) in harness.state().session.panes().iter().enumerate() {
             // A segment that is no longer than the window is refused, in words.
             let is_refused = experiment.query.contains("segment_size:60,30,20") && index == 2;
@@ -109,13 +109,13 @@ fn the_graph_lab_does_what_is_pressed() {
                 pane.problem.is_some(),
                 is_refused,
                 "{}: {:?}",
-                experiment.name,
+                experiment.name.english(),
                 pane.problem
             );
         }
     }
-    press(text::COPY_MARKDOWN, &mut harness);
-    press(text::COPY_CSV, &mut harness);
+    press(text::COPY_MARKDOWN.english(), &mut harness);
+    press(text::COPY_CSV.english(), &mut harness);
     let actions = &harness.state().out.actions;
     let [
         Action::SaveText { name, text, .. },
@@ -146,7 +146,7 @@ fn whoever_sends_the_walk_where_no_way_leads_is_told() {
         "lab=graph&clips=walk,walk_left,walk_right,idle&walk_seconds=20&blend_window=20&play=off";
     for theme in [DARK, LIGHT] {
         let mut harness = harness(DESK, theme, page(link));
-        let strip = harness.get_by_label(text::GRAPH_STRIP).rect();
+        let strip = harness.get_by_label(text::GRAPH_STRIP.english()).rect();
         let bar = strip.left_bottom() + vec2(0.9 * strip.width(), -20.0);
         harness.drag_at(bar);
         harness.drop_at(bar);
@@ -191,7 +191,7 @@ fn the_distances_of_very_many_frames_are_seen_from_afar_and_nearby() {
         let at = vec2(number(jump.enter), number(jump.leave)) / frames as f32;
         (at, [jump.leave, jump.enter], frames)
     };
-    let field = harness.get_by_label(text::ALL_DISTANCES).rect();
+    let field = harness.get_by_label(text::ALL_DISTANCES.english()).rect();
     picture("graph-afar-dark", &mut harness);
     // The wheel over a ring: it stays where it is, and the picture gets finer until there is
     // nothing left to compute.
@@ -222,7 +222,7 @@ fn the_distances_of_very_many_frames_are_seen_from_afar_and_nearby() {
     }
     // All of it again: the same ring is pressed.
     assert!(frames as f32 / field.width() > 8.0);
-    harness.get_by_label(text::ALL_DISTANCES).focus();
+    harness.get_by_label(text::ALL_DISTANCES.english()).focus();
     harness.run();
     harness.key_press(Keyboard::Num0);
     harness.run();

@@ -26,7 +26,7 @@ fn a_gait_takes_any_speed_and_says_when_that_is_a_guess() {
         ("speed-projector", vec2(1280.0, 720.0), HALL, "lab=speed&play=off"),
     ] {
         let mut harness = harness(size, theme, page(link));
-        harness.get_by_label(text::SPEED_ABOUT);
+        harness.get_by_label(text::SPEED_ABOUT.english());
         assert_eq!(
             harness.query_all_by_label_contains("Too far outside the speeds").count(),
             usize::from(link.contains("speed=9"))
@@ -50,7 +50,7 @@ fn a_gait_takes_any_speed_and_says_when_that_is_a_guess() {
 fn lock_settings_are_offered_while_feet_are_held() {
     let rows = ["Lock blend", "Lock reach", "Swing clearance"];
     let mut harness = harness(DESK, DARK, page("lab=blend&play=off"));
-    press(text::FEET, &mut harness);
+    press(text::FEET.english(), &mut harness);
     assert!(harness.query_by_label("Contact height").is_some());
     assert!(rows.iter().all(|row| harness.query_by_label(row).is_none()));
     press("Foot lock", &mut harness);
@@ -128,28 +128,28 @@ fn the_layers_lab_says_how_time_goes_and_where_the_layer_is() {
 #[test]
 fn a_mistake_is_chosen_explained_and_held_against_the_right_way() {
     let mut harness = harness(DESK, DARK, page("lab=transition&play=off&t=2.3"));
-    assert!(harness.query_by_label(text::RIGHT_AND_WRONG).is_none());
+    assert!(harness.query_by_label(text::RIGHT_AND_WRONG.english()).is_none());
     press("Break it", &mut harness);
     press("Euler angles blended", &mut harness);
-    harness.get_by_label(text::mistake(Mistake::Euler));
+    harness.get_by_label(text::mistake(Mistake::Euler).english());
     picture("break-desk-dark", &mut harness);
-    press(text::RIGHT_AND_WRONG, &mut harness);
+    press(text::RIGHT_AND_WRONG.english(), &mut harness);
     assert_eq!(harness.state().session.panes().len(), 2);
     assert_eq!(compared(&harness), "mistake:none,euler");
-    harness.get_by_label(text::mistake(Mistake::Euler));
+    harness.get_by_label(text::mistake(Mistake::Euler).english());
     picture("break-compare-dark", &mut harness);
-    press(text::RIGHT_AND_WRONG, &mut harness);
+    press(text::RIGHT_AND_WRONG.english(), &mut harness);
     assert_eq!(harness.state().session.panes().len(), 1);
     // A cut has nothing to be mixed wrongly, and that is said.
     let cut =
         self::harness(DESK, LIGHT, page("lab=transition&method=cut&mistake=degrees&play=off"));
-    cut.get_by_label(text::MISTAKE_IDLE);
+    cut.get_by_label(text::MISTAKE_IDLE.english());
     let dissolve =
         self::harness(DESK, DARK, page("lab=transition&method=smooth&mistake=velocity&play=off"));
-    dissolve.get_by_label(text::VELOCITY_IN_DISSOLVE);
+    dissolve.get_by_label(text::VELOCITY_IN_DISSOLVE.english());
     let turned =
         self::harness(PHONE, LIGHT, page("lab=transition&method=cut&mistake=atan&play=off"));
-    turned.get_by_label(text::mistake(Mistake::Atan));
+    turned.get_by_label(text::mistake(Mistake::Atan).english());
 }
 
 #[test]

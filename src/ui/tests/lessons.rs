@@ -40,7 +40,7 @@ fn go(label: &str, harness: &mut Harness<'_, Page>) {
 #[test]
 fn a_lesson_is_read_tried_and_left() {
     let mut harness = harness(DESK, DARK, page("lab=make&gait=run&play=off"));
-    go(text::LESSONS, &mut harness);
+    go(text::LESSONS.english(), &mut harness);
     picture("lessons-contents", &mut harness);
     go("3. The blend window", &mut harness);
     harness.get_by_label("3 of 14");
@@ -61,13 +61,13 @@ fn a_lesson_is_read_tried_and_left() {
     harness.run();
     assert_eq!(params(&harness, Key::Compare), "blend_window:30,15,10");
     assert!(harness.query_by_label_contains("four times the acceleration").is_none());
-    press(text::SHOW_ANSWER, &mut harness);
+    press(text::SHOW_ANSWER.english(), &mut harness);
     harness.get_by_label_contains("four times the acceleration");
     picture("lessons-answer", &mut harness);
-    go(text::NEXT, &mut harness);
+    go(text::NEXT.english(), &mut harness);
     harness.get_by_label("4 of 14");
-    harness.get_by_label(text::SHOW_ANSWER);
-    go(text::PREVIOUS_PAGE, &mut harness);
+    harness.get_by_label(text::SHOW_ANSWER.english());
+    go(text::PREVIOUS_PAGE.english(), &mut harness);
     harness.get_by_label("3 of 14");
     harness.key_press(Keyboard::Escape);
     harness.run();
@@ -95,7 +95,7 @@ fn a_lesson_is_worked_by_the_keyboard() {
     harness.key_press(Keyboard::Enter);
     harness.run();
     assert!(harness.state().session.params().is_on(Key::FootLock));
-    harness.get_by_label(text::SHOW_ANSWER).focus();
+    harness.get_by_label(text::SHOW_ANSWER.english()).focus();
     harness.run();
     harness.key_press(Keyboard::Enter);
     harness.run();
@@ -106,7 +106,7 @@ fn a_lesson_is_worked_by_the_keyboard() {
 fn a_lesson_that_does_not_come_says_why() {
     let mut harness = harness(PHONE, DARK, lesson("lesson=https://example.org/steps.md"));
     harness.get_by_label_contains("There is no file at https://example.org/steps.md");
-    press(text::TRY_AGAIN, &mut harness);
+    press(text::TRY_AGAIN.english(), &mut harness);
     assert!(matches!(harness.state().session.lesson(), Some(Lesson::Waiting)));
     picture("lessons-waiting", &mut harness);
 }
@@ -148,9 +148,9 @@ fn lessons_look_well_everywhere() {
             let said = |english: &'static str, chinese: &'static str| {
                 if tag.is_empty() { english } else { chinese }
             };
-            harness.get_by_label(said(text::CLOSE_LESSONS, "關閉課程"));
+            harness.get_by_label(said(text::CLOSE_LESSONS.english(), "關閉課程"));
             picture(&format!("lessons-{name}-{language}"), &mut harness);
-            let show = said(text::SHOW_ANSWER, "顯示解答");
+            let show = said(text::SHOW_ANSWER.english(), "顯示解答");
             if harness.query_by_label(show).is_some() {
                 press(show, &mut harness);
                 picture(&format!("lessons-{name}-{language}-down"), &mut harness);
@@ -224,6 +224,6 @@ fn link_to_the_web_has_its_host_beside_it_and_opens_by_the_platform() {
 #[test]
 fn lesson_that_is_waited_for_can_be_stopped() {
     let mut harness = harness(DESK, DARK, page("lesson=https://school.example/mine.md"));
-    press(text::STOP_LOADING, &mut harness);
+    press(text::STOP_LOADING.english(), &mut harness);
     assert_eq!(harness.state().out.actions.as_slice(), [Action::StopLesson]);
 }

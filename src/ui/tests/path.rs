@@ -187,8 +187,8 @@ fn a_double_click_on_the_path_adds_a_point_where_it_is() {
 #[test]
 fn a_path_is_drawn_by_hand() {
     let mut harness = lab(DESK, DARK, "lab=path&a=walk&play=off");
-    press(text::DRAW, &mut harness);
-    harness.get_by_label(text::DRAW_HINT);
+    press(text::DRAW.english(), &mut harness);
+    harness.get_by_label(text::DRAW_HINT.english());
     let stage = harness.state().state.stage;
     let way: Vec<Pos2> = (0..30)
         .map(|k| {
@@ -207,12 +207,12 @@ fn a_path_is_drawn_by_hand() {
     assert!(path(&harness).is_edited);
     let first = handle(1, &harness);
     assert!(first.distance(way[0]) < 12.0, "{first:?} {:?}", way[0]);
-    press(text::DRAW, &mut harness);
+    press(text::DRAW.english(), &mut harness);
     harness.key_press(Keyboard::Escape);
     harness.run_steps(2);
     assert!(harness.state().state.drawing.is_none());
     // A point that is no curve is not taken, and that is said.
-    press(text::DRAW, &mut harness);
+    press(text::DRAW.english(), &mut harness);
     drag(&[stage.center(), stage.center() + vec2(7.0, 0.0)], &mut harness);
     assert!(harness.query_all_by_label_contains("has no direction").count() > 0);
 }
@@ -222,26 +222,26 @@ fn buttons_edit_the_whole_path_and_reset_brings_it_back() {
     let mut harness = lab(DESK, DARK, "lab=path&a=walk_left&play=off");
     let original = points(&harness);
     for label in [
-        text::TURN_LEFT,
-        text::LARGER_PATH,
-        text::MIRROR,
-        text::STRAIGHTEN,
-        text::SMOOTH,
-        text::CLOSE_LOOP,
+        text::TURN_LEFT.english(),
+        text::LARGER_PATH.english(),
+        text::MIRROR.english(),
+        text::STRAIGHTEN.english(),
+        text::SMOOTH.english(),
+        text::CLOSE_LOOP.english(),
     ] {
         let before = points(&harness);
         press(label, &mut harness);
         assert_ne!(points(&harness), before, "{label}");
     }
     assert!(path(&harness).curve.spline().is_closed());
-    harness.get_by_label(text::OPEN_LOOP);
+    harness.get_by_label(text::OPEN_LOOP.english());
     picture("path-loop-dark", &mut harness);
     press("Pin the start", &mut harness);
-    press(text::RESET_PATH, &mut harness);
+    press(text::RESET_PATH.english(), &mut harness);
     assert_eq!(points(&harness), original);
-    press(text::ADD_POINT, &mut harness);
+    press(text::ADD_POINT.english(), &mut harness);
     assert_eq!(points(&harness).len(), 9);
-    press(text::JOIN, &mut harness);
+    press(text::JOIN.english(), &mut harness);
     assert_eq!(harness.state().session.extra_characters().len(), 1);
     picture("path-company-dark", &mut harness);
 }

@@ -29,12 +29,12 @@ fn the_register_lab_shows_the_map_and_what_follows_it() {
         ("register-projector", vec2(1280.0, 720.0), HALL, "lab=register&play=off&t=1"),
     ] {
         let mut harness = harness(size, theme, page(link));
-        harness.get_by_label(text::REGISTER_ABOUT);
-        harness.get_by_label(text::DISTANCES);
+        harness.get_by_label(text::REGISTER_ABOUT.english());
+        harness.get_by_label(text::DISTANCES.english());
         harness.get_by_label_contains("cm per joint");
         picture(name, &mut harness);
         if size == PHONE {
-            harness.get_by_label(text::DISTANCES).scroll_to_me();
+            harness.get_by_label(text::DISTANCES.english()).scroll_to_me();
             harness.run();
             picture(&format!("{name}-map"), &mut harness);
         }
@@ -44,7 +44,7 @@ fn the_register_lab_shows_the_map_and_what_follows_it() {
 #[test]
 fn a_weight_over_time_is_drawn_by_hand() {
     let mut harness = harness(DESK, DARK, page("lab=register&play=off"));
-    press(text::WEIGHT_OVER_TIME, &mut harness);
+    press(text::WEIGHT_OVER_TIME.english(), &mut harness);
     let label = Key::WarpCurve.param().label;
     let keys =
         |harness: &Harness<'_, Page>| harness.state().session.params().weight_curve().to_vec();
@@ -74,14 +74,14 @@ fn a_weight_over_time_is_drawn_by_hand() {
     let frame_pairs = &outcome(harness.state()).registered().unwrap().frame_pairs;
     assert!((frame_pairs[frame_pairs.len() * 3 / 10].weights[1] - 0.2).abs() < 0.06);
     picture("register-weights-dark", &mut harness);
-    press(text::ONE_WEIGHT, &mut harness);
+    press(text::ONE_WEIGHT.english(), &mut harness);
     assert_eq!(keys(&harness), []);
 }
 
 #[test]
 fn the_map_is_pointed_at_pressed_and_pinned() {
     let mut harness = harness(DESK, DARK, page("lab=register&play=off"));
-    let field = harness.get_by_label(text::DISTANCES).rect();
+    let field = harness.get_by_label(text::DISTANCES.english()).rect();
     let at = |x: f32, y: f32| field.min + vec2(x * field.width(), y * field.height());
     harness.hover_at(at(0.5, 0.5));
     harness.run();

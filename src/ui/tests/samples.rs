@@ -35,14 +35,14 @@ fn one_click_loads_the_set_with_progress_and_undo_takes_it_back() {
     let mut harness = harness(DESK, DARK, page("lab=blend&play=off"));
     let first = set.samples[0].label;
     assert!(harness.query_by_label_contains(first).is_none(), "nobody asked for it");
-    harness.get_by_label(text::SAMPLES).click();
+    harness.get_by_label(text::SAMPLES.english()).click();
     harness.run();
     harness.get_by_label(set.label).click();
     harness.run();
-    harness.get_by_label(text::LOADING_SAMPLES);
+    harness.get_by_label(text::LOADING_SAMPLES.english());
     picture("samples-loading", &mut harness);
     serve(&mut harness);
-    assert!(harness.query_by_label(text::LOADING_SAMPLES).is_none());
+    assert!(harness.query_by_label(text::LOADING_SAMPLES.english()).is_none());
     for sample in set.samples {
         assert!(
             harness.query_all_by_label_contains(sample.label).next().is_some(),
@@ -51,7 +51,7 @@ fn one_click_loads_the_set_with_progress_and_undo_takes_it_back() {
         );
     }
     picture("samples-loaded", &mut harness);
-    harness.get_by_label(text::UNDO).click();
+    harness.get_by_label(text::UNDO.english()).click();
     harness.run();
     let last = set.samples[set.samples.len() - 1].label;
     assert!(harness.query_by_label_contains(last).is_none());
@@ -64,15 +64,15 @@ fn a_button_changes_the_motion_of_every_lab_that_has_a_set() {
         let mut harness =
             harness(DESK, DARK, page(&format!("lab={lab}&scenario=straight&play=off")));
         assert!(
-            harness.query_by_label(text::clip_set(ClipSet::Own).0).is_none(),
+            harness.query_by_label(text::clip_set(ClipSet::Own).0.english()).is_none(),
             "{lab}: there are none"
         );
-        press(captured, &mut harness);
+        press(captured.english(), &mut harness);
         serve(&mut harness);
         assert!(harness.state().session.uses_clip_set(ClipSet::Captured), "{lab}");
         assert_eq!(harness.state().session.panes()[0].problem, None, "{lab}");
         picture(&format!("real-{lab}"), &mut harness);
-        press(made, &mut harness);
+        press(made.english(), &mut harness);
         assert!(harness.state().session.uses_clip_set(ClipSet::Made), "{lab}");
     }
 }
@@ -83,7 +83,7 @@ fn the_users_own_clips_fill_graph_and_match_with_one_click() {
         let mut harness =
             harness(DESK, DARK, with_file(&format!("lab={lab}&scenario=straight&play=off")));
         let id = loaded(harness.state()).id.clone();
-        press(text::clip_set(ClipSet::Own).0, &mut harness);
+        press(text::clip_set(ClipSet::Own).0.english(), &mut harness);
         let session = &harness.state().session;
         let ids = if lab == "graph" {
             session.graph_clip_ids()

@@ -1,16 +1,20 @@
 //! The texts of the Graph lab.
 
+use crate::ui::language::Word;
 use segue_session::{BuiltGraph, FollowedPath, GraphClips};
 use segue_text::{Message, msg};
 
 /// What the Graph lab does.
-pub(crate) const GRAPH_ABOUT: &str = "A motion graph: the transitions between clips, and an endless random walk through them, set by the seed.";
+pub(crate) const GRAPH_ABOUT: Word = Word::new(
+    "A motion graph: the transitions between clips, and an endless random walk through them, set by the seed.",
+);
 /// Over the stage.
-pub(crate) const GRAPH_HINT: &str =
-    "Point at a ring or an arc to see both poses. Click it to play that transition alone.";
+pub(crate) const GRAPH_HINT: Word = Word::new(
+    "Point at a ring or an arc to see both poses. Click it to play that transition alone.",
+);
 /// Of the seed, in place of what it does for a made motion.
-pub(crate) const GRAPH_SEED_HELP: &str =
-    "Each seed gives another walk; the same seed gives the same walk on every machine.";
+pub(crate) const GRAPH_SEED_HELP: Word =
+    Word::new("Each seed gives another walk; the same seed gives the same walk on every machine.");
 /// Why a visit came to nothing.
 pub(crate) fn no_way(name: Message, secs: f64) -> Message {
     msg!(
@@ -20,94 +24,107 @@ pub(crate) fn no_way(name: Message, secs: f64) -> Message {
     )
 }
 
-pub(crate) const GRAPH_LACKS_SOME: &str =
-    "There are too many transitions below the threshold: the closest are kept.";
+pub(crate) const GRAPH_LACKS_SOME: Word =
+    Word::new("There are too many transitions below the threshold: the closest are kept.");
 /// The label of a menu that adds a clip.
-pub(crate) const ADD_CLIP: &str = "Add a clip";
+pub(crate) const ADD_CLIP: Word = Word::new("Add a clip");
 /// While it is computed.
-pub(crate) const GRAPHING: &str = "Building graph and walk";
+pub(crate) const GRAPHING: Word = Word::new("Building graph and walk");
 /// After it was given up.
-pub(crate) const GO_ON: &str = "Continue";
+pub(crate) const GO_ON: Word = Word::new("Continue");
 /// Of the parameters that say where the walk goes.
-pub(crate) const WALK: &str = "The walk";
+pub(crate) const WALK: Word = Word::new("The walk");
 /// The picture of the distances.
-pub(crate) const ALL_DISTANCES: &str = "Distances of all windows";
+pub(crate) const ALL_DISTANCES: Word = Word::new("Distances of all windows");
 /// Below it.
-pub(crate) const MATRIX_HELP: &str = "Rows: the frame left. Columns: the frame entered. Rings: transitions. Scroll to zoom, drag to pan.";
+pub(crate) const MATRIX_HELP: Word = Word::new(
+    "Rows: the frame left. Columns: the frame entered. Rings: transitions. Scroll to zoom, drag to pan.",
+);
 /// The histogram's name.
-pub(crate) const ALL_HISTOGRAM: &str = "Histogram of window distances";
+pub(crate) const ALL_HISTOGRAM: Word = Word::new("Histogram of window distances");
 /// The strip's name.
-pub(crate) const GRAPH_STRIP: &str = "The graph: clips and transitions";
+pub(crate) const GRAPH_STRIP: Word = Word::new("The graph: clips and transitions");
 /// Of the links to what is worth a look.
-pub(crate) const EXPERIMENTS: &str = "Experiments";
+pub(crate) const EXPERIMENTS: Word = Word::new("Experiments");
 /// Chooses a clip to go to.
-pub(crate) const GO_TO_CLIP: &str = "Go to a clip from here";
+pub(crate) const GO_TO_CLIP: Word = Word::new("Go to a clip from here");
 /// Takes that back.
-pub(crate) const FORGET_VISITS: &str = "Resume random walk";
+pub(crate) const FORGET_VISITS: Word = Word::new("Resume random walk");
 /// Draws a line to follow.
-pub(crate) const DRAW_PATH: &str = "Draw a path on the ground";
+pub(crate) const DRAW_PATH: Word = Word::new("Draw a path on the ground");
 /// While it is drawn.
-pub(crate) const DRAWING: &str = "Draw on the ground. The walk starts where the path starts.";
+pub(crate) const DRAWING: Word =
+    Word::new("Draw on the ground. The walk starts where the path starts.");
 /// Takes it away.
-pub(crate) const REMOVE_PATH: &str = "Remove the path";
+pub(crate) const REMOVE_PATH: Word = Word::new("Remove the path");
 /// Back from one transition.
-pub(crate) const BACK_TO_WALK: &str = "Back to the walk";
+pub(crate) const BACK_TO_WALK: Word = Word::new("Back to the walk");
 /// Of the files.
-pub(crate) const GRAPH_FILES: &str = "The graph as a file";
+pub(crate) const GRAPH_FILES: Word = Word::new("The graph as a file");
 /// Of the table of numbers.
-pub(crate) const NUMBERS: &str = "Numbers";
+pub(crate) const NUMBERS: Word = Word::new("Numbers");
 /// Copies it.
-pub(crate) const COPY_MARKDOWN: &str = "Copy as Markdown";
+pub(crate) const COPY_MARKDOWN: Word = Word::new("Copy as Markdown");
 /// Copies it.
-pub(crate) const COPY_CSV: &str = "Copy as CSV";
+pub(crate) const COPY_CSV: Word = Word::new("Copy as CSV");
 /// What is said then.
-pub(crate) const TABLE_COPIED: &str = "Table copied.";
+pub(crate) const TABLE_COPIED: Word = Word::new("Table copied.");
 /// A row of it.
 /// A mark of the walk.
-pub(crate) const SEAM: &str = "Transition to another clip";
+pub(crate) const SEAM: Word = Word::new("Transition to another clip");
 
 /// What is opened by a click: its name, what it does, and the values that it sets.
 pub(crate) struct Experiment {
-    pub(crate) name: &'static str,
-    pub(crate) help: &'static str,
+    pub(crate) name: Word,
+    pub(crate) help: Word,
     pub(crate) query: &'static str,
 }
 
 /// The experiments of the course, each on the same seed.
 pub(crate) const GRAPH_EXPERIMENTS: &[Experiment] = &[
     Experiment {
-        name: "Windows: full, half, third",
-        help: "Longer is smoother but slower to respond; shorter is snappier but pops.",
+        name: Word::new("Windows: full, half, third"),
+        help: Word::new("Longer is smoother but slower to respond; shorter is snappier but pops."),
         query: "construction=segments&segment_size=60&blend_window=30&compare=blend_window:30,15,10",
     },
     Experiment {
-        name: "Segments: full, half, third",
-        help: "Long segments rarely repeat; short ones change clips all the time. A third is no longer than the window: nothing is left of a segment, and many programs crash.",
+        name: Word::new("Segments: full, half, third"),
+        help: Word::new(
+            "Long segments rarely repeat; short ones change clips all the time. A third is no longer than the window: nothing is left of a segment, and many programs crash.",
+        ),
         query: "construction=segments&blend_window=20&segment_size=60&compare=segment_size:60,30,20",
     },
     Experiment {
-        name: "Continuity: low, medium, high",
-        help: "How long a clip plays without a transition.",
+        name: Word::new("Continuity: low, medium, high"),
+        help: Word::new("How long a clip plays without a transition."),
         query: "going_on=share&compare=continuity:0.3,0.8,0.98",
     },
     Experiment {
-        name: "Continuation weight: 1 and 1000",
-        help: "A constant weight beside those of the transitions: the more transitions leave a segment, the less likely the clip continues.",
+        name: Word::new("Continuation weight: 1 and 1000"),
+        help: Word::new(
+            "A constant weight beside those of the transitions: the more transitions leave a segment, the less likely the clip continues.",
+        ),
         query: "going_on=constant&edge_weight=proportional&compare=continuity_weight:1,1000",
     },
     Experiment {
-        name: "atan for atan2",
-        help: "Every clip is aligned back to front, as if it faced the other way in its file: the character spins.",
+        name: Word::new("atan for atan2"),
+        help: Word::new(
+            "Every clip is aligned back to front, as if it faced the other way in its file: the character spins.",
+        ),
         query: "transform=whole&compare=atan:atan2,atan",
     },
     Experiment {
-        name: "Degrees for radians",
-        help: "An angle in degrees used as radians: every clip moves off in a wrong direction.",
+        name: Word::new("Degrees for radians"),
+        help: Word::new(
+            "An angle in degrees used as radians: every clip moves off in a wrong direction.",
+        ),
         query: "transform=whole&compare=atan:atan2,degrees",
     },
     Experiment {
-        name: "First frame only",
-        help: "The clip starts at the right position, then continues in its recorded direction, or jumps back to its recorded position.",
+        name: Word::new("First frame only"),
+        help: Word::new(
+            "The clip starts at the right position, then continues in its recorded direction, or jumps back to its recorded position.",
+        ),
         query: "atan=atan2&compare=transform:whole,first,teleport",
     },
 ];

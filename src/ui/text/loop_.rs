@@ -1,22 +1,24 @@
 //! The texts of the Loop lab.
 
+use crate::ui::language::Word;
 use segue_session::choices::LoopMethod;
 use segue_text::{Message, msg};
 
 /// What the Loop lab does.
-pub(crate) const LOOP_ABOUT: &str =
-    "Makes a seamless loop from a part of A: the difference between its ends is spread over it.";
+pub(crate) const LOOP_ABOUT: Word = Word::new(
+    "Makes a seamless loop from a part of A: the difference between its ends is spread over it.",
+);
 /// What the half-life does to a loop.
-pub(crate) const LOOP_HALF_LIFE: &str =
-    "How far into the cycle the correction reaches from its ends.";
+pub(crate) const LOOP_HALF_LIFE: Word =
+    Word::new("How far into the cycle the correction reaches from its ends.");
 /// Several methods on the same cycle.
-pub(crate) const LOOP_SHOOT_OUT: &str = "Compare methods";
+pub(crate) const LOOP_SHOOT_OUT: Word = Word::new("Compare methods");
 /// What the button opens.
 pub(crate) const LOOP_SHOOT_OUT_QUERY: &str = "loop_method:exact,both,end";
 
 /// What a way to close a loop does.
-pub(crate) fn loop_method(method: LoopMethod) -> &'static str {
-    match method {
+pub(crate) fn loop_method(method: LoopMethod) -> Word {
+    Word::new(match method {
         LoopMethod::Both => {
             "Independent springs from both ends: what has not decayed at the other end remains as a seam."
         }
@@ -34,7 +36,7 @@ pub(crate) fn loop_method(method: LoopMethod) -> &'static str {
         LoopMethod::Exact => {
             "Springs from both ends, solved so that pose and velocity match exactly."
         }
-    }
+    })
 }
 
 /// How the ends of a cycle were found.

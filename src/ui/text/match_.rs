@@ -1,79 +1,86 @@
 //! The texts of the Match lab.
 
+use crate::ui::language::Word;
 use segue_motion::matching::{Block, Database, HoldReason, RATE, SearchReason, SearchRecord, Tag};
 use segue_session::HandTag;
 use segue_session::choices::Hysteresis;
 use segue_text::{Message, msg};
 
 /// What the Match lab does.
-pub(crate) const MATCH_ABOUT: &str = "Drive the character: W A S D or arrows, Shift to run, Q to strafe. Several times a second, all clips are searched for the best-matching frame.";
+pub(crate) const MATCH_ABOUT: Word = Word::new(
+    "Drive the character: W A S D or arrows, Shift to run, Q to strafe. Several times a second, all clips are searched for the best-matching frame.",
+);
 /// The same over the stage.
-pub(crate) const MATCH_HINT: &str = "Drive with W A S D or the arrows, Shift to run, or the stick. Orange: the requested trajectory. Blue: the trajectory of the current frame.";
+pub(crate) const MATCH_HINT: Word = Word::new(
+    "Drive with W A S D or the arrows, Shift to run, or the stick. Orange: the requested trajectory. Blue: the trajectory of the current frame.",
+);
 /// Over a pane whose character the user drives.
-pub(crate) const LIVE: &str = "Yours";
+pub(crate) const LIVE: Word = Word::new("Yours");
 /// The stick on the screen.
-pub(crate) const STICK: &str = "Stick: drive the character";
+pub(crate) const STICK: Word = Word::new("Stick: drive the character");
 /// Beside it.
-pub(crate) const RUN: &str = "Run";
+pub(crate) const RUN: Word = Word::new("Run");
 /// Likewise.
-pub(crate) const RUN_HELP: &str = "The stick runs instead of walking";
+pub(crate) const RUN_HELP: Word = Word::new("The stick runs instead of walking");
 /// A section.
-pub(crate) const WHY: &str = "Why this frame";
+pub(crate) const WHY: Word = Word::new("Why this frame");
 /// Before there was a search.
-pub(crate) const NO_SEARCH: &str = "No search yet.";
+pub(crate) const NO_SEARCH: Word = Word::new("No search yet.");
 /// How candidates are looked at.
-pub(crate) const GHOST_HELP: &str = "Point at a frame to show it as a ghost; click to keep it.";
+pub(crate) const GHOST_HELP: Word =
+    Word::new("Point at a frame to show it as a ghost; click to keep it.");
 /// A section.
-pub(crate) const WEIGHTS: &str = "Feature weights";
+pub(crate) const WEIGHTS: Word = Word::new("Feature weights");
 /// A section.
-pub(crate) const HYSTERESIS: &str = "Hysteresis";
+pub(crate) const HYSTERESIS: Word = Word::new("Hysteresis");
 /// A section.
-pub(crate) const SEARCHING: &str = "Search and tags";
+pub(crate) const SEARCHING: Word = Word::new("Search and tags");
 /// A section.
-pub(crate) const GOING_OVER: &str = "Transition and trajectory";
+pub(crate) const GOING_OVER: Word = Word::new("Transition and trajectory");
 /// A section.
-pub(crate) const MATCH_CLIPS: &str = "Clips and characters";
+pub(crate) const MATCH_CLIPS: Word = Word::new("Clips and characters");
 /// A button.
-pub(crate) const REPLAY: &str = "Replay";
+pub(crate) const REPLAY: Word = Word::new("Replay");
 /// What it does.
-pub(crate) const REPLAY_HELP: &str =
-    "Replays the same input exactly, from the start; the link then includes it";
+pub(crate) const REPLAY_HELP: Word =
+    Word::new("Replays the same input exactly, from the start; the link then includes it");
 /// A button.
-pub(crate) const START_OVER: &str = "Start over";
+pub(crate) const START_OVER: Word = Word::new("Start over");
 /// What it does.
-pub(crate) const START_OVER_HELP: &str = "Returns to the origin and clears the recorded input";
+pub(crate) const START_OVER_HELP: Word =
+    Word::new("Returns to the origin and clears the recorded input");
 /// A button.
-pub(crate) const DRIVE_YOURSELF: &str = "Take control";
+pub(crate) const DRIVE_YOURSELF: Word = Word::new("Take control");
 /// While written input plays.
-pub(crate) const RECORDED: &str =
-    "Recorded input, the same for everyone. Change the weights and compare the results.";
+pub(crate) const RECORDED: Word =
+    Word::new("Recorded input, the same for everyone. Change the weights and compare the results.");
 /// A button.
-pub(crate) const HYSTERESES: &str = "Compare hysteresis: none, bias, votes";
+pub(crate) const HYSTERESES: Word = Word::new("Compare hysteresis: none, bias, votes");
 /// What it opens.
 pub(crate) const HYSTERESES_QUERY: &str = "hysteresis:none,bias,votes";
 /// Of the clips.
-pub(crate) const MADE_SET: &str =
-    "The synthesised set: standing, walks and runs, turns, starts, stops and spins.";
+pub(crate) const MADE_SET: Word =
+    Word::new("The synthesised set: standing, walks and runs, turns, starts, stops and spins.");
 /// The strip's name.
-pub(crate) const CLIP_STRIP: &str = "All clips, with the current frame";
+pub(crate) const CLIP_STRIP: Word = Word::new("All clips, with the current frame");
 /// Of the curves.
-pub(crate) const COST: &str = "cost";
+pub(crate) const COST: Word = Word::new("cost");
 /// Likewise.
-pub(crate) const COST_GOING_ON: &str = "continuing";
+pub(crate) const COST_GOING_ON: Word = Word::new("continuing");
 /// Likewise.
-pub(crate) const COST_BEST: &str = "best frame";
+pub(crate) const COST_BEST: Word = Word::new("best frame");
 /// A mark on the timeline.
-pub(crate) const JUMP: &str = "Jump to another frame";
+pub(crate) const JUMP: Word = Word::new("Jump to another frame");
 
 /// What a block of features is called below the bars.
-pub(crate) const fn block(block: Block) -> &'static str {
-    match block {
+pub(crate) const fn block(block: Block) -> Word {
+    Word::new(match block {
         Block::TrajectoryPosition => "path ahead",
         Block::TrajectoryDirection => "facing ahead",
         Block::FootPosition => "foot position",
         Block::FootVelocity => "foot velocity",
         Block::HipVelocity => "hip velocity",
-    }
+    })
 }
 
 /// A frame by its clip and time.
@@ -97,8 +104,8 @@ pub(crate) fn driven_for(secs: f64) -> Message {
 }
 
 /// What a way to hold on does.
-pub(crate) fn hysteresis(word: Hysteresis) -> &'static str {
-    match word {
+pub(crate) fn hysteresis(word: Hysteresis) -> Word {
+    Word::new(match word {
         Hysteresis::None => "Always takes the best frame, however small the gain: many jumps.",
         Hysteresis::Time => "Waits a minimum time after each jump.",
         Hysteresis::Votes => "Jumps when three searches in a row find a better frame.",
@@ -106,12 +113,12 @@ pub(crate) fn hysteresis(word: Hysteresis) -> &'static str {
             "Jumps to another clip when three searches in a row find a better frame there; within a clip it jumps at once."
         }
         Hysteresis::Bias => "Favours continuing the current clip.",
-    }
+    })
 }
 
 /// Whether a search led anywhere.
-fn held(held: Option<HoldReason>) -> &'static str {
-    match held {
+fn held(held: Option<HoldReason>) -> Word {
+    Word::new(match held {
         None => "jumped to the best match",
         Some(HoldReason::Same) => "stayed: already at the best match",
         Some(HoldReason::Bias) => "stayed: improvement below the bias",
@@ -119,7 +126,7 @@ fn held(held: Option<HoldReason>) -> &'static str {
         Some(HoldReason::Votes) => "stayed: fewer than 3 votes in a row",
         Some(HoldReason::CurrentClip) => "stayed in its clip: constant input",
         Some(HoldReason::Nothing) => "stayed: no frame has the requested tags",
-    }
+    })
 }
 
 /// What a search came to, in a few words.

@@ -1,134 +1,141 @@
 //! What the page says: its panels, buttons and the details of a clip.
 
+use crate::ui::language::Word;
 use segue_session::export::ExportFormat;
 use segue_session::{ClipSet, Entry, Job, JobKind, MemoryUse, Origin, StorageState};
 use segue_text::{Message, msg};
 
-pub(crate) const APP: &str = "Segue";
-pub(crate) const LIBRARY: &str = "Library";
+pub(crate) const APP: Word = Word::new("Segue");
+pub(crate) const LIBRARY: Word = Word::new("Library");
 /// Names of parts of the page, for a screen reader.
-pub(crate) const TOP_BAR: &str = "Top bar";
-pub(crate) const TIMELINE: &str = "Timeline";
-pub(crate) const MAP: &str = "Map";
-pub(crate) const SKIP_TO_PARAMETERS: &str = "Skip to the parameters";
-pub(crate) const SAVED: &str = "Saved";
-pub(crate) const SAVING: &str = "Saving…";
-pub(crate) const NOT_ALL_SAVED: &str = "Not all saved";
-pub(crate) const MEMORY: &str = "Memory";
-pub(crate) const SAMPLES: &str = "samples";
-pub(crate) const DROP_HERE: &str = "Drop BVH, ASF + AMC, GLB, a zip or a folder";
-pub(crate) const OPEN_FILES: &str = "open…";
-pub(crate) const DROP_NOW: &str = "Drop to open";
+pub(crate) const TOP_BAR: Word = Word::new("Top bar");
+pub(crate) const TIMELINE: Word = Word::new("Timeline");
+pub(crate) const MAP: Word = Word::new("Map");
+pub(crate) const SKIP_TO_PARAMETERS: Word = Word::new("Skip to the parameters");
+pub(crate) const SAVED: Word = Word::new("Saved");
+pub(crate) const SAVING: Word = Word::new("Saving…");
+pub(crate) const NOT_ALL_SAVED: Word = Word::new("Not all saved");
+pub(crate) const MEMORY: Word = Word::new("Memory");
+pub(crate) const SAMPLES: Word = Word::new("samples");
+pub(crate) const DROP_HERE: Word = Word::new("Drop BVH, ASF + AMC, GLB, a zip or a folder");
+pub(crate) const OPEN_FILES: Word = Word::new("open…");
+pub(crate) const DROP_NOW: Word = Word::new("Drop to open");
 /// Of a clip that was read in the wrong unit, or with a root that is elsewhere in a row.
-pub(crate) const MEND: &str = "Correct it";
+pub(crate) const MEND: Word = Word::new("Correct it");
 /// Of several of them.
-pub(crate) const MEND_ALL: &str = "Correct all";
+pub(crate) const MEND_ALL: Word = Word::new("Correct all");
 /// In a frame of another page.
-pub(crate) const HOST_READS: &str =
-    "The page that embeds Segue can read and save what you open here.";
-pub(crate) const COMPARE: &str = "Compare";
-pub(crate) const COMPARE_OFF: &str = "One pane";
+pub(crate) const HOST_READS: Word =
+    Word::new("The page that embeds Segue can read and save what you open here.");
+pub(crate) const COMPARE: Word = Word::new("Compare");
+pub(crate) const COMPARE_OFF: Word = Word::new("One pane");
 /// Of what several values stand side by side, and nothing of the kind.
-pub(crate) const SIDE_BY_SIDE: &str = "Compare values";
-pub(crate) const COMPARE_NOTHING: &str = "off";
-pub(crate) const PANE_MORE: &str = "Add a pane";
-pub(crate) const PANE_LESS: &str = "Remove a pane";
-pub(crate) const COMPARE_HELP: &str = "Full, half and a third of the value side by side";
-pub(crate) const FULL_HALF_THIRD: &str = "full, half, third";
-pub(crate) const COPY_LINK: &str = "Copy link";
-pub(crate) const LINK: &str = "Link";
-pub(crate) const LINK_COPIED: &str = "Link copied. It opens exactly this state.";
-pub(crate) const COPY_REPORT: &str = "Copy a report: picture, settings, numbers, link";
-pub(crate) const REPORT: &str = "Copy a report";
-pub(crate) const REPORT_COPIED: &str = "Report copied as Markdown, with the picture.";
-pub(crate) const COMPARE_WITH_A: &str = "Compare with A";
-pub(crate) const COMPARE_CLIPS: &str = "Compare with B";
-pub(crate) const COMPARE_CLIPS_HELP: &str =
-    "A and B unchanged, side by side, with the same metrics";
-pub(crate) const BLEND_MORE: &str = "Blend in another clip";
-pub(crate) const TAGS: &str = "Tags";
-pub(crate) const TAGS_HELP: &str = "Speed and turn rate suggest tags. To tag part of a clip by hand, drag along it in the strip below the stage.";
-pub(crate) const TAG_WHAT_PLAYS: &str = "Select what is playing";
-pub(crate) const STRETCH_FROM: &str = "Range start";
-pub(crate) const STRETCH_TO: &str = "Range end";
-pub(crate) const OWN_WORD: &str = "Custom tag";
-pub(crate) const TYPE_A_WORD: &str = "type it, then press Enter";
-pub(crate) const TAKE_TAG_AWAY: &str = "Remove this tag";
-pub(crate) const THEME: &str = "Dark or light";
-pub(crate) const PROJECTOR: &str = "Projector: larger type";
-pub(crate) const LARGER: &str = "Aa";
+pub(crate) const SIDE_BY_SIDE: Word = Word::new("Compare values");
+pub(crate) const COMPARE_NOTHING: Word = Word::new("off");
+pub(crate) const PANE_MORE: Word = Word::new("Add a pane");
+pub(crate) const PANE_LESS: Word = Word::new("Remove a pane");
+pub(crate) const COMPARE_HELP: Word = Word::new("Full, half and a third of the value side by side");
+pub(crate) const FULL_HALF_THIRD: Word = Word::new("full, half, third");
+pub(crate) const COPY_LINK: Word = Word::new("Copy link");
+pub(crate) const LINK: Word = Word::new("Link");
+pub(crate) const LINK_COPIED: Word = Word::new("Link copied. It opens exactly this state.");
+pub(crate) const COPY_REPORT: Word = Word::new("Copy a report: picture, settings, numbers, link");
+pub(crate) const REPORT: Word = Word::new("Copy a report");
+pub(crate) const REPORT_COPIED: Word = Word::new("Report copied as Markdown, with the picture.");
+pub(crate) const COMPARE_WITH_A: Word = Word::new("Compare with A");
+pub(crate) const COMPARE_CLIPS: Word = Word::new("Compare with B");
+pub(crate) const COMPARE_CLIPS_HELP: Word =
+    Word::new("A and B unchanged, side by side, with the same metrics");
+pub(crate) const BLEND_MORE: Word = Word::new("Blend in another clip");
+pub(crate) const TAGS: Word = Word::new("Tags");
+pub(crate) const TAGS_HELP: Word = Word::new(
+    "Speed and turn rate suggest tags. To tag part of a clip by hand, drag along it in the strip below the stage.",
+);
+pub(crate) const TAG_WHAT_PLAYS: Word = Word::new("Select what is playing");
+pub(crate) const STRETCH_FROM: Word = Word::new("Range start");
+pub(crate) const STRETCH_TO: Word = Word::new("Range end");
+pub(crate) const OWN_WORD: Word = Word::new("Custom tag");
+pub(crate) const TYPE_A_WORD: Word = Word::new("type it, then press Enter");
+pub(crate) const TAKE_TAG_AWAY: Word = Word::new("Remove this tag");
+pub(crate) const THEME: Word = Word::new("Dark or light");
+pub(crate) const PROJECTOR: Word = Word::new("Projector: larger type");
+pub(crate) const LARGER: Word = Word::new("Aa");
 /// Behind the sign 中.
-pub(crate) const OR_ENGLISH: &str = "/ EN";
-pub(crate) const HELP: &str = "Shortcuts";
-pub(crate) const MENU: &str = "Menu";
-pub(crate) const MORE_LABS: &str = "More labs";
-pub(crate) const UNDO: &str = "Undo";
-pub(crate) const REDO: &str = "Redo";
-pub(crate) const REMOVE: &str = "Remove";
-pub(crate) const RENAME: &str = "Rename";
-pub(crate) const DETAILS: &str = "Details";
-pub(crate) const SAVE_AS: &str = "Save as";
-pub(crate) const SAVE: &str = "Save the file";
-pub(crate) const SAVE_OPTIONS: &str = "File options";
-pub(crate) const SAVED_PANE: &str = "Result";
-pub(crate) const SAVE_UNIT: &str = "Unit of length";
-pub(crate) const SAVE_BODY: &str = "Body in the file";
-pub(crate) const BODY_CHARACTER: &str = "Character on the stage";
-pub(crate) const BODY_PLAIN: &str = "Plain body";
-pub(crate) const ROTATION_ORDER: &str = "Rotation order";
-pub(crate) const FILE_FORMAT: &str = "File format";
-pub(crate) const SAVE_PICTURE: &str = "Save the stage as a picture";
-pub(crate) const RECORD: &str = "Record a video of the page";
-pub(crate) const STOP_RECORDING: &str = "Stop recording and save";
-pub(crate) const RECORDING: &str = "Recording";
-pub(crate) const USE_AS_A: &str = "Use as A";
-pub(crate) const USE_AS_B: &str = "Use as B";
-pub(crate) const LOADING: &str = "loading…";
-pub(crate) const LOADING_SAMPLES: &str = "Loading samples";
-pub(crate) const FRAME_ALL: &str = "Frame all";
-pub(crate) const TOP_VIEW: &str = "Top view";
-pub(crate) const FOLLOW: &str = "Camera follows";
-pub(crate) const KEEP: &str = "Keep in library";
-pub(crate) const STAGE: &str = "Stage";
-pub(crate) const CAMERA: &str = "Camera";
-pub(crate) const CURVES: &str = "curves";
-pub(crate) const RESULT: &str = "result";
-pub(crate) const LENGTH: &str = "Length";
-pub(crate) const FRAMES: &str = "Frames";
-pub(crate) const FRAME_RATE: &str = "Frame rate";
-pub(crate) const BODY_HEIGHT: &str = "Body height";
-pub(crate) const GROUND: &str = "Ground";
+pub(crate) const OR_ENGLISH: Word = Word::new("/ EN");
+pub(crate) const HELP: Word = Word::new("Shortcuts");
+pub(crate) const MENU: Word = Word::new("Menu");
+pub(crate) const MORE_LABS: Word = Word::new("More labs");
+pub(crate) const UNDO: Word = Word::new("Undo");
+pub(crate) const REDO: Word = Word::new("Redo");
+pub(crate) const REMOVE: Word = Word::new("Remove");
+pub(crate) const RENAME: Word = Word::new("Rename");
+pub(crate) const DETAILS: Word = Word::new("Details");
+pub(crate) const SAVE_AS: Word = Word::new("Save as");
+pub(crate) const SAVE: Word = Word::new("Save the file");
+pub(crate) const SAVE_OPTIONS: Word = Word::new("File options");
+pub(crate) const SAVED_PANE: Word = Word::new("Result");
+pub(crate) const SAVE_UNIT: Word = Word::new("Unit of length");
+pub(crate) const SAVE_BODY: Word = Word::new("Body in the file");
+pub(crate) const BODY_CHARACTER: Word = Word::new("Character on the stage");
+pub(crate) const BODY_PLAIN: Word = Word::new("Plain body");
+pub(crate) const ROTATION_ORDER: Word = Word::new("Rotation order");
+pub(crate) const FILE_FORMAT: Word = Word::new("File format");
+pub(crate) const SAVE_PICTURE: Word = Word::new("Save the stage as a picture");
+pub(crate) const RECORD: Word = Word::new("Record a video of the page");
+pub(crate) const STOP_RECORDING: Word = Word::new("Stop recording and save");
+pub(crate) const RECORDING: Word = Word::new("Recording");
+pub(crate) const USE_AS_A: Word = Word::new("Use as A");
+pub(crate) const USE_AS_B: Word = Word::new("Use as B");
+pub(crate) const LOADING: Word = Word::new("loading…");
+pub(crate) const LOADING_SAMPLES: Word = Word::new("Loading samples");
+pub(crate) const FRAME_ALL: Word = Word::new("Frame all");
+pub(crate) const TOP_VIEW: Word = Word::new("Top view");
+pub(crate) const FOLLOW: Word = Word::new("Camera follows");
+pub(crate) const KEEP: Word = Word::new("Keep in library");
+pub(crate) const STAGE: Word = Word::new("Stage");
+pub(crate) const CAMERA: Word = Word::new("Camera");
+pub(crate) const CURVES: Word = Word::new("curves");
+pub(crate) const RESULT: Word = Word::new("result");
+pub(crate) const LENGTH: Word = Word::new("Length");
+pub(crate) const FRAMES: Word = Word::new("Frames");
+pub(crate) const FRAME_RATE: Word = Word::new("Frame rate");
+pub(crate) const BODY_HEIGHT: Word = Word::new("Body height");
+pub(crate) const GROUND: Word = Word::new("Ground");
 /// Of a body whose feet cannot be held.
-pub(crate) const NO_LEGS: &str = "The foot lock does nothing: this skeleton has no leg with thigh, shin and foot. Assign these joints under Body parts in the View lab.";
-pub(crate) const FEET: &str = "Feet and ground";
-pub(crate) const MEAN_SPEED: &str = "Mean speed";
-pub(crate) const JOINTS: &str = "Joints";
-pub(crate) const JOINT_TREE: &str = "Joints of the clip";
-pub(crate) const MADE_BODY: &str = "generated from the skeleton";
-pub(crate) const BODY_PARTS: &str = "Body parts";
-pub(crate) const BODY_PARTS_HELP: &str =
-    "The joint of each body part, found by name or by shape. Change what is wrong.";
-pub(crate) const UNIT: &str = "Unit";
-pub(crate) const UP_AXIS: &str = "Up axis";
-pub(crate) const AS_FOUND: &str = "as detected";
-pub(crate) const AS_FILE: &str = "as in the file";
-pub(crate) const AS_IT_IS: &str = "unchanged";
-pub(crate) const OTHER: &str = "other…";
-pub(crate) const TYPED_RATE: &str = "Frames per second";
-pub(crate) const DROP_T_POSE: &str = "Skip the T-pose";
-pub(crate) const NOBODY: &str = "none";
-pub(crate) const FOUND: &str = "Found automatically";
-pub(crate) const BY_HAND: &str =
-    "Set by hand; double-click the label to find the best match again.";
-pub(crate) const SMOOTHEST: &str = "smoothest";
-pub(crate) const ROUGHEST: &str = "roughest";
-pub(crate) const WELCOME_HINT: &str = "The same walk, in sync. Watch the feet and hips: the shorter the blend window, the more abrupt the change to the run.";
-pub(crate) const EMPTY_PANE: &str = "Nothing to show yet";
+pub(crate) const NO_LEGS: Word = Word::new(
+    "The foot lock does nothing: this skeleton has no leg with thigh, shin and foot. Assign these joints under Body parts in the View lab.",
+);
+pub(crate) const FEET: Word = Word::new("Feet and ground");
+pub(crate) const MEAN_SPEED: Word = Word::new("Mean speed");
+pub(crate) const JOINTS: Word = Word::new("Joints");
+pub(crate) const JOINT_TREE: Word = Word::new("Joints of the clip");
+pub(crate) const MADE_BODY: Word = Word::new("generated from the skeleton");
+pub(crate) const BODY_PARTS: Word = Word::new("Body parts");
+pub(crate) const BODY_PARTS_HELP: Word =
+    Word::new("The joint of each body part, found by name or by shape. Change what is wrong.");
+pub(crate) const UNIT: Word = Word::new("Unit");
+pub(crate) const UP_AXIS: Word = Word::new("Up axis");
+pub(crate) const AS_FOUND: Word = Word::new("as detected");
+pub(crate) const AS_FILE: Word = Word::new("as in the file");
+pub(crate) const AS_IT_IS: Word = Word::new("unchanged");
+pub(crate) const OTHER: Word = Word::new("other…");
+pub(crate) const TYPED_RATE: Word = Word::new("Frames per second");
+pub(crate) const DROP_T_POSE: Word = Word::new("Skip the T-pose");
+pub(crate) const NOBODY: Word = Word::new("none");
+pub(crate) const FOUND: Word = Word::new("Found automatically");
+pub(crate) const BY_HAND: Word =
+    Word::new("Set by hand; double-click the label to find the best match again.");
+pub(crate) const SMOOTHEST: Word = Word::new("smoothest");
+pub(crate) const ROUGHEST: Word = Word::new("roughest");
+pub(crate) const WELCOME_HINT: Word = Word::new(
+    "The same walk, in sync. Watch the feet and hips: the shorter the blend window, the more abrupt the change to the run.",
+);
+pub(crate) const EMPTY_PANE: Word = Word::new("Nothing to show yet");
 /// On a pane that still shows an earlier result.
-pub(crate) const OUTDATED: &str = "updating…";
+pub(crate) const OUTDATED: Word = Word::new("updating…");
 /// Below a button that keeps and rows that save.
-pub(crate) const NOTHING_TO_KEEP: &str = "There is no result to keep or save.";
-pub(crate) const STILL_COMPUTED: &str = "The result is still being computed.";
+pub(crate) const NOTHING_TO_KEEP: Word = Word::new("There is no result to keep or save.");
+pub(crate) const STILL_COMPUTED: Word = Word::new("The result is still being computed.");
 
 /// What is being worked on, and how much of it is done.
 pub(crate) fn under_way(job: &Job) -> Message {
@@ -144,20 +151,20 @@ pub(crate) fn under_way(job: &Job) -> Message {
     }
 }
 
-pub(crate) const CLOSE: &str = "Close";
+pub(crate) const CLOSE: Word = Word::new("Close");
 
-pub(crate) const READING: &str = "being read…";
+pub(crate) const READING: Word = Word::new("being read…");
 /// Of a bundled take that did not come: a notice said why.
-pub(crate) const NOT_LOADED: &str = "not loaded: select it again";
+pub(crate) const NOT_LOADED: Word = Word::new("not loaded: select it again");
 /// Likewise, when reading it failed or was stopped: a notice said why.
-pub(crate) const UNREAD: &str = "not read: drop the file again";
+pub(crate) const UNREAD: Word = Word::new("not read: drop the file again");
 /// Likewise.
-pub(crate) const AWAITS_SKELETON: &str = "needs its skeleton: drop the .asf file";
+pub(crate) const AWAITS_SKELETON: Word = Word::new("needs its skeleton: drop the .asf file");
 
 /// What keeps a clip from being played; empty where nothing does.
-pub(crate) fn status(entry: &Entry) -> &'static str {
+pub(crate) fn status(entry: &Entry) -> Word {
     match (&entry.motion, &entry.origin) {
-        (Some(_), _) | (None, Origin::Preset | Origin::Made) => "",
+        (Some(_), _) | (None, Origin::Preset | Origin::Made) => Word::default(),
         (None, Origin::Sample(_)) if entry.unread.is_some() => NOT_LOADED,
         (None, Origin::Sample(_)) => LOADING,
         (None, Origin::File(_)) if entry.unread.is_some() => UNREAD,
@@ -167,7 +174,7 @@ pub(crate) fn status(entry: &Entry) -> &'static str {
 }
 
 /// How far the work is stored.
-pub(crate) fn stored(stored: StorageState) -> &'static str {
+pub(crate) fn stored(stored: StorageState) -> Word {
     match stored {
         StorageState::Done => SAVED,
         StorageState::UnderWay => SAVING,
@@ -182,12 +189,12 @@ pub(crate) fn memory(memory: MemoryUse) -> Message {
 }
 
 /// The name of a file format on screen.
-pub(crate) fn format(format: ExportFormat) -> &'static str {
-    match format {
+pub(crate) fn format(format: ExportFormat) -> Word {
+    Word::new(match format {
         ExportFormat::Bvh => "BVH",
         ExportFormat::Csv => "CSV",
         ExportFormat::Glb => "GLB",
-    }
+    })
 }
 
 /// What the menu of clips shows of one that the link names and that is not here.
@@ -201,12 +208,13 @@ pub(crate) fn others(count: usize) -> Message {
 }
 
 /// A set of clips, and what its button does.
-pub(crate) const fn clip_set(set: ClipSet) -> (&'static str, &'static str) {
-    match set {
+pub(crate) const fn clip_set(set: ClipSet) -> (Word, Word) {
+    let (label, help) = match set {
         ClipSet::Made => ("Synthesised motion", "The default clips of this lab"),
         ClipSet::Captured => {
             ("Real motion (CMU 16)", "Captured walks and runs of one actor, from the CMU database")
         }
         ClipSet::Own => ("My clips", "All clips from the files that you opened"),
-    }
+    };
+    (Word::new(label), Word::new(help))
 }

@@ -1,86 +1,94 @@
 //! The texts of the Path lab.
 
+use crate::ui::language::Word;
 use segue_motion::path::HardTurn;
 use segue_session::PathFacts;
 use segue_session::choices::PathKeep;
 use segue_text::{Message, msg};
 
 /// What the Path lab does.
-pub(crate) const PATH_ABOUT: &str = "The path of the hips is fitted with a spline. Drag its control points to reshape it; the character follows and keeps its local motion.";
+pub(crate) const PATH_ABOUT: Word = Word::new(
+    "The path of the hips is fitted with a spline. Drag its control points to reshape it; the character follows and keeps its local motion.",
+);
 /// The same over the stage.
-pub(crate) const PATH_HINT: &str =
-    "Drag a point to bend the path; the character follows. Double-click the path to add a point.";
+pub(crate) const PATH_HINT: Word = Word::new(
+    "Drag a point to bend the path; the character follows. Double-click the path to add a point.",
+);
 /// A button.
-pub(crate) const DRAW: &str = "Draw";
+pub(crate) const DRAW: Word = Word::new("Draw");
 /// Its hint.
-pub(crate) const DRAW_HELP: &str =
-    "Draw a path on the ground in one stroke; end at its start to make a loop";
+pub(crate) const DRAW_HELP: Word =
+    Word::new("Draw a path on the ground in one stroke; end at its start to make a loop");
 /// Over the stage, until something was drawn.
-pub(crate) const DRAW_HINT: &str = "Draw the path on the ground in one stroke. Esc cancels.";
+pub(crate) const DRAW_HINT: Word =
+    Word::new("Draw the path on the ground in one stroke. Esc cancels.");
 /// A button.
-pub(crate) const ADD_POINT: &str = "Add point";
+pub(crate) const ADD_POINT: Word = Word::new("Add point");
 /// Its hint.
-pub(crate) const ADD_POINT_HELP: &str =
-    "Adds a control point after the selected one; the path keeps its shape";
+pub(crate) const ADD_POINT_HELP: Word =
+    Word::new("Adds a control point after the selected one; the path keeps its shape");
 /// A button.
-pub(crate) const REMOVE_POINT: &str = "Remove point";
+pub(crate) const REMOVE_POINT: Word = Word::new("Remove point");
 /// Its hint.
-pub(crate) const REMOVE_POINT_HELP: &str = "Removes the selected control point from the path";
+pub(crate) const REMOVE_POINT_HELP: Word =
+    Word::new("Removes the selected control point from the path");
 /// While no point is chosen.
-pub(crate) const POINTS_HELP: &str = "Drag points on the stage, or select one: arrow keys move it (Shift: farther), Delete removes it, Tab selects the next.";
+pub(crate) const POINTS_HELP: Word = Word::new(
+    "Drag points on the stage, or select one: arrow keys move it (Shift: farther), Delete removes it, Tab selects the next.",
+);
 /// When none is chosen.
-pub(crate) const CHOOSE_POINT: &str = "Select a control point on the stage first.";
+pub(crate) const CHOOSE_POINT: Word = Word::new("Select a control point on the stage first.");
 /// Over the buttons that follow.
-pub(crate) const WHOLE_PATH: &str = "Whole path";
+pub(crate) const WHOLE_PATH: Word = Word::new("Whole path");
 /// A button.
-pub(crate) const TURN_LEFT: &str = "Left 15°";
+pub(crate) const TURN_LEFT: Word = Word::new("Left 15°");
 /// Likewise.
-pub(crate) const TURN_RIGHT: &str = "Right 15°";
+pub(crate) const TURN_RIGHT: Word = Word::new("Right 15°");
 /// Likewise.
-pub(crate) const LARGER_PATH: &str = "Larger";
+pub(crate) const LARGER_PATH: Word = Word::new("Larger");
 /// Likewise.
-pub(crate) const SMALLER_PATH: &str = "Smaller";
+pub(crate) const SMALLER_PATH: Word = Word::new("Smaller");
 /// Likewise.
-pub(crate) const MIRROR: &str = "Mirror";
+pub(crate) const MIRROR: Word = Word::new("Mirror");
 /// Likewise.
-pub(crate) const STRAIGHTEN: &str = "Straighten";
+pub(crate) const STRAIGHTEN: Word = Word::new("Straighten");
 /// Likewise.
-pub(crate) const SMOOTH: &str = "Smooth";
+pub(crate) const SMOOTH: Word = Word::new("Smooth");
 /// Likewise.
-pub(crate) const CLOSE_LOOP: &str = "Close the loop";
+pub(crate) const CLOSE_LOOP: Word = Word::new("Close the loop");
 /// Likewise.
-pub(crate) const OPEN_LOOP: &str = "Open the loop";
+pub(crate) const OPEN_LOOP: Word = Word::new("Open the loop");
 /// Likewise.
-pub(crate) const SNAP_ALL: &str = "Snap all points";
+pub(crate) const SNAP_ALL: Word = Word::new("Snap all points");
 /// Likewise.
-pub(crate) const RESET_PATH: &str = "Reset path";
+pub(crate) const RESET_PATH: Word = Word::new("Reset path");
 /// Its hint.
-pub(crate) const RESET_PATH_HELP: &str =
-    "Restores the fitted path; undo brings the edited one back";
+pub(crate) const RESET_PATH_HELP: Word =
+    Word::new("Restores the fitted path; undo brings the edited one back");
 /// Over what belongs to the fit.
-pub(crate) const FIT: &str = "Fit";
+pub(crate) const FIT: Word = Word::new("Fit");
 /// A button that opens panes.
-pub(crate) const FOUR_EIGHT_SIXTEEN: &str = "4, 8, 16 points";
+pub(crate) const FOUR_EIGHT_SIXTEEN: Word = Word::new("4, 8, 16 points");
 /// What it opens.
 pub(crate) const FOUR_EIGHT_SIXTEEN_QUERY: &str = "control_points:4,8,16";
 /// A chip over a pane whose path turns harder than the motion can.
-pub(crate) const TOO_HARD: &str = "turns too sharply";
+pub(crate) const TOO_HARD: Word = Word::new("turns too sharply");
 /// Where that is, on the timeline.
-pub(crate) const HARD_MOMENT: &str = "The path turns faster than the original";
+pub(crate) const HARD_MOMENT: Word = Word::new("The path turns faster than the original");
 /// Over the list of those who play along.
-pub(crate) const COMPANY: &str = "Also on stage";
+pub(crate) const COMPANY: Word = Word::new("Also on stage");
 /// A button.
-pub(crate) const JOIN: &str = "Add to stage";
+pub(crate) const JOIN: Word = Word::new("Add to stage");
 /// Its hint.
-pub(crate) const JOIN_HELP: &str =
-    "Keeps this character on the stage, so that you can edit another path beside it";
+pub(crate) const JOIN_HELP: Word =
+    Word::new("Keeps this character on the stage, so that you can edit another path beside it");
 /// Which clip is preferred while none is chosen.
-pub(crate) const THE_CLIP_THAT_PLAYS: &str = "the current one";
+pub(crate) const THE_CLIP_THAT_PLAYS: Word = Word::new("the current one");
 /// While none is chosen.
-pub(crate) const CHOOSE_CLIP: &str = "choose…";
+pub(crate) const CHOOSE_CLIP: Word = Word::new("choose…");
 /// What that is for.
-pub(crate) const COMPANY_HELP: &str =
-    "Each has its own path and colour; all play in sync. Links include them.";
+pub(crate) const COMPANY_HELP: Word =
+    Word::new("Each has its own path and colour; all play in sync. Links include them.");
 
 /// What a screen reader says of a control point.
 pub(crate) fn control_point(index: usize, count: usize, place: glam::DVec2) -> Message {
@@ -106,8 +114,8 @@ pub(crate) fn chosen_point(index: usize, count: usize, place: glam::DVec2) -> Me
 }
 
 /// What stays when a path becomes longer or shorter.
-pub(crate) fn path_keep(word: PathKeep) -> &'static str {
-    match word {
+pub(crate) fn path_keep(word: PathKeep) -> Word {
+    Word::new(match word {
         PathKeep::Duration => {
             "Keeps the duration: a longer path is travelled faster, and feet may slide."
         }
@@ -117,7 +125,7 @@ pub(crate) fn path_keep(word: PathKeep) -> &'static str {
         PathKeep::Speed => {
             "Keeps speed and stride: the clip ends before a longer path does, and goes round a closed one."
         }
-    }
+    })
 }
 
 /// How long the path is, and was.
@@ -169,7 +177,8 @@ pub(crate) fn more_hard_turns(count: usize) -> Message {
 }
 
 /// While the feet of a long motion are not planted yet.
-pub(crate) const FEET_LATER: &str = "Long clip: the foot lock is applied when you stop dragging.";
+pub(crate) const FEET_LATER: Word =
+    Word::new("Long clip: the foot lock is applied when you stop dragging.");
 
 /// A button beside a companion.
 pub(crate) fn edit_companion(name: Message) -> Message {

@@ -1,39 +1,45 @@
 //! The texts of the Register lab.
 
+use crate::ui::language::Word;
 use segue_text::{Message, msg};
 
 /// What the Register lab does, and where to look.
-pub(crate) const REGISTER_ABOUT: &str = "Time-warps B so that matching poses line up. Watch the foot contacts on the timeline: A, B and the result strike together.";
+pub(crate) const REGISTER_ABOUT: Word = Word::new(
+    "Time-warps B so that matching poses line up. Watch the foot contacts on the timeline: A, B and the result strike together.",
+);
 /// The same over the stage.
-pub(crate) const REGISTER_HINT: &str =
-    "A and B play beside the result, in sync. Compare with plain: steps double, and feet slide.";
+pub(crate) const REGISTER_HINT: Word = Word::new(
+    "A and B play beside the result, in sync. Compare with plain: steps double, and feet slide.",
+);
 /// What makes the weight of a registered blend a curve.
-pub(crate) const WEIGHT_OVER_TIME: &str = "Draw over time";
+pub(crate) const WEIGHT_OVER_TIME: Word = Word::new("Draw over time");
 /// And a number again.
-pub(crate) const ONE_WEIGHT: &str = "One weight";
+pub(crate) const ONE_WEIGHT: Word = Word::new("One weight");
 /// The ends of the weight.
-pub(crate) const ALL_B: &str = "all B";
+pub(crate) const ALL_B: Word = Word::new("all B");
 /// See [`ALL_B`].
-pub(crate) const ALL_A: &str = "all A";
+pub(crate) const ALL_A: Word = Word::new("all A");
 /// How the curve is worked.
-pub(crate) const WEIGHT_CURVE_HELP: &str =
-    "Drag a key to move it; double-click to add or remove one.";
+pub(crate) const WEIGHT_CURVE_HELP: Word =
+    Word::new("Drag a key to move it; double-click to add or remove one.");
 /// Opens both beside each other.
-pub(crate) const REGISTERED_AND_PLAIN: &str = "Compare registered and plain";
+pub(crate) const REGISTERED_AND_PLAIN: Word = Word::new("Compare registered and plain");
 /// The map's name.
-pub(crate) const DISTANCES: &str = "Distances between A and B";
+pub(crate) const DISTANCES: Word = Word::new("Distances between A and B");
 /// What can be done with the map.
-pub(crate) const MAP_HELP: &str = "Hover: shows both poses. Click: goes there. Drag: adds a pin; drag it out or double-click it to remove it.";
+pub(crate) const MAP_HELP: Word = Word::new(
+    "Hover: shows both poses. Click: goes there. Drag: adds a pin; drag it out or double-click it to remove it.",
+);
 /// A button.
-pub(crate) const REMOVE_PINS: &str = "Remove pins";
+pub(crate) const REMOVE_PINS: Word = Word::new("Remove pins");
 /// Of the parameters below the map.
-pub(crate) const REGISTRATION: &str = "Registration";
+pub(crate) const REGISTRATION: Word = Word::new("Registration");
 /// Before the stripes of feet.
-pub(crate) const FEET_OF_A: &str = "A feet";
+pub(crate) const FEET_OF_A: Word = Word::new("A feet");
 /// Likewise.
-pub(crate) const FEET_OF_B: &str = "B feet";
+pub(crate) const FEET_OF_B: Word = Word::new("B feet");
 /// Likewise.
-pub(crate) const FEET_OF_RESULT: &str = "Result";
+pub(crate) const FEET_OF_RESULT: Word = Word::new("Result");
 
 /// How far apart a pair of frames is.
 pub(crate) fn pair_apart([a, b]: [f64; 2], cm: Option<f64>) -> Message {

@@ -1,17 +1,20 @@
 //! The texts of the Speed and In place labs.
 
+use crate::ui::language::Word;
 use segue_motion::gait::GaitFacts;
 use segue_text::{Message, msg};
 
 /// What the In place lab does.
-pub(crate) const IN_PLACE_ABOUT: &str =
-    "Removes the root motion of a clip, or rebuilds it from the planted feet.";
+pub(crate) const IN_PLACE_ABOUT: Word =
+    Word::new("Removes the root motion of a clip, or rebuilds it from the planted feet.");
 /// What the Speed lab does.
-pub(crate) const SPEED_ABOUT: &str = "Blends two gaits, such as a walk and a run, to any speed between them. Drag the speed while it plays.";
+pub(crate) const SPEED_ABOUT: Word = Word::new(
+    "Blends two gaits, such as a walk and a run, to any speed between them. Drag the speed while it plays.",
+);
 /// Opens the speeds of A and B and the one between.
-pub(crate) const THREE_SPEEDS: &str = "A, midway, B";
+pub(crate) const THREE_SPEEDS: Word = Word::new("A, midway, B");
 /// A chip over a pane whose speed lies beyond both clips.
-pub(crate) const BEYOND: &str = "extrapolated";
+pub(crate) const BEYOND: Word = Word::new("extrapolated");
 
 /// How fast both clips go, and where.
 pub(crate) fn gaits([a, b]: [f64; 2], [[from_a, to_a], [from_b, to_b]]: [[f64; 2]; 2]) -> Message {
@@ -48,4 +51,4 @@ pub(crate) fn beyond_gaits(facts: &GaitFacts, [a, b]: [f64; 2]) -> Option<Messag
 }
 
 /// A mark on the timeline.
-pub(crate) const CYCLE_BEGINS: &str = "Start of a cycle";
+pub(crate) const CYCLE_BEGINS: Word = Word::new("Start of a cycle");

@@ -1,6 +1,7 @@
 //! The texts of the Blend, Transition and Layers labs.
 
 use super::{BY_HAND, FOUND};
+use crate::ui::language::Word;
 use segue_session::choices::Mistake;
 use segue_session::{LayerFacts, LayerFit, RetargetReport, Transition, format_number};
 use segue_text::{Message, msg};
@@ -10,7 +11,7 @@ use segue_text::{Message, msg};
 pub(crate) fn place_found(transition: &Transition, automatic: [bool; 2]) -> Message {
     let by_hand = automatic == [false, false];
     let Some(search) = transition.search.filter(|_| transition.distance_cm.is_finite()) else {
-        return if by_hand { BY_HAND.into() } else { Message::word(FOUND).sentence() };
+        return if by_hand { BY_HAND.into() } else { Message::from(FOUND).sentence() };
     };
     let cm = transition.distance_cm;
     let mut said = match (by_hand, search.by_pose) {
@@ -72,8 +73,8 @@ pub(crate) fn resampled(from: f64, to: f64) -> Message {
 }
 
 /// What the student will see of a mistake of the Transition lab; empty for none.
-pub(crate) fn mistake(key: Mistake) -> &'static str {
-    match key {
+pub(crate) fn mistake(key: Mistake) -> Word {
+    Word::new(match key {
         Mistake::Hemisphere => {
             "Limbs rotate the long way round: half of B's quaternions have the opposite sign, which is the same rotation, and the shorter arc was not chosen."
         }
@@ -102,16 +103,18 @@ pub(crate) fn mistake(key: Mistake) -> &'static str {
             "Feet slide and the speed surges: the positions of A and B are blended, not their velocities."
         }
         Mistake::None => "",
-    }
+    })
 }
 
 /// Of `velocity` where the method is a dissolve, which has no other velocity.
-pub(crate) const VELOCITY_IN_DISSOLVE: &str = "The character steps on the spot during the window, then moves on: its root velocity is thousands of times too small.";
+pub(crate) const VELOCITY_IN_DISSOLVE: Word = Word::new(
+    "The character steps on the spot during the window, then moves on: its root velocity is thousands of times too small.",
+);
 /// For a method that the mistake cannot be made in.
-pub(crate) const MISTAKE_IDLE: &str =
-    "A cut blends nothing, so the bug has no effect: choose another method.";
+pub(crate) const MISTAKE_IDLE: Word =
+    Word::new("A cut blends nothing, so the bug has no effect: choose another method.");
 /// What a comparison opens that shows the mistake.
-pub(crate) const RIGHT_AND_WRONG: &str = "Compare with and without the bug";
+pub(crate) const RIGHT_AND_WRONG: Word = Word::new("Compare with and without the bug");
 
 /// How B's time goes in a layer.
 pub(crate) fn fit(layer: &LayerFacts) -> Message {
@@ -129,17 +132,17 @@ pub(crate) fn fit(layer: &LayerFacts) -> Message {
 }
 
 /// Several methods on the same transition.
-pub(crate) const SHOOT_OUT: &str = "Compare methods";
+pub(crate) const SHOOT_OUT: Word = Word::new("Compare methods");
 /// What the button opens.
 pub(crate) const SHOOT_OUT_QUERY: &str = "method:inertialize,smooth,dead";
 /// The rows of the half-life ruler.
-pub(crate) const HALF_LEFT: &str = "50 % remains after";
+pub(crate) const HALF_LEFT: Word = Word::new("50 % remains after");
 /// Likewise.
-pub(crate) const TENTH_LEFT: &str = "10 %";
+pub(crate) const TENTH_LEFT: Word = Word::new("10 %");
 /// Likewise.
-pub(crate) const HUNDREDTH_LEFT: &str = "1 %";
+pub(crate) const HUNDREDTH_LEFT: Word = Word::new("1 %");
 /// The dissolve with as much of A in it.
-pub(crate) const ALIKE_WINDOW: &str = "Equivalent blend window";
+pub(crate) const ALIKE_WINDOW: Word = Word::new("Equivalent blend window");
 
 #[cfg(test)]
 mod tests {

@@ -1,6 +1,7 @@
 //! The curves of a joint: kept while nothing changes, and the menu that chooses them.
 
-use crate::ui::kit::{self, Part};
+use crate::ui::kit::{self, MenuItem, Part};
+use crate::ui::language::{Text, Word, say};
 use crate::ui::out::Out;
 use crate::ui::text;
 use eframe::egui::{self, RectAlign, Ui};
@@ -10,13 +11,14 @@ use segue_session::choices;
 use segue_session::{
     Key, Kind, Outcome, PlacedClip, RegistrationFacts, Slot, Value, curve_kind, joint_of,
 };
+use segue_text::Message;
 use std::sync::Arc;
 
 /// The curves of the chosen joint, of every pane over each other, kept until a result or the choice
 /// changes.
 #[derive(Debug, Default)]
 pub(crate) struct CurveCache {
-    panes: Vec<(String, Arc<Outcome>)>,
+    panes: Vec<(Message, Arc<Outcome>)>,
     what: (String, Option<choices::Curve>),
     pub(super) lines: Vec<Curve>,
 }
@@ -34,7 +36,7 @@ pub(super) enum CurveOf {
     /// One of the clips that a result was made from.
     Source(Part),
     /// The result of a pane, by its number and its name.
-    Pane(usize, String),
+    Pane(usize, Message),
 }
 
 /// Points of a curve, at most: no screen shows more.
@@ -42,10 +44,10 @@ const MAX_CURVE_POINTS: usize = 900;
 
 impl CurveOf {
     /// Returns its name beside the plot.
-    pub(super) fn name(&self) -> &str {
+    pub(super) fn name(&self) -> Text<'_> {
         match self {
-            Self::Source(part) => part.letter(),
-            Self::Pane(_, name) => name,
+            Self::Source(part) => Text::Data(part.letter()),
+            Self::Pane(_, name) => name.into(),
         }
     }
 }
@@ -55,7 +57,7 @@ impl CurveCache {
     pub(super) fn update(
         &mut self,
         main: &Arc<Outcome>,
-        panes: &[(String, &Arc<Outcome>)],
+        panes: &[(Message, &Arc<Outcome>)],
         joint: &str,
         quantity: choices::Curve,
     ) {
@@ -159,16 +161,13 @@ pub(super) fn curve_menu_ui(outcome: &Outcome, row: &egui::Response, out: &mut O
         row.rect.max,
     );
     let opener = ui.interact(rect, ui.scope_id().with("curve menu"), egui::Sense::click());
-    opener.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, text::CURVES));
+    let name = say(text::CURVES, ui);
+    kit::describe(&opener, &egui::WidgetInfo::labeled(egui::Role::ComboBox, true, name));
     kit::menu_ui(&opener, RectAlign::TOP_END, |ui| {
         if let Kind::Choice(choices) = Key::Curve.param().kind {
             for choice in choices {
-                if kit::menu_item_ui(
-                    kit::MenuItem { text: choice.label, ..kit::MenuItem::default() },
-                    ui,
-                )
-                .clicked()
-                {
+                let text = Word::new(choice.label).into();
+                if kit::menu_item_ui(MenuItem { text, ..MenuItem::default() }, ui).clicked() {
                     out.set_once(Key::Curve, Value::Choice(choice.key));
                 }
             }
@@ -178,12 +177,8 @@ pub(super) fn curve_menu_ui(outcome: &Outcome, row: &egui::Response, out: &mut O
             for role in
                 Role::ALL.into_iter().filter(|&role| outcome.motion.roles().get(role).is_some())
             {
-                if kit::menu_item_ui(
-                    kit::MenuItem { text: role.name(), ..kit::MenuItem::default() },
-                    ui,
-                )
-                .clicked()
-                {
+                let text = Word::new(role.name()).into();
+                if kit::menu_item_ui(MenuItem { text, ..MenuItem::default() }, ui).clicked() {
                     out.set_once(Key::Joint, Value::Text(role.name().to_owned()));
                 }
             }
@@ -206,10 +201,10 @@ mod tests {
             ))
             .unwrap();
         while session.work() {}
-        let panes = named_outcomes(&session, segue_text::Message::to_string);
+        let panes = named_outcomes(&session);
         let mut cache = CurveCache::default();
         cache.update(session.main_outcome().unwrap(), &panes, "right foot", choices::Curve::Angle);
-        let names: Vec<&str> = cache.lines.iter().map(|line| line.of.name()).collect();
+        let names: Vec<_> = cache.lines.iter().map(|line| line.of.name().english()).collect();
         assert_eq!(names, ["A", "B", "inertialize", "dissolve, smooth", "dead blend"]);
         let results = &cache.lines[2..];
         let length = |line: &Curve| line.points.len();

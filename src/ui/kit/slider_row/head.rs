@@ -1,10 +1,11 @@
 //! The line above the track: the label, who decides, the value and its unit, and the field to type
 //! one.
 
+use super::super::assistive::describe;
 use super::super::paint::{Run, faded, focus_ring, line_of, put};
-use super::super::words::Words;
+use super::super::words;
 use super::row::{SliderResponse, SliderRow, Source};
-use crate::ui::language::tr;
+use crate::ui::language::{Text, say};
 use crate::ui::theme::{self, Type, palette_of, space, theme_of};
 use eframe::egui::{
     self, Align2, CursorIcon, Id, Key, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui,
@@ -20,19 +21,20 @@ pub(super) fn head_ui(
     out: &mut SliderResponse,
     ui: &mut Ui,
 ) -> Response {
-    let (theme, palette, words) = (theme_of(ui), palette_of(ui), Words::of(ui));
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
     let enabled = ui.is_enabled();
     let (text, muted) = (faded(palette.text, enabled), faded(palette.muted, enabled));
     let shown = out.changed.unwrap_or(value);
 
-    let number = line_of(&[Run::new(&row.written(shown), Type::Number, text)], f32::INFINITY, ui);
+    let written = row.written(shown);
+    let number = line_of(&[Run::new(Text::Data(&written), Type::Number, text)], f32::INFINITY, ui);
     let mut tail = Vec::new();
     if !row.unit.is_empty() {
         tail.push(Run::new(row.unit, Type::Label, muted).after(space::XS));
     }
     if !row.secondary.is_empty() {
-        tail.push(Run::new("·", Type::Label, muted).after(space::XS));
-        tail.push(Run::new(row.secondary, Type::Label, muted).after(space::XS));
+        tail.push(Run::new(Text::Data("·"), Type::Label, muted).after(space::XS));
+        tail.push(Run::new(Text::Data(row.secondary), Type::Label, muted).after(space::XS));
     }
     let tail = line_of(&tail, f32::INFINITY, ui);
     let mut right = head.right();
@@ -64,14 +66,14 @@ pub(super) fn head_ui(
         }
         put(ui.painter(), number_rect.center(), Align2::CENTER_CENTER, number);
         focus_ring(number_rect, theme::radius::S, &number_response, ui);
-        let said = format!("{}: {}", tr(row.label, ui), tr(words.type_value, ui));
-        number_response.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, &said));
+        let said = format!("{}: {}", say(row.label, ui), say(words::TYPE_VALUE, ui));
+        describe(&number_response, &WidgetInfo::labeled(Role::Button, enabled, said));
         if number_response.clicked() {
             let start = row.written(value).replace('−', "-");
             ui.data_mut(|data| data.insert_temp(edit_id, start));
             ui.data_mut(|data| data.insert_temp(edit_id.with("fresh"), true));
         }
-        number_response.on_hover_text(tr(words.type_value, ui));
+        number_response.on_hover_text(say(words::TYPE_VALUE, ui));
         right = value_hit.left();
     }
 
@@ -82,7 +84,7 @@ pub(super) fn head_ui(
     let label =
         line_of(&[Run::new(row.label, Type::Label, text)], right - head.left() - space::S, ui);
     let rect = put(ui.painter(), head.left_center(), Align2::LEFT_CENTER, label);
-    ui.interact(rect, id.with("label"), Sense::CLICK).on_hover_text(tr(words.reset_hint, ui))
+    ui.interact(rect, id.with("label"), Sense::CLICK).on_hover_text(say(words::RESET_HINT, ui))
 }
 
 /// The word that says who decides: filled while the app does; an outline to press while the user
@@ -94,7 +96,7 @@ fn auto_tag_ui(
     out: &mut SliderResponse,
     ui: &Ui,
 ) -> Rect {
-    let (theme, palette, words) = (theme_of(ui), palette_of(ui), Words::of(ui));
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
     let auto = row.source == Source::Auto;
     let hit_id = id.with("auto");
     let hot = !auto
@@ -103,7 +105,7 @@ fn auto_tag_ui(
             .read_response(hit_id)
             .is_some_and(|response| response.hovered() || response.has_focus());
     let ink = if auto || hot { palette.accent_ink } else { palette.muted };
-    let tag = line_of(&[Run::new(words.auto, Type::SmallStrong, ink)], f32::INFINITY, ui);
+    let tag = line_of(&[Run::new(words::AUTO, Type::SmallStrong, ink)], f32::INFINITY, ui);
     let at = Align2::RIGHT_CENTER.anchor_size(right_center, tag.size() + vec2(12.0, 4.0));
     let corner = at.height() / 2.0;
     if auto || hot {
@@ -118,9 +120,8 @@ fn auto_tag_ui(
         let response =
             ui.interact(hit, hit_id, Sense::click()).on_hover_cursor(CursorIcon::PointingHand);
         focus_ring(at, 8, &response, ui);
-        let (enabled, name) =
-            (ui.is_enabled(), format!("{}: {}", tr(row.label, ui), tr(words.auto, ui)));
-        response.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, &name));
+        let name = format!("{}: {}", say(row.label, ui), say(words::AUTO, ui));
+        describe(&response, &WidgetInfo::labeled(Role::Button, ui.is_enabled(), name));
         out.reset |= response.clicked();
     }
     at
@@ -145,7 +146,7 @@ fn edit_ui(
         .font(font)
         .align(egui::Align2::RIGHT_CENTER);
     let edit = edit.desired_width(field.width()).margin(egui::Margin::symmetric(4, 1));
-    let response = ui.put(field, edit).accessible_name(row.label);
+    let response = ui.put(field, edit).accessible_name(say(row.label, ui));
     if fresh {
         response.request_focus();
         if let Some(mut state) = egui::TextEdit::load_state(ui.ctx(), response.id) {

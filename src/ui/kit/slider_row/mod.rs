@@ -10,7 +10,7 @@ use self::head::head_ui;
 use self::track::{drag, keys, paint_track};
 use super::assistive::{Adjustable, requested};
 use super::paint::{faded, full_width, paragraph, put};
-use crate::ui::language::tr;
+use crate::ui::language::say;
 use crate::ui::theme::{self, Type, palette_of, space, theme_of};
 use eframe::egui::{Align2, Rect, Sense, Ui, pos2};
 
@@ -24,7 +24,7 @@ pub(crate) fn slider_row_ui(value: f64, row: &SliderRow<'_>, ui: &mut Ui) -> Sli
     let theme = theme_of(ui);
     let scale = theme.scale();
     let enabled = ui.is_enabled();
-    let id = ui.make_persistent_id(row.label);
+    let id = ui.make_persistent_id(row.label.english());
     let previous_spacing = std::mem::replace(&mut ui.spacing_mut().item_spacing.y, 0.0);
 
     let head = full_width((20.0 * scale).round(), ui);
@@ -60,12 +60,12 @@ pub(crate) fn slider_row_ui(value: f64, row: &SliderRow<'_>, ui: &mut Ui) -> Sli
     let shown = out.changed.unwrap_or(value);
     paint_track(shown, row, track_area, &out.response, ui);
     let adjustable = Adjustable {
-        name: row.label,
+        name: say(row.label, ui),
         value: shown,
         range: row.range.clone(),
         step: row.step,
         said: spoken(shown, row, ui),
-        help: tr(row.help, ui).into_owned(),
+        help: say(row.help, ui),
     };
     adjustable.describe(&out.response, ui);
 
@@ -87,10 +87,10 @@ pub(crate) fn slider_row_ui(value: f64, row: &SliderRow<'_>, ui: &mut Ui) -> Sli
 
 fn spoken(value: f64, row: &SliderRow<'_>, ui: &Ui) -> String {
     let mut said = row.written(value);
-    for part in [row.unit, row.secondary] {
+    for part in [say(row.unit, ui).as_str(), row.secondary] {
         if !part.is_empty() {
             said.push(' ');
-            said.push_str(&tr(part, ui));
+            said.push_str(part);
         }
     }
     said
@@ -99,9 +99,10 @@ fn spoken(value: f64, row: &SliderRow<'_>, ui: &Ui) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ui::language::Word;
 
     fn row() -> SliderRow<'static> {
-        SliderRow::new("Half-life", 0.01..=10.0, 0.25).step(0.01)
+        SliderRow::new(Word::new("Half-life"), 0.01..=10.0, 0.25).step(0.01)
     }
 
     #[test]
@@ -121,18 +122,18 @@ mod tests {
 
     #[test]
     fn values_land_on_steps_and_stay_in_range() {
-        let row = SliderRow::new("Window", 1.0..=60.0, 15.0).whole();
+        let row = SliderRow::new(Word::new("Window"), 1.0..=60.0, 15.0).whole();
         assert_eq!(row.value_at(0.5, row.step), 31.0);
         assert_eq!(row.value_at(-3.0, row.step), 1.0);
         assert_eq!(row.value_at(7.0, row.step), 60.0);
         // The ends can be reached although they are no multiples of the step.
-        let uneven = SliderRow::new("x", 0.05..=1.97, 0.5).step(0.1);
+        let uneven = SliderRow::new(Word::new("x"), 0.05..=1.97, 0.5).step(0.1);
         assert_eq!((uneven.value_at(0.0, 0.1), uneven.value_at(1.0, 0.1)), (0.05, 1.97));
     }
 
     #[test]
     fn a_range_of_no_width_is_no_trap() {
-        let row = SliderRow::new("x", 2.0..=2.0, 2.0);
+        let row = SliderRow::new(Word::new("x"), 2.0..=2.0, 2.0);
         assert_eq!(row.position(2.0), 0.0);
         assert_eq!(row.value_at(0.5, row.step), 2.0);
     }

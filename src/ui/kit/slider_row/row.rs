@@ -1,5 +1,6 @@
 //! A slider's row as it is described, and what was done to it.
 
+use crate::ui::language::{Text, Word};
 use eframe::egui::{Color32, Response};
 use std::ops::RangeInclusive;
 
@@ -27,10 +28,10 @@ pub(crate) struct Mark {
 /// A parameter as the row shows it.
 #[derive(Clone, Debug)]
 pub(crate) struct SliderRow<'a> {
-    pub(super) label: &'a str,
-    pub(super) unit: &'a str,
+    pub(super) label: Text<'a>,
+    pub(super) unit: Word,
     pub(super) secondary: &'a str,
-    pub(super) help: &'a str,
+    pub(super) help: Text<'a>,
     pub(super) range: RangeInclusive<f64>,
     pub(super) step: f64,
     pub(super) fine: f64,
@@ -44,13 +45,17 @@ pub(crate) struct SliderRow<'a> {
 impl<'a> SliderRow<'a> {
     /// A row for values of `range`, which must rise. One step is a hundredth of it until
     /// [`Self::step`] says otherwise.
-    pub(crate) fn new(label: &'a str, range: RangeInclusive<f64>, default: f64) -> Self {
+    pub(crate) fn new(
+        label: impl Into<Text<'a>>,
+        range: RangeInclusive<f64>,
+        default: f64,
+    ) -> Self {
         let step = (range.end() - range.start()).abs() / 100.0;
         Self {
-            label,
-            unit: "",
+            label: label.into(),
+            unit: Word::default(),
             secondary: "",
-            help: "",
+            help: Text::EMPTY,
             range,
             step,
             fine: step / 10.0,
@@ -63,13 +68,13 @@ impl<'a> SliderRow<'a> {
     }
 
     /// The same row with another label.
-    pub(crate) fn label(mut self, label: &'a str) -> Self {
-        self.label = label;
+    pub(crate) fn label(mut self, label: impl Into<Text<'a>>) -> Self {
+        self.label = label.into();
         self
     }
 
     /// The unit behind the number, in the quiet colour.
-    pub(crate) fn unit(mut self, unit: &'a str) -> Self {
+    pub(crate) fn unit(mut self, unit: Word) -> Self {
         self.unit = unit;
         self
     }
@@ -81,8 +86,8 @@ impl<'a> SliderRow<'a> {
     }
 
     /// One sentence below the track.
-    pub(crate) fn help(mut self, help: &'a str) -> Self {
-        self.help = help;
+    pub(crate) fn help(mut self, help: impl Into<Text<'a>>) -> Self {
+        self.help = help.into();
         self
     }
 

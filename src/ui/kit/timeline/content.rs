@@ -2,18 +2,19 @@
 
 use super::super::chip::Part;
 use super::super::curves::Curves;
+use crate::ui::language::{Text, Word};
 use eframe::egui::Color32;
 use std::ops::Range;
 
 /// A clip on the timeline.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Track<'a> {
     /// Which part it plays: gives the bar its colour.
     pub(crate) part: Part,
     /// What stands before the bar: `A walk`. Hidden where there is no room.
-    pub(crate) label: &'a str,
+    pub(crate) label: Text<'a>,
     /// What stands inside the bar.
-    pub(crate) name: &'a str,
+    pub(crate) name: Text<'a>,
     /// When it begins and ends, in seconds.
     pub(crate) start: f64,
     /// When it ends, in seconds.
@@ -25,25 +26,25 @@ pub(crate) struct Track<'a> {
 }
 
 /// When the feet of a motion stand: the left one in the upper line, the right one in the lower.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Stripe<'a> {
     /// Whose feet: gives the colour.
     pub(crate) part: Part,
     /// What stands before them.
-    pub(crate) label: &'a str,
+    pub(crate) label: Text<'a>,
     /// From and to, seconds: left, right.
     pub(crate) feet: [Vec<Range<f64>>; 2],
 }
 
 /// A moment with a mark: where a foot is planted, or a cycle begins.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Moment<'a> {
+pub(crate) struct Moment {
     /// When, in seconds.
     pub(crate) time: f64,
     /// Its colour.
     pub(crate) color: Color32,
     /// What it is.
-    pub(crate) name: &'a str,
+    pub(crate) name: Word,
 }
 
 /// All that the timeline shows.
@@ -68,7 +69,7 @@ pub(crate) struct Timeline<'a> {
     /// Where it ends, in seconds.
     pub(crate) out_point: Option<f64>,
     /// Marks above the bars.
-    pub(crate) moments: &'a [Moment<'a>],
+    pub(crate) moments: &'a [Moment],
     /// The curves below the bars; none: bars only.
     pub(crate) curves: Option<Curves<'a>>,
 }

@@ -5,6 +5,7 @@ use super::super::keys::keys_pressed;
 use super::super::paint::focus_ring;
 use super::super::time_axis::TimeAxis;
 use super::content::{Timeline, TimelineEvent};
+use crate::ui::language::{Word, say};
 use crate::ui::theme::{HIT, palette_of, radius, theme_of};
 use eframe::egui::{
     CursorIcon, EventFilter, Id, Key, Rangef, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2,
@@ -26,7 +27,7 @@ impl Handles {
     /// An edge of the transition: bare until the pointer is on it.
     pub(super) fn edge_ui(
         &self,
-        name: &str,
+        name: Word,
         time: f64,
         event: fn(f64) -> TimelineEvent,
         timeline: &Timeline<'_>,
@@ -71,7 +72,7 @@ impl Handles {
     )]
     pub(super) fn flag_ui(
         &self,
-        name: &str,
+        name: Word,
         time: f64,
         rightward: bool,
         event: fn(f64) -> TimelineEvent,
@@ -109,7 +110,7 @@ impl Handles {
     #[expect(clippy::too_many_arguments, reason = "private, and each is one plain thing")]
     fn handle(
         &self,
-        name: &str,
+        name: Word,
         time: f64,
         y: Rangef,
         width: f32,
@@ -121,7 +122,7 @@ impl Handles {
         let x = self.axis.x_of(time);
         let hit = Rect::from_x_y_ranges(x - width / 2.0..=x + width / 2.0, y);
         let response = ui
-            .interact(hit, self.id.with(name), Sense::drag())
+            .interact(hit, self.id.with(name.english()), Sense::drag())
             .on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
         if response.drag_started() {
             response.request_focus();
@@ -156,7 +157,8 @@ impl Handles {
             }
         }
         let (said, help) = (format!("{time:.2} s"), String::new());
-        let adjustable = Adjustable { name, value: time, range, step: frame, said, help };
+        let adjustable =
+            Adjustable { name: say(name, ui), value: time, range, step: frame, said, help };
         adjustable.describe(&response, ui);
         focus_ring(hit, radius::S, &response, ui);
         response

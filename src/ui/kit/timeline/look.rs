@@ -1,10 +1,11 @@
 //! How the timeline looks: bars, seconds, the playhead, what a loop leaves out.
 
+use super::super::assistive::describe;
 use super::super::chip::Part;
 use super::super::paint::{Run, gradient_bar, line_of, put};
 use super::super::time_axis::{TimeAxis, nice_step};
 use super::content::{Moment, Stripe, Timeline, Track};
-use crate::ui::language::{say, tr};
+use crate::ui::language::{Text, say};
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{
     Align2, Id, Pos2, Rangef, Rect, Response, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2,
@@ -68,11 +69,9 @@ pub(super) fn paint_ruler(axis: TimeAxis, bottom: f32, plot: Rect, ruler: Rect, 
         }
         let decimals = if tick == 0 { 0 } else { decimals };
         let unit = if tick == 0 { " s" } else { "" };
-        let label = line_of(
-            &[Run::new(&format!("{time:.decimals$}{unit}"), Type::Small, palette.muted)],
-            f32::INFINITY,
-            ui,
-        );
+        let label = format!("{time:.decimals$}{unit}");
+        let run = Run::new(Text::Data(&label), Type::Small, palette.muted);
+        let label = line_of(&[run], f32::INFINITY, ui);
         let anchor = if tick == 0 { Align2::LEFT_BOTTOM } else { Align2::CENTER_BOTTOM };
         if x + label.size().x / 2.0 <= axis.x.max + 1.0 || tick == 0 {
             put(ui.painter(), pos2(x, ruler.bottom()), anchor, label);
@@ -137,7 +136,7 @@ pub(super) fn paint_stripe(stripe: &Stripe<'_>, row: Rangef, axis: TimeAxis, ui:
 }
 
 /// A moment: a small diamond that says its name under the pointer.
-pub(super) fn moment_ui(moment: &Moment<'_>, center: Pos2, id: Id, ui: &Ui) {
+pub(super) fn moment_ui(moment: &Moment, center: Pos2, id: Id, ui: &Ui) {
     let size = 3.0 * theme_of(ui).scale();
     let diamond = vec![
         center - vec2(0.0, size),
@@ -148,9 +147,7 @@ pub(super) fn moment_ui(moment: &Moment<'_>, center: Pos2, id: Id, ui: &Ui) {
     ui.painter().add(Shape::convex_polygon(diamond, moment.color, Stroke::NONE));
     let response =
         ui.interact(Rect::from_center_size(center, vec2(12.0, 12.0)), id, Sense::hover());
-    let said =
-        msg!("{name}, {secs:.2} s", name = tr(moment.name, ui).into_owned(), secs = moment.time);
-    let label = say(&said, ui);
-    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &label));
+    let said = msg!("{name}, {secs:.2} s", name = moment.name, secs = moment.time);
+    describe(&response, &WidgetInfo::labeled(Role::Label, true, say(&said, ui)));
     response.on_hover_text(say(&said, ui));
 }

@@ -12,7 +12,7 @@ use self::scrub::scrub_ui;
 use super::curves::{curves_ui, hover_ui, key_ui};
 use super::paint::{Run, focus_ring, full_width, line_of, put};
 use super::time_axis::TimeAxis;
-use super::words::Words;
+use super::words;
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{Align2, Rangef, Rect, Sense, Ui, pos2};
 
@@ -21,7 +21,7 @@ pub(crate) use self::content::{Moment, Stripe, Timeline, TimelineEvent, Track};
 /// The bars, the curves, and the playhead over both. Press anywhere to go there, drag to scrub, use
 /// the arrow keys for frames.
 pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineEvent> {
-    let (theme, palette, words) = (theme_of(ui), palette_of(ui), Words::of(ui));
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
     let scale = theme.scale();
     let id = ui.make_persistent_id("timeline");
     let spacing = std::mem::replace(&mut ui.spacing_mut().item_spacing.y, 0.0);
@@ -113,7 +113,7 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
     let handles = Handles { axis, top: bars.top(), bottom: plot_row.bottom(), id };
     if let (Some(transition), true) = (&timeline.transition, timeline.transition_editable) {
         handles.edge_ui(
-            words.transition_start,
+            words::TRANSITION_START,
             transition.start,
             TimelineEvent::SetTransitionStart,
             timeline,
@@ -121,7 +121,7 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
             ui,
         );
         handles.edge_ui(
-            words.transition_end,
+            words::TRANSITION_END,
             transition.end,
             TimelineEvent::SetTransitionEnd,
             timeline,
@@ -131,7 +131,7 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
     }
     if let Some(time) = timeline.in_point {
         handles.flag_ui(
-            words.in_point,
+            words::IN_POINT,
             time,
             true,
             TimelineEvent::SetIn,
@@ -142,7 +142,7 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
     }
     if let Some(time) = timeline.out_point {
         handles.flag_ui(
-            words.out_point,
+            words::OUT_POINT,
             time,
             false,
             TimelineEvent::SetOut,

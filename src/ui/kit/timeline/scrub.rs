@@ -3,8 +3,9 @@
 use super::super::assistive::{Adjustable, requested};
 use super::super::keys::keys_pressed;
 use super::super::time_axis::TimeAxis;
-use super::super::words::Words;
+use super::super::words;
 use super::content::{Timeline, TimelineEvent};
+use crate::ui::language::say;
 use eframe::egui::{EventFilter, Key, Pos2, Response, Ui};
 
 /// Moves `now` as it was asked to, and says so in `events`.
@@ -60,7 +61,7 @@ pub(super) fn scrub_ui(
         *now = asked;
     }
     let adjustable = Adjustable {
-        name: Words::of(ui).timeline,
+        name: say(words::TIMELINE, ui),
         value: *now,
         range,
         step: frame,

@@ -3,7 +3,6 @@
 use super::jump::{jump_words, named, open_jump, point_at};
 use super::table;
 use crate::ui::kit::{self, Fate, Matrix, MatrixMark, Stretch, TILE, Tile};
-use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::state::UiState;
 use crate::ui::text;
@@ -156,8 +155,10 @@ pub(crate) fn map_ui(
     };
     let drawn = built.map(|built| Drawn::of(built, walk.map(|walk| &**walk), ui));
     let set = graph_clips.set();
-    let parts: Vec<(usize, &str)> = (graph_clips.names().iter().enumerate())
-        .filter_map(|(clip, name)| Some((set.number(Place { clip, frame: 0 })?, name.as_str())))
+    let parts: Vec<(usize, Message)> = (graph_clips.names().iter().enumerate())
+        .filter_map(|(clip, name)| {
+            Some((set.number(Place { clip, frame: 0 })?, session.clip_title(name)))
+        })
         .collect();
     let lit = drawn.as_ref().and_then(|drawn| {
         drawn.pointed_or_lit(
@@ -184,9 +185,8 @@ pub(crate) fn map_ui(
     let response = kit::matrix_ui(&matrix, most_height, &mut |tile| tiles.texture(tile, &ctx), ui);
     let high_cm = tiles.high_cm;
     tiles.keep(ui);
-    let [low, high] = text::heat_ends([0.0, high_cm]).map(|end| say(&end, ui));
-    kit::heat_legend_ui(&low, &high, ui);
-    let mut words = Message::word(text::MATRIX_HELP);
+    kit::heat_legend_ui(&text::heat_ends([0.0, high_cm]), ui);
+    let mut words = Message::from(text::MATRIX_HELP);
     if let (Some(drawn), Some(built)) = (&drawn, built) {
         let ends = response.hovered.and_then(|mark| drawn.ends.get(mark));
         if let Some(&ends) = ends {
@@ -205,7 +205,7 @@ pub(crate) fn map_ui(
             open_jump(ends, session, state, out);
         }
     }
-    kit::note_ui(&say(&words, ui), palette.muted, ui);
+    kit::note_ui(&words, palette.muted, ui);
 }
 
 /// The tiles that were made of a field in the colours of a theme.

@@ -3,11 +3,12 @@
 use super::jump::{close_jump, no_way, shows_jump};
 use super::{map, table};
 use crate::ui::kit::{self, Button, Histogram, Icon};
-use crate::ui::language::{say, tr};
+use crate::ui::language::{Text, Word, say};
 use crate::ui::out::{Action, Out};
-use crate::ui::rows::{Detail, param_row_ui};
-use crate::ui::rows::{clip_sets_ui, clip_titles};
-use crate::ui::rows::{compare_ui, foot_rows_ui, lab_label, save_result_ui};
+use crate::ui::rows::{
+    Detail, add_clip_ui, clip_sets_ui, compare_ui, foot_rows_ui, lab_label, param_row_ui,
+    save_result_ui,
+};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
@@ -33,7 +34,7 @@ pub(crate) fn graph_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
         close_jump(state, out);
     }
     if let Some(problem) = session.panes().iter().find_map(|pane| pane.problem.as_ref()) {
-        kit::note_ui(&say(&problem.to_sentence(), ui), palette.warning, ui);
+        kit::note_ui(&problem.to_sentence(), palette.warning, ui);
     }
     if !state.labs.graph.has_map_panel {
         map::map_ui(session, f32::INFINITY, state, out, ui);
@@ -68,7 +69,7 @@ fn progress_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         return;
     };
     let percent = format!("{:.0} %", 100.0 * job.progress);
-    if kit::progress_row_ui(text::GRAPHING, Some(job.progress as f32), &percent, ui) {
+    if kit::progress_row_ui(text::GRAPHING, Some(job.progress as f32), Text::Data(&percent), ui) {
         out.commands.push(Command::StopGraph(true));
     }
 }
@@ -77,8 +78,7 @@ fn progress_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
 fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let ids = session.graph_clip_ids();
-    let entries = session.library().entries();
-    let title = say(&msg!("Clips of the graph: {count}", count = ids.len()), ui);
+    let title = msg!("Clips of the graph: {count}", count = ids.len());
     kit::folded_ui(&title, ui, |ui| {
         for id in &ids {
             let entry = session.library().find(id);
@@ -94,7 +94,7 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
                             .color(palette.text),
                     );
                     ui.with_layout(Flow::right_to_left(Align::Center), |ui| {
-                        let leave_out = say(&text::leave_clip_out(name), ui);
+                        let leave_out = text::leave_clip_out(name);
                         if ids.len() > 1
                             && kit::icon_button_ui(Icon::Close, &leave_out, ui).clicked()
                         {
@@ -114,23 +114,15 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
             });
         }
     });
-    let titles = clip_titles(session, ui);
-    let free = (entries.iter().zip(&titles).enumerate())
-        .filter(|(_, (entry, _))| !ids.contains(&entry.id))
-        .map(|(index, (_, title))| (index, title.as_str()));
-    let options: Vec<(usize, &str)> =
-        std::iter::once((usize::MAX, text::CHOOSE_CLIP)).chain(free).collect();
-    if let Some(entry) = kit::choice_row_ui(text::ADD_CLIP, usize::MAX, &options, ui)
-        .and_then(|index| entries.get(index))
-    {
+    if let Some(id) = add_clip_ui(session, |entry| !ids.contains(&entry.id), ui) {
         let mut all = ids.clone();
-        all.push(entry.id.clone());
+        all.push(id);
         set_clips(&all, out);
     }
     if let Some(words) = session.graph_clips().and_then(|graph_clips| {
         text::moved_onto_first(graph_clips, |name| session.clip_title(name))
     }) {
-        kit::note_ui(&say(&words, ui), palette.muted, ui);
+        kit::note_ui(&words, palette.muted, ui);
     }
 }
 
@@ -174,7 +166,7 @@ fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
             bin: field.bin_cm(),
             value: params.number(Key::EdgeThreshold),
             step: 0.1,
-            unit: Key::EdgeThreshold.param().unit,
+            unit: Word::new(Key::EdgeThreshold.param().unit),
         };
         let dragged = kit::histogram_ui(&histogram, ui);
         if let Some(cm) = dragged.changed {
@@ -187,12 +179,12 @@ fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     if let Some(built) = session.graph_built() {
         let walk = session.graph_walk().filter(|walk| Arc::ptr_eq(&walk.built, built));
         kit::note_ui(
-            &say(&text::graph_in_words(built, walk.and_then(|walk| walk.run_secs)), ui),
+            &text::graph_in_words(built, walk.and_then(|walk| walk.run_secs)),
             palette.muted,
             ui,
         );
         if let Some(words) = text::ways_left_out(built) {
-            kit::note_ui(&say(&words, ui), palette.warning, ui);
+            kit::note_ui(&words, palette.warning, ui);
         }
         if built.lacks_some() {
             kit::note_ui(text::GRAPH_LACKS_SOME, palette.warning, ui);
@@ -249,9 +241,9 @@ fn ways_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let visits = session.graph_visits();
     if let Some(graph_clips) = session.graph_clips() {
         let reached = reached(session, ui);
-        let titles: Vec<String> =
-            graph_clips.names().iter().map(|name| say(&session.clip_title(name), ui)).collect();
-        let options: Vec<(usize, &str)> = (titles.iter().map(String::as_str).enumerate())
+        let titles: Vec<Message> =
+            graph_clips.names().iter().map(|name| session.clip_title(name)).collect();
+        let options: Vec<(usize, &Message)> = (titles.iter().enumerate())
             .filter(|(clip, _)| reached.get(*clip).copied().unwrap_or(true))
             .collect();
         if let Some(clip) = kit::choice_row_ui(text::GO_TO_CLIP, usize::MAX, &options, ui) {
@@ -261,7 +253,7 @@ fn ways_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     if let Some(walk) = session.graph_walk() {
         for &missed in &walk.missed {
             let words = no_way(&walk.built, missed, session);
-            kit::note_ui(&say(&words, ui), palette.warning, ui);
+            kit::note_ui(&words, palette.warning, ui);
         }
     }
     if !visits.is_empty() && kit::button_ui(Button::new(text::FORGET_VISITS), ui).clicked() {
@@ -286,12 +278,12 @@ fn ways_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
             out.reset(Key::WalkPath);
         }
         if let Some(trace) = session.graph_walk().and_then(|walk| walk.followed.as_ref()) {
-            kit::note_ui(&say(&text::followed(trace), ui), palette.muted, ui);
+            kit::note_ui(&text::followed(trace), palette.muted, ui);
         }
     }
     if let Some(walk) = session.graph_walk().filter(|walk| walk.ends) {
         let words = text::dead_end(walk.motion.clip().duration_secs());
-        kit::note_ui(&say(&words, ui), palette.warning, ui);
+        kit::note_ui(&words, palette.warning, ui);
     }
 }
 
@@ -367,10 +359,10 @@ fn files_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let Some(walk) = session.graph_walk() else {
         return;
     };
-    ui.label(RichText::new(tr(text::GRAPH_FILES, ui)).font(theme_of(ui).font(Type::Label)));
+    ui.label(RichText::new(say(text::GRAPH_FILES, ui)).font(theme_of(ui).font(Type::Label)));
     ui.horizontal(|ui| {
         let (graph, choices) = (walk.built.graph(), &walk.choices);
-        if kit::button_ui(Button::new("JSON").icon(Icon::Download), ui).clicked() {
+        if kit::button_ui(Button::new(Text::Data("JSON")).icon(Icon::Download), ui).clicked() {
             let text = format!("{:#}\n", graph.to_json(choices));
             out.actions.push(Action::SaveText {
                 name: "motion graph.json",
@@ -378,7 +370,7 @@ fn files_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
                 text,
             });
         }
-        if kit::button_ui(Button::new("DOT").icon(Icon::Download), ui).clicked() {
+        if kit::button_ui(Button::new(Text::Data("DOT")).icon(Icon::Download), ui).clicked() {
             out.actions.push(Action::SaveText {
                 name: "motion graph.dot",
                 mime: "text/vnd.graphviz",

@@ -4,7 +4,6 @@ use super::jump::{jump_words, named, no_way, open_jump, point_at};
 use super::map::Drawn;
 use super::rows;
 use crate::ui::kit::{self, Moment, Strip, Timeline, TimelineEvent};
-use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::state::{Layout, UiState};
 use crate::ui::text;
@@ -37,7 +36,6 @@ pub(crate) fn walk_panel_ui(
         frame: frame_at(&walk.motion, session.now_secs()),
         frames: walk.motion.clip().frames(),
     };
-    let caption = say(&caption, ui);
     transport_row_ui(playhead, &caption, layout, session, out, ui);
     if layout != Layout::Phone {
         time_ui(session, walk, out, ui);
@@ -49,7 +47,7 @@ pub(crate) fn walk_panel_ui(
 fn time_ui(session: &Session, walk: &Walk, out: &mut Out, ui: &mut Ui) {
     let palette = palette_of(ui);
     let fps = walk.motion.clip().fps();
-    let mut seams: Vec<Moment<'_>> = (walk.passed.iter())
+    let mut seams: Vec<Moment> = (walk.passed.iter())
         .filter(|passed| passed.seam.is_some())
         .map(|passed| Moment {
             time: passed.start as f64 / fps,
@@ -90,11 +88,11 @@ fn strip_ui(session: &Session, walk: &Arc<Walk>, state: &mut UiState, out: &mut 
     };
     let drawn = Drawn::of(built, Some(walk), ui);
     let (clips, set) = (built.clips(), built.clips().set());
-    let bars: Vec<(&str, usize)> = clips
+    let bars: Vec<(Message, usize)> = clips
         .names()
         .iter()
         .enumerate()
-        .map(|(clip, name)| (name.as_str(), set.frames_of(clip)))
+        .map(|(clip, name)| (session.clip_title(name), set.frames_of(clip)))
         .collect();
     let at = walk.at(session.now_secs()).filter(|_| Arc::ptr_eq(&walk.built, built));
     let lit_stretch = at.and_then(|at| {

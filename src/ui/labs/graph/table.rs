@@ -1,7 +1,7 @@
 //! The numbers of all panes side by side, to be read and to be copied.
 
 use crate::ui::kit::{self, Button};
-use crate::ui::language::{say, tr};
+use crate::ui::language::{Word, say};
 use crate::ui::out::{Action, Out};
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
@@ -26,7 +26,7 @@ pub(crate) fn table_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         ui.end_row();
         for row in &table.rows {
             ui.label(small(&row.heading(), palette.muted, ui))
-                .on_hover_text(tr(row.metric.row().help, ui));
+                .on_hover_text(say(Word::new(row.metric.row().help), ui));
             let [best, worst] = row.ends();
             for value in &row.values {
                 let color = match value {

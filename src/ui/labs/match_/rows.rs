@@ -4,11 +4,11 @@ use super::present::shown;
 use super::tags::tags_ui;
 use super::why::why_ui;
 use crate::ui::kit::{self, Button, Icon};
-use crate::ui::language::{say, tr};
+use crate::ui::language::{Word, say};
 use crate::ui::out::Out;
-use crate::ui::rows::{Detail, param_row_ui};
-use crate::ui::rows::{clip_sets_ui, clip_titles};
-use crate::ui::rows::{keep_ui, lab_label, save_result_ui};
+use crate::ui::rows::{
+    Detail, add_clip_ui, clip_sets_ui, keep_ui, lab_label, param_row_ui, save_result_ui,
+};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
@@ -25,7 +25,7 @@ pub(crate) fn drive_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
     kit::note_ui(text::MATCH_ABOUT, palette.muted, ui);
     clip_sets_ui(session, out, ui);
     if let Some(problem) = session.panes().first().and_then(|pane| pane.problem.as_ref()) {
-        kit::note_ui(&say(&problem.to_sentence(), ui), palette.warning, ui);
+        kit::note_ui(&problem.to_sentence(), palette.warning, ui);
     }
     ui.add_space(space::XS);
     row(Key::Scenario, session, out, ui);
@@ -79,8 +79,8 @@ fn row(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
     param_row_ui(key, &Detail::default(), session, out, ui);
 }
 
-fn heading_ui(words: &str, ui: &mut Ui) {
-    ui.label(RichText::new(tr(words, ui)).font(theme_of(ui).font(Type::Strong)));
+fn heading_ui(words: Word, ui: &mut Ui) {
+    ui.label(RichText::new(say(words, ui)).font(theme_of(ui).font(Type::Strong)));
 }
 
 /// What is done with the input: from the start, again, or by hand.
@@ -88,7 +88,7 @@ fn input_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let muted = palette_of(ui).muted;
     if session.is_driven() {
         let secs = session.recording().ticks() as f64 / RATE as f64;
-        kit::note_ui(&say(&text::driven_for(secs), ui), muted, ui);
+        kit::note_ui(&text::driven_for(secs), muted, ui);
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = vec2(space::XS, space::XS);
             let replay = Button::new(text::REPLAY).icon(Icon::Loop).hint(text::REPLAY_HELP);
@@ -158,19 +158,19 @@ fn preferred_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
                 ids.get(motion.source()).map_or(motion.clip().name(), String::as_str)
             }))
             .collect();
-    let label = |word: &str| -> String {
-        let name = match session.library().find(word) {
+    let label = |word: &str| -> Message {
+        match session.library().find(word) {
             _ if word.is_empty() => text::THE_CLIP_THAT_PLAYS.into(),
             Some(entry) => entry.title(),
             None => session.clip_title(word),
-        };
-        say(&name, ui)
+        }
     };
-    let labels: Vec<String> = words.iter().map(|word| label(word)).collect();
-    let options: Vec<(usize, &str)> = labels.iter().map(String::as_str).enumerate().collect();
+    let labels: Vec<Message> = words.iter().map(|word| label(word)).collect();
+    let options: Vec<(usize, &Message)> = labels.iter().enumerate().collect();
     let asked = session.params().text(Key::PreferClip);
     let chosen = words.iter().position(|word| *word == asked).unwrap_or(usize::MAX);
-    let picked = kit::choice_row_ui(Key::PreferClip.param().label, chosen, &options, ui);
+    let label = Word::new(Key::PreferClip.param().label);
+    let picked = kit::choice_row_ui(label, chosen, &options, ui);
     if let Some(word) = picked.and_then(|index| words.get(index)) {
         out.set_once(Key::PreferClip, Value::Text((*word).to_owned()));
     }
@@ -218,7 +218,7 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
             ui.horizontal(|ui| {
                 let entry = session.library().find(id);
                 let name = entry.map_or_else(|| Message::data(&**id), |entry| entry.title());
-                let leave_out = say(&text::leave_clip_out(name.clone()), ui);
+                let leave_out = text::leave_clip_out(name.clone());
                 if kit::icon_button_ui(Icon::Close, &leave_out, ui).clicked() {
                     let mut rest = ids.to_vec();
                     rest.remove(index);
@@ -228,22 +228,16 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
             });
         });
     }
-    let entries = session.library().entries();
-    let titles = clip_titles(session, ui);
-    let clips = titles.iter().map(String::as_str).enumerate();
-    let options: Vec<(usize, &str)> =
-        std::iter::once((usize::MAX, text::CHOOSE_CLIP)).chain(clips).collect();
-    let picked = kit::choice_row_ui(text::ADD_CLIP, usize::MAX, &options, ui);
-    if let Some(entry) = picked.and_then(|index| entries.get(index)) {
+    if let Some(id) = add_clip_ui(session, |_| true, ui) {
         let mut more = ids.to_vec();
-        more.push(entry.id.clone());
+        more.push(id);
         set(more, out);
     }
     if let Some((driven, _)) = shown(session) {
         let skipped = driven.database.skipped();
-        kit::note_ui(&say(&text::database(&driven.database), ui), palette.muted, ui);
+        kit::note_ui(&text::database(&driven.database), palette.muted, ui);
         for error in skipped.iter().take(3) {
-            kit::note_ui(&say(&error.to_sentence(), ui), palette.warning, ui);
+            kit::note_ui(&error.to_sentence(), palette.warning, ui);
         }
     }
     row(Key::Mirrored, session, out, ui);

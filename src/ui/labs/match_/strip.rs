@@ -4,7 +4,7 @@ use super::present::shown;
 use crate::ui::kit::{
     self, Curves, Moment, PlaceBar, Places, Series, StripPlace, Timeline, TimelineEvent,
 };
-use crate::ui::language::say;
+use crate::ui::language::Word;
 use crate::ui::out::Out;
 use crate::ui::state::{Layout, UiState};
 use crate::ui::text;
@@ -40,7 +40,6 @@ pub(crate) fn drive_panel_ui(
     } else {
         Playhead { secs: now, frame: (now * RATE as f64).round() as usize, frames }
     };
-    let caption = say(&caption, ui);
     transport_row_ui(playhead, &caption, layout, session, out, ui);
     let scale = theme_of(ui).scale();
     let rows = if driven.database.options().mirrored { 2.0 } else { 1.0 };
@@ -83,21 +82,21 @@ fn time_ui(
     }
     let series = [
         Series {
-            name: text::COST_GOING_ON,
+            name: text::COST_GOING_ON.into(),
             color: palette.muted,
             ink: palette.muted,
             strong: false,
             points: &current,
         },
         Series {
-            name: text::COST_BEST,
+            name: text::COST_BEST.into(),
             color: palette.b,
             ink: palette.b_ink,
             strong: true,
             points: &best,
         },
     ];
-    let mut jumps: Vec<Moment<'_>> = driven
+    let mut jumps: Vec<Moment> = driven
         .jumps_secs()
         .map(|time| Moment { time, color: palette.accent, name: text::JUMP })
         .collect();
@@ -113,7 +112,7 @@ fn time_ui(
         moments: &jumps,
         curves: Some(Curves {
             title: text::COST,
-            unit: "",
+            unit: Word::default(),
             decimals: 2,
             include: Some(0.0),
             series: &series,
@@ -159,15 +158,10 @@ fn strip_ui(
     let database = &driven.database;
     let mirrored = database.options().mirrored;
     let originals = database.motions().iter().filter(|motion| !motion.is_mirrored());
-    let originals = originals.take(MOST_BARS).map(|motion| {
-        let title = session.clip_title(motion.clip().name());
-        (motion, say(&title, ui))
-    });
-    let named: Vec<_> = originals.collect();
-    let bars: Vec<PlaceBar<'_>> = named
-        .iter()
-        .map(|(motion, name)| PlaceBar {
-            name,
+    let bars: Vec<PlaceBar> = originals
+        .take(MOST_BARS)
+        .map(|motion| PlaceBar {
+            name: session.clip_title(motion.clip().name()),
             frames: motion.frames(),
             stretches: (motion.tags().iter())
                 .map(|range| (range.frames.clone(), tag_color(range.tag, palette)))
@@ -195,9 +189,9 @@ fn strip_ui(
             search.candidates.iter().filter_map(|candidate| at(candidate.place)).collect()
         })
         .unwrap_or_default();
-    let legend: Vec<(&str, Color32)> = [Tag::Idle, Tag::Walk, Tag::Run, Tag::Turn]
+    let legend: Vec<(Word, Color32)> = [Tag::Idle, Tag::Walk, Tag::Run, Tag::Turn]
         .into_iter()
-        .map(|tag| (tag.name(), tag_color(tag, palette)))
+        .map(|tag| (Word::new(tag.name()), tag_color(tag, palette)))
         .collect();
     let places = Places {
         label: text::CLIP_STRIP,

@@ -3,7 +3,7 @@
 use super::present::shown;
 use super::strip::strip_place;
 use crate::ui::kit::{self, Button, Chosen, Icon, SliderRow};
-use crate::ui::language::say;
+use crate::ui::language::Word;
 use crate::ui::out::Out;
 use crate::ui::state::UiState;
 use crate::ui::text;
@@ -11,6 +11,7 @@ use crate::ui::theme::{palette_of, space};
 use eframe::egui::{Ui, vec2};
 use segue_motion::matching::{Database, DatabaseClip, RATE, Tag};
 use segue_session::{HandTag, Key, List, Session, Value, own_words};
+use segue_text::Message;
 
 /// What "what plays now" reaches to either side, frames.
 const AROUND: usize = 15;
@@ -36,7 +37,7 @@ pub(crate) fn tags_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
                 Some(entry) => entry.title(),
                 None => session.clip_title(&tag.clip),
             };
-            kit::note_ui(&say(&text::hand_tag(name, tag), ui), palette_of(ui).text, ui);
+            kit::note_ui(&text::hand_tag(name, tag), palette_of(ui).text, ui);
         });
     }
     let Some((driven, moment)) = shown(session) else {
@@ -64,7 +65,7 @@ pub(crate) fn tags_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         (text::STRETCH_TO, &mut stretch.frames.end),
     ] {
         let row = SliderRow::new(label, 0.0..=secs(frames).max(0.1), 0.0)
-            .unit("s")
+            .unit(Word::new("s"))
             .step(1.0 / RATE as f64)
             .decimals(2);
         let response = kit::slider_row_ui(secs((*end).min(frames)), &row, ui);
@@ -99,14 +100,12 @@ pub(crate) fn tags_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         for tag in Tag::FIXED {
             // What is there is taken away, what is not is put.
             let takes_away = has(tag);
-            if kit::button_ui(Button::new(&say(&text::tag_as(tag.name(), takes_away), ui)), ui)
-                .clicked()
-            {
+            if kit::button_ui(Button::new(&text::tag_as(tag.name(), takes_away)), ui).clicked() {
                 add(tag.name(), takes_away, out);
             }
         }
         for word in own_words(tags) {
-            if kit::button_ui(Button::new(&say(&text::tag_as(word, false), ui)), ui).clicked() {
+            if kit::button_ui(Button::new(&text::tag_as(word, false)), ui).clicked() {
                 add(word, false, out);
             }
         }
@@ -131,7 +130,7 @@ fn motion_of(database: &Database, bar: usize) -> Option<&DatabaseClip> {
 /// Which tag is asked for, or forbidden.
 fn wanted_ui(
     key: Key,
-    none: &str,
+    none: &'static str,
     tags: &[HandTag],
     session: &Session,
     out: &mut Out,
@@ -140,10 +139,13 @@ fn wanted_ui(
     let searched =
         Tag::FIXED.into_iter().filter(|tag| *tag != Tag::Exclude).map(|tag| -> &str { tag.name() });
     let words: Vec<&str> = std::iter::once(none).chain(searched).chain(own_words(tags)).collect();
-    let options: Vec<(usize, &str)> = words.iter().copied().enumerate().collect();
+    let names: Vec<Message> = std::iter::once(none.into())
+        .chain(words.iter().skip(1).map(|word| text::tag_name(word)))
+        .collect();
+    let options: Vec<(usize, &Message)> = names.iter().enumerate().collect();
     let asked = session.params().text(key);
     let chosen = words.iter().position(|word| *word == asked).unwrap_or(usize::MAX);
-    let picked = kit::choice_row_ui(key.param().label, chosen, &options, ui);
+    let picked = kit::choice_row_ui(Word::new(key.param().label), chosen, &options, ui);
     if let Some(word) = picked.and_then(|index| words.get(index)) {
         out.set_once(key, Value::Text((*word).to_owned()));
     }

@@ -2,7 +2,7 @@
 
 use super::present::shown;
 use crate::ui::kit::{self, CostBars, CostRow};
-use crate::ui::language::{say, tr};
+use crate::ui::language::{Word, say};
 use crate::ui::out::Out;
 use crate::ui::rows::{Detail, param_row_ui};
 use crate::ui::state::UiState;
@@ -35,7 +35,7 @@ pub(crate) fn place_name(database: &Database, candidate: &Candidate, session: &S
 pub(crate) fn why_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     state.labs.match_.hovered = None;
     let palette = palette_of(ui);
-    ui.label(RichText::new(tr(text::WHY, ui)).font(theme_of(ui).font(Type::Strong)));
+    ui.label(RichText::new(say(text::WHY, ui)).font(theme_of(ui).font(Type::Strong)));
     let search =
         shown(session).and_then(|(driven, moment)| Some((driven, moment.search.as_ref()?)));
     let Some((driven, search)) = search else {
@@ -44,7 +44,7 @@ pub(crate) fn why_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: 
     };
     let database = &driven.database;
     let row = |name: Message, candidate: &Candidate, strong: bool, shown: bool| CostRow {
-        name: say(&name, ui),
+        name,
         parts: candidate.split.to_vec(),
         strong,
         shown,
@@ -61,7 +61,7 @@ pub(crate) fn why_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: 
     });
     let rows: Vec<CostRow> = std::iter::once(current).chain(found).collect();
     let colors = block_colors(palette);
-    let parts: Vec<(&str, Color32)> =
+    let parts: Vec<(Word, Color32)> =
         Block::ALL.iter().map(|block| text::block(*block)).zip(colors).collect();
     let response = kit::cost_bars_ui(&CostBars { rows: &rows, parts: &parts }, ui);
     // The first row is what was left: it has no ghost.
@@ -72,7 +72,7 @@ pub(crate) fn why_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: 
     }
     ui.add_space(space::XS);
     let words = text::searched(search, database.valid().len());
-    kit::note_ui(&say(&words, ui), palette.muted, ui);
+    kit::note_ui(&words, palette.muted, ui);
     kit::note_ui(text::GHOST_HELP, palette.muted, ui);
     param_row_ui(Key::ShownCandidates, &Detail::default(), session, out, ui);
 }

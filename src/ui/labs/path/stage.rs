@@ -1,8 +1,9 @@
 //! The path on the stage: its control points are taken with mouse, finger or keys.
 
+use crate::ui::kit;
 use crate::ui::labs::path::ground_line::View;
 use crate::ui::labs::path::hand::{Held, path_of, snapped};
-use crate::ui::language::{say, tr};
+use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::stage::framing::framing;
 use crate::ui::state::UiState;
@@ -15,6 +16,7 @@ use glam::DVec2;
 use segue_motion::path::{GroundSpline, PathEdit, SplineEnds};
 use segue_session::LabId;
 use segue_session::{Command, Group, Key, PathFacts, Session};
+use segue_text::Message;
 
 /// Side of the square in which a control point is taken hold of, points: fingers need more than the
 /// standard's 24.
@@ -59,7 +61,7 @@ pub(crate) fn handles_ui(
         let response = ui.interact(hit, id, Sense::click_and_drag());
         let chosen = state.labs.path.chosen == Some(index);
         let said = say(&text::control_point(index, shown, point), ui);
-        response.widget_info(|| WidgetInfo::selected(Role::Button, true, chosen, &said));
+        kit::describe(&response, &WidgetInfo::selected(Role::Button, true, chosen, said));
         let handle = Handle { index, pane, point, view: &view, path, response: &response };
         handle.input(session, state, out, ui);
     }
@@ -204,11 +206,9 @@ fn place_input(
 }
 
 /// Returns why the last edit was not made, or how to draw.
-pub(crate) fn note(state: &UiState, ui: &Ui) -> Option<String> {
-    match &state.labs.path.said {
-        Some(said) => Some(say(said, ui)),
-        None => state.drawing.is_some().then(|| tr(text::DRAW_HINT, ui).into_owned()),
-    }
+pub(crate) fn note(state: &UiState) -> Option<Message> {
+    let draws = || state.drawing.is_some().then(|| text::DRAW_HINT.into());
+    state.labs.path.said.clone().or_else(draws)
 }
 
 /// When the lab opens, the whole path comes into sight, unless somebody has put the camera
