@@ -208,7 +208,29 @@ pub(crate) fn compare_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui
     }
 }
 
-/// The name of the lab that is open.
+/// Returns the number of frames that both clips have, at A's rate: no window is longer. `None` while
+/// neither clip is there.
+pub(crate) fn frames_of_both(session: &Session) -> Option<f64> {
+    let clips = [Slot::A, Slot::B]
+        .into_iter()
+        .filter_map(|slot| Some(session.slot(slot)?.motion.as_ref()?.clip()));
+    let clips: Vec<_> = clips.collect();
+    let fps = clips.first()?.fps();
+    // B is resampled to A's rate, and keeps both ends.
+    let frames = clips.iter().map(|clip| (clip.duration_secs() * fps).round() + 1.0);
+    frames.min_by(f64::total_cmp)
+}
+
+/// Draws the slider of the blend window. A window that is longer than a clip is shown as long as
+/// the result has it.
+pub(crate) fn blend_window_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    let max = frames_of_both(session);
+    let window = session.params().number(Key::BlendWindow);
+    let detail = Detail { max, used: max.filter(|max| window > *max), ..Detail::default() };
+    param_row_ui(Key::BlendWindow, &detail, session, out, ui);
+}
+
+/// Returns the name of the lab that is open.
 pub(crate) fn lab_label(session: &Session) -> Word {
     Word::new(session.params().lab().label())
 }

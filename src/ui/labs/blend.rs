@@ -5,14 +5,14 @@ use crate::ui::labs::lab_ui::{Compares, Edge, LabUi, Shown, Title};
 use crate::ui::language::Word;
 use crate::ui::out::Out;
 use crate::ui::rows::{
-    Detail, compare_ui, foot_rows_ui, lab_label, pair_ui, param_row_ui, place_rows_ui,
-    save_result_ui,
+    Detail, blend_window_ui, compare_ui, foot_rows_ui, lab_label, pair_ui, param_row_ui,
+    place_rows_ui, save_result_ui,
 };
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::space;
 use eframe::egui::Ui;
-use segue_session::{Key, LabId, Outcome, Session, Slot};
+use segue_session::{Key, LabId, Outcome, Session};
 use segue_text::msg;
 
 /// The lab's part of the page.
@@ -64,19 +64,8 @@ pub(super) fn edge_value(edge: Edge, secs: f64, outcome: &Outcome) -> (Key, f64)
 
 pub(super) fn blend_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(lab_label(session), ui);
-    let fps = pair_ui(session, out, ui);
-    let duration = |slot| Some(session.slot(slot)?.motion.as_ref()?.clip().duration_secs());
-    let window = session.params().number(Key::BlendWindow);
-    let shortest =
-        [Slot::A, Slot::B].into_iter().filter_map(duration).fold(f64::INFINITY, f64::min);
-    let longest_window = if shortest.is_finite() { Some((shortest * fps).floor()) } else { None };
-    param_row_ui(
-        Key::BlendWindow,
-        &Detail { max: longest_window.map(|max| max.max(window)), ..Detail::default() },
-        session,
-        out,
-        ui,
-    );
+    pair_ui(session, out, ui);
+    blend_window_ui(session, out, ui);
     compare_ui(Key::BlendWindow, session, out, ui);
     place_rows_ui([Key::LeaveA, Key::EnterB], session, out, ui);
     param_row_ui(Key::WeightLaw, &Detail::default(), session, out, ui);

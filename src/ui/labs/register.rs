@@ -10,7 +10,7 @@ use crate::ui::out::Out;
 use crate::ui::rows::clip_sets_ui;
 use crate::ui::rows::{Detail, param_row_ui};
 use crate::ui::rows::{
-    clip_choice_ui, compare_ui, foot_rows_ui, lab_label, pair_ui, save_result_ui,
+    clip_choice_ui, compare_ui, foot_rows_ui, frames_of_both, lab_label, pair_ui, save_result_ui,
 };
 use crate::ui::state::UiState;
 use crate::ui::text;
@@ -99,7 +99,8 @@ pub(super) fn register_ui(session: &Session, state: &mut UiState, out: &mut Out,
     foot_rows_ui(session, out, ui);
     ui.add_space(space::S);
     kit::section_header_ui(text::REGISTRATION, ui);
-    param_row_ui(Key::RegistrationWindow, &plain, session, out, ui);
+    let window = Detail { max: frames_of_both(session), ..Detail::default() };
+    param_row_ui(Key::RegistrationWindow, &window, session, out, ui);
     param_row_ui(Key::SlopeLimit, &plain, session, out, ui);
     param_row_ui(Key::WarpSmoothing, &plain, session, out, ui);
     param_row_ui(Key::Ends, &plain, session, out, ui);

@@ -6,8 +6,8 @@ use crate::ui::labs::lab_ui::{Compares, Edge, LabUi, Shown, Title};
 use crate::ui::language::Word;
 use crate::ui::out::Out;
 use crate::ui::rows::{
-    Detail, compare_ui, foot_rows_ui, lab_label, pair_ui, param_row_ui, place_rows_ui,
-    save_result_ui,
+    Detail, blend_window_ui, compare_ui, foot_rows_ui, lab_label, pair_ui, param_row_ui,
+    place_rows_ui, save_result_ui,
 };
 use crate::ui::state::UiState;
 use crate::ui::text;
@@ -90,7 +90,7 @@ pub(super) fn transition_ui(session: &Session, state: &mut UiState, out: &mut Ou
         param_row_ui(Key::ExtrapolationHalfLife, &Detail::default(), session, out, ui);
     }
     if any(&[TransitionMethod::Smooth, TransitionMethod::Linear]) {
-        param_row_ui(Key::BlendWindow, &Detail::default(), session, out, ui);
+        blend_window_ui(session, out, ui);
     }
     let shoot_out = session.compare().is_some_and(|compare| compare.key == Key::Method);
     if kit::button_ui(Button::new(text::SHOOT_OUT).selected(shoot_out), ui).clicked() {

@@ -166,13 +166,18 @@ fn number_ui(key: Key, detail: &Detail, session: &Session, out: &mut Out, ui: &m
     settle(&response, out);
 }
 
-/// Returns the end of the clip that a parameter is a place in, in its unit.
+/// Returns the end of the clip that a parameter is a place in, in its unit: of the shorter one where
+/// it is a place in both.
 fn end_of_clip(key: Key, session: &Session) -> Option<f64> {
     let param = key.param();
-    let slots = [(Slot::A, PlaceInA), (Slot::B, PlaceInB)];
-    let (slot, _) = slots.into_iter().find(|(_, mark)| param.has(*mark))?;
-    let clip = session.slot(slot)?.motion.as_ref()?.clip();
-    Some(if param.unit == "s" { clip.duration_secs() } else { clip.frames() as f64 - 1.0 })
+    let slots = [(Slot::A, PlaceInA), (Slot::B, PlaceInB)].into_iter();
+    let clips = slots
+        .filter(|(_, mark)| param.has(*mark))
+        .filter_map(|(slot, _)| Some(session.slot(slot)?.motion.as_ref()?.clip()));
+    let ends = clips.map(|clip| {
+        if param.unit == "s" { clip.duration_secs() } else { clip.frames() as f64 - 1.0 }
+    });
+    ends.min_by(f64::total_cmp)
 }
 
 /// Returns the frame rate of what is shown, or of the clips that it is to be made from.

@@ -176,3 +176,44 @@ fn hysteresis_shows_the_rows_of_its_choice() {
         assert_eq!((has(Key::BiasShare), has(Key::MinimumTime)), (bias, time), "{link}");
     }
 }
+
+/// The first frames of the built-in walk as a file.
+fn short_file(frames: usize) -> String {
+    let walk = page("lab=view&a=walk").session.slot(Slot::A).and_then(|entry| entry.motion.clone());
+    let options = segue_formats::bvh::WriteOptions::default();
+    let text = segue_formats::bvh::write(walk.expect("a built-in clip").clip(), &options);
+    let (head, rest) = text.split_once("Frames: ").expect("a BVH file");
+    let mut lines = rest.lines();
+    lines.next();
+    let kept: Vec<&str> = lines.take(1 + frames).collect();
+    format!("{head}Frames: {frames}\n{}\n", kept.join("\n"))
+}
+
+/// No window is longer than the shorter clip, whichever that is.
+#[test]
+fn slider_of_a_window_ends_with_the_shorter_clip() {
+    const FRAMES: usize = 90;
+    let file = short_file(FRAMES);
+    for (link, label, set, used) in [
+        ("lab=blend&blend_window=240", "Blend window", 240.0, FRAMES as f64),
+        ("lab=transition&method=smooth&blend_window=240", "Blend window", 240.0, FRAMES as f64),
+        // A registration is refused until the window is lowered.
+        ("lab=register&registration_window=121", "Window", 121.0, 121.0),
+    ] {
+        for slot in [Slot::A, Slot::B] {
+            let mut page = page(&format!("{link}&a=walk&b=run&play=off"));
+            page.session.load("short.bvh", Arc::from(file.as_bytes())).expect("a BVH file");
+            let id = loaded(&page).id.clone();
+            page.session.apply(Command::Assign(slot, id)).expect("a clip of the library");
+            while page.session.work() {}
+            let harness = harness(DESK, DARK, page);
+            let params = harness.state().session.params();
+            let key = if used == set { Key::RegistrationWindow } else { Key::BlendWindow };
+            assert_eq!(params.number(key), set, "what is set stays");
+            let slider = harness.get_by_role_and_label(Role::Slider, label);
+            let node = slider.accesskit_node();
+            let shown = (node.max_numeric_value(), node.numeric_value());
+            assert_eq!(shown, (Some(FRAMES as f64), Some(used)), "{link}, {slot:?}");
+        }
+    }
+}
