@@ -1,22 +1,32 @@
-//! The commands of the interface in one table: what each is called, which keys and which icon it
-//! has, when it can be given, and what it does. The bar, the menu of a phone, the buttons on the
+//! The commands of the interface in one table: the label, keys and icon of each, when it can be
+//! given, and what it does. The bar, the menu of a phone, the buttons on the
 //! stage, the list of shortcuts and the keyboard are made from it.
 
-use super::kit::{self, Button, Icon, MenuItem};
+mod buttons;
+mod help;
+mod keys;
+
+pub(crate) use buttons::{command_button_ui, command_icon_ui, command_item_ui};
+pub(crate) use help::help;
+#[cfg(all(test, feature = "ui-tests"))]
+pub(super) use keys::LAB_KEYS;
+pub(crate) use keys::take_keys;
+
+use super::kit::Icon;
 use super::labs::toggle_compare;
-use super::language::{Text, Word, say};
+use super::language::Word;
 use super::lessons_panel::{self, toggle_lessons};
 use super::out::{Action, Out};
 use super::stage::framing::frame_everything;
 use super::state::UiState;
 use super::text;
 use super::theme::theme_of;
-use eframe::egui::{Event, Id, Key as Keyboard, Memory, Modifiers, Popup, Ui};
+use eframe::egui::{Key as Keyboard, Ui};
+use keys::{COMMAND, COMMAND_SHIFT, Focus, NONE, SHIFT, Trigger};
 use segue_session::choices::{Camera, Follow, Look};
 use segue_session::{Command, Key, Kind, PlaybackCommand, Session, Value};
-use segue_text::Message;
 
-/// Something that a button, a line of a menu or a key asks for.
+/// A command that a button, a line of a menu or a key gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum UiCommand {
     TogglePlay,
@@ -50,151 +60,23 @@ pub(crate) enum UiCommand {
     ToggleProjector,
     SwitchLanguage,
     ToggleHelp,
-    /// Closes what lies in front.
+    /// Closes the layer in front.
     Close,
 }
 
-/// How the keyboard gives a command.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Trigger {
-    Keys(Modifiers, Keyboard),
-    /// What the system copies with, so that it works on every keyboard.
-    Copy,
-    /// A character, wherever it stands on the keyboard.
-    Typed(&'static str),
-}
-
-/// Whether a key is left to the widget that has the focus.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Focus {
-    /// No widget uses the key.
-    Ignored,
-    /// The key is left to any widget that has the focus.
-    Respected,
-    /// As [`Self::Respected`], but for widgets that were focused by the pointer: one drags a
-    /// slider, and wants to see the motion play.
-    RespectedByKeyboard,
-    /// The key is left to a menu that is open, which closes itself.
-    MenuRespected,
-}
-
-/// What a command is called and how it is given.
+/// The label of a command, and the ways in which it is given.
 #[derive(Clone, Copy, Debug)]
 struct Row {
     /// The label of its button and of its line in a menu; empty for keys alone.
     text: Word,
-    /// What is said over its button, where that is more than its label.
+    /// The hint on its button; empty where the label says it all.
     tooltip: Word,
     icon: Option<Icon>,
     triggers: &'static [Trigger],
     focus: Focus,
 }
 
-/// A row of the list of shortcuts.
-enum HelpRow {
-    /// Commands that are told of together, and what they do.
-    Commands(&'static [UiCommand], Word),
-    /// The keys of the labs.
-    Labs(Word),
-    /// What the pointer or held keys do, by the widget that they belong to.
-    Gesture(Word, Word),
-}
-
-const NONE: Modifiers = Modifiers::NONE;
-const SHIFT: Modifiers = Modifiers::SHIFT;
-const COMMAND: Modifiers = Modifiers::COMMAND;
-const COMMAND_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
-
-/// The keys of the labs, from left to right: the row of digits and what stands behind them.
-pub(super) const LAB_KEYS: [Keyboard; 12] = [
-    Keyboard::Num1,
-    Keyboard::Num2,
-    Keyboard::Num3,
-    Keyboard::Num4,
-    Keyboard::Num5,
-    Keyboard::Num6,
-    Keyboard::Num7,
-    Keyboard::Num8,
-    Keyboard::Num9,
-    Keyboard::Num0,
-    Keyboard::Minus,
-    Keyboard::Equals,
-];
-
-/// The commands that the keyboard gives, besides [`UiCommand::OpenLab`].
-const WITH_KEYS: [UiCommand; 25] = [
-    UiCommand::Redo,
-    UiCommand::Undo,
-    UiCommand::CopyLink,
-    UiCommand::ToggleHelp,
-    UiCommand::Close,
-    UiCommand::TogglePlay,
-    UiCommand::TenBack,
-    UiCommand::TenOn,
-    UiCommand::StepBack,
-    UiCommand::StepOn,
-    UiCommand::ToBeginning,
-    UiCommand::ClearMark(Key::In),
-    UiCommand::ClearMark(Key::Out),
-    UiCommand::Mark(Key::In),
-    UiCommand::Mark(Key::Out),
-    UiCommand::Slower,
-    UiCommand::Faster,
-    UiCommand::ToggleLoop,
-    UiCommand::ToggleLessons,
-    UiCommand::ToggleCompare,
-    UiCommand::ToggleStrafe,
-    UiCommand::ToggleTopView,
-    UiCommand::FrameEverything,
-    UiCommand::ToggleFollow,
-    UiCommand::NextLook,
-];
-
-const HELP: &[HelpRow] = &[
-    HelpRow::Commands(&[UiCommand::TogglePlay], Word::new("play or pause")),
-    HelpRow::Commands(
-        &[UiCommand::StepBack, UiCommand::StepOn],
-        Word::new("one frame back or forward"),
-    ),
-    HelpRow::Commands(
-        &[UiCommand::TenBack, UiCommand::TenOn],
-        Word::new("ten frames back or forward"),
-    ),
-    HelpRow::Commands(&[UiCommand::ToBeginning], Word::new("to the beginning")),
-    HelpRow::Commands(
-        &[UiCommand::Mark(Key::In), UiCommand::Mark(Key::Out)],
-        Word::new("set the in or out mark here; Shift clears it"),
-    ),
-    HelpRow::Commands(&[UiCommand::Slower, UiCommand::Faster], Word::new("slower, faster")),
-    HelpRow::Commands(&[UiCommand::ToggleLoop], Word::new("loop")),
-    HelpRow::Commands(&[UiCommand::ToggleCompare], Word::new("compare full, half, third")),
-    HelpRow::Commands(&[UiCommand::ToggleLessons], Word::new("lessons; Esc closes them")),
-    HelpRow::Labs(Word::new("the labs, in order")),
-    HelpRow::Commands(&[UiCommand::ToggleTopView], Word::new("top view")),
-    HelpRow::Commands(&[UiCommand::FrameEverything], Word::new("frame all")),
-    HelpRow::Commands(&[UiCommand::ToggleFollow], Word::new("camera follow on or off")),
-    HelpRow::Commands(&[UiCommand::NextLook], Word::new("body, bones, both")),
-    HelpRow::Gesture(
-        Word::new("W A S D, arrows"),
-        Word::new("drive the character of the Match lab; Shift runs, Q strafes"),
-    ),
-    HelpRow::Commands(&[UiCommand::Undo], Word::new("undo")),
-    HelpRow::Commands(&[UiCommand::Redo], Word::new("redo")),
-    HelpRow::Commands(
-        &[UiCommand::CopyLink],
-        Word::new("copy the link, when nothing else is selected"),
-    ),
-    HelpRow::Commands(&[UiCommand::ToggleHelp], Word::new("this list")),
-    HelpRow::Gesture(
-        Word::new("drag"),
-        Word::new("turn the camera; with Shift or the right button, move it"),
-    ),
-    HelpRow::Gesture(Word::new("W A S D"), Word::new("the same, except in the Match lab")),
-    HelpRow::Gesture(Word::new("wheel, pinch"), Word::new("zoom")),
-    HelpRow::Gesture(Word::new("Page up, down"), Word::new("zoom")),
-];
-
-/// What commands work on.
+/// The parts of the app that commands work on.
 struct Target<'a> {
     session: &'a Session,
     state: &'a mut UiState,
@@ -276,7 +158,7 @@ impl UiCommand {
         }
     }
 
-    /// Returns whether what the command turns on is on.
+    /// Returns whether the command has switched something on.
     fn is_on(self, session: &Session) -> bool {
         let params = session.params();
         match self {
@@ -364,201 +246,4 @@ fn close(session: &Session, state: &mut UiState, out: &mut Out) {
     }
     (state.help_open, state.library_open) = (false, false);
     state.drawing = None;
-}
-
-/// Gives the commands whose keys are pressed, unless text is being typed.
-pub(crate) fn take_keys(session: &Session, state: &mut UiState, out: &mut Out, ui: &Ui) {
-    let ctx = ui.ctx();
-    if ctx.text_edit_focused() {
-        return;
-    }
-    let focus = ctx.memory(Memory::focused);
-    let by_pointer = Id::unique("focused by the pointer");
-    if ctx.input(|input| input.pointer.any_down() || input.pointer.any_released()) {
-        ctx.data_mut(|data| data.insert_temp(by_pointer, focus));
-    }
-    let touched = ctx.data(|data| data.get_temp::<Option<Id>>(by_pointer)).flatten();
-    let is_free = |how: Focus| match how {
-        Focus::Ignored => true,
-        Focus::Respected => focus.is_none(),
-        Focus::RespectedByKeyboard => focus.is_none() || touched == focus,
-        Focus::MenuRespected => !Popup::is_any_open(ctx),
-    };
-    let is_pressed = |trigger: Trigger| {
-        ctx.input_mut(|input| match trigger {
-            Trigger::Keys(modifiers, key) => input.consume_key(modifiers, key),
-            Trigger::Copy => input.events.contains(&Event::Copy),
-            Trigger::Typed(wanted) => {
-                let typed = |event: &Event| matches!(event, Event::Text(text) if text == wanted);
-                input.events.iter().any(typed)
-            }
-        })
-    };
-    let mut target = Target { session, state, out, ui };
-    // [`WITH_KEYS`] has the longer chord of a key first: a key without modifiers takes any.
-    for command in WITH_KEYS {
-        let row = command.row();
-        let can = is_free(row.focus) && command.is_enabled(session);
-        if can && row.triggers.iter().any(|&trigger| is_pressed(trigger)) {
-            command.run(&mut target);
-        }
-    }
-    for (index, key) in LAB_KEYS.into_iter().enumerate() {
-        // A map that has the focus is made larger and smaller with these.
-        let zooms = matches!(key, Keyboard::Num0 | Keyboard::Minus | Keyboard::Equals);
-        let how = if zooms { Focus::Respected } else { Focus::Ignored };
-        if is_free(how) && is_pressed(Trigger::Keys(NONE, key)) {
-            UiCommand::OpenLab(index).run(&mut target);
-        }
-    }
-}
-
-/// Shows the icon of a command as a button.
-pub(crate) fn command_icon_ui(
-    command: UiCommand,
-    session: &Session,
-    state: &mut UiState,
-    out: &mut Out,
-    ui: &mut Ui,
-) {
-    let row = command.row();
-    let button = match row.icon {
-        Some(icon) => Button::icon_only(icon, name_of(command, state)),
-        None => Button::new(row.text).quiet(),
-    };
-    command_button_ui(command, button, session, state, out, ui);
-}
-
-/// Shows a button that gives a command. Its tooltip says what it does, and the keys that do it.
-pub(crate) fn command_button_ui(
-    command: UiCommand,
-    button: Button<'_>,
-    session: &Session,
-    state: &mut UiState,
-    out: &mut Out,
-    ui: &mut Ui,
-) {
-    let row = command.row();
-    let name = name_of(command, state);
-    let button = button.name(name).hint(Text::EMPTY).selected(command.is_on(session));
-    let enabled = command.is_enabled(session);
-    let response = ui.add_enabled_ui(enabled, |ui| kit::button_ui(button, ui)).inner;
-    // Made only while the pointer is over the button.
-    let response = response.on_hover_ui(|ui| {
-        let what = say(if row.tooltip.is_empty() { name } else { row.tooltip }, ui);
-        let keys = keys_of(&[command]);
-        ui.label(if keys.is_empty() { what } else { format!("{what} ({})", say(&keys, ui)) });
-    });
-    if response.clicked() {
-        command.run(&mut Target { session, state, out, ui });
-    }
-}
-
-/// Shows a line of a menu that gives a command.
-pub(crate) fn command_item_ui(
-    command: UiCommand,
-    session: &Session,
-    state: &mut UiState,
-    out: &mut Out,
-    ui: &mut Ui,
-) {
-    let shortcut = keys_of(&[command]);
-    let (text, icon) = (name_of(command, state), command.row().icon);
-    let item = MenuItem { text: text.into(), icon, shortcut: (&shortcut).into(), chosen: false };
-    let enabled = command.is_enabled(session);
-    if ui.add_enabled_ui(enabled, |ui| kit::menu_item_ui(item, ui)).inner.clicked() {
-        command.run(&mut Target { session, state, out, ui });
-    }
-}
-
-/// Returns what a command is called where its label alone does not say it.
-fn name_of(command: UiCommand, state: &UiState) -> Word {
-    match command {
-        UiCommand::SwitchLanguage => state.language.next().switch(),
-        UiCommand::ToggleProjector => text::PROJECTOR,
-        _ => command.row().text,
-    }
-}
-
-/// Returns the list of shortcuts: the keys, and what they do.
-pub(crate) fn help() -> impl Iterator<Item = (Message, Word)> {
-    HELP.iter().map(|row| match row {
-        HelpRow::Commands(commands, what) => (keys_of(commands), *what),
-        HelpRow::Labs(what) => (Message::data(lab_keys()), *what),
-        HelpRow::Gesture(how, what) => ((*how).into(), *what),
-    })
-}
-
-/// Returns the first keys of commands, one behind the other: `Shift ← →`. Only a key that stands
-/// alone has a name to translate, such as `Space`.
-fn keys_of(commands: &[UiCommand]) -> Message {
-    let mut words: Vec<&'static str> = Vec::new();
-    for command in commands {
-        let (modifiers, key) = match command.row().triggers.first() {
-            Some(Trigger::Keys(modifiers, key)) => (*modifiers, key.symbol_or_name()),
-            Some(Trigger::Copy) => (COMMAND, "C"),
-            Some(Trigger::Typed(text)) => (NONE, *text),
-            None => continue,
-        };
-        for (is_held, word) in [(modifiers.command, "Ctrl"), (modifiers.shift, "Shift")] {
-            if is_held && !words.contains(&word) {
-                words.push(word);
-            }
-        }
-        words.push(match key {
-            "⏴" => "←",
-            "⏵" => "→",
-            key => key,
-        });
-    }
-    match words.as_slice() {
-        [] => Message::default(),
-        [key] => Message::word(key),
-        keys => Message::data(keys.join(" ")),
-    }
-}
-
-/// Returns the keys of the labs: `1 … 9, 0, -, =`.
-fn lab_keys() -> String {
-    let (digits, rest) = LAB_KEYS.split_at(9);
-    let ends =
-        [digits.first(), digits.last()].map(|key| key.map_or("", |key| key.symbol_or_name()));
-    let rest = rest.iter().map(|key| match key {
-        Keyboard::Minus => "-",
-        key => key.symbol_or_name(),
-    });
-    std::iter::once(ends.join(" … ")).chain(rest.map(str::to_owned)).collect::<Vec<_>>().join(", ")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_line_of_the_list_names_its_keys() {
-        let list: Vec<(String, &str)> =
-            help().map(|(keys, what)| (keys.to_string(), what.english())).collect();
-        let keys = |what: &str| {
-            let line = list.iter().find(|(_, sentence)| *sentence == what);
-            line.map(|(keys, _)| keys.as_str()).unwrap()
-        };
-        assert_eq!(keys("play or pause"), "Space");
-        assert_eq!(keys("ten frames back or forward"), "Shift ← →");
-        assert_eq!(keys("one frame back or forward"), "← →");
-        assert_eq!(keys("slower, faster"), "[ ]");
-        assert_eq!(keys("redo"), "Ctrl Shift Z");
-        assert_eq!(keys("copy the link, when nothing else is selected"), "Ctrl C");
-        assert_eq!(keys("this list"), "?");
-        assert_eq!(keys("the labs, in order"), "1 … 9, 0, -, =");
-        assert!(list.iter().all(|(keys, what)| !keys.is_empty() && !what.is_empty()));
-    }
-
-    #[test]
-    fn no_two_commands_share_a_key() {
-        let mut seen: Vec<Trigger> = LAB_KEYS.iter().map(|&key| Trigger::Keys(NONE, key)).collect();
-        for trigger in WITH_KEYS.iter().flat_map(|command| command.row().triggers) {
-            assert!(!seen.contains(trigger), "{trigger:?}");
-            seen.push(*trigger);
-        }
-    }
 }

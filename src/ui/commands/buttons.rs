@@ -1,0 +1,78 @@
+//! Commands as buttons and as lines of a menu.
+
+use super::keys::keys_of;
+use super::{Target, UiCommand};
+use crate::ui::kit::{self, Button, MenuItem};
+use crate::ui::language::{Text, Word, say};
+use crate::ui::out::Out;
+use crate::ui::state::UiState;
+use crate::ui::text;
+use eframe::egui::Ui;
+use segue_session::Session;
+
+/// Shows the icon of a command as a button.
+pub(crate) fn command_icon_ui(
+    command: UiCommand,
+    session: &Session,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
+    let row = command.row();
+    let button = match row.icon {
+        Some(icon) => Button::icon_only(icon, name_of(command, state)),
+        None => Button::new(row.text).quiet(),
+    };
+    command_button_ui(command, button, session, state, out, ui);
+}
+
+/// Shows a button that gives a command. Its tooltip says what it does, and the keys that do it.
+pub(crate) fn command_button_ui(
+    command: UiCommand,
+    button: Button<'_>,
+    session: &Session,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
+    let row = command.row();
+    let name = name_of(command, state);
+    let button = button.name(name).hint(Text::EMPTY).selected(command.is_on(session));
+    let enabled = command.is_enabled(session);
+    let response = ui.add_enabled_ui(enabled, |ui| kit::button_ui(button, ui)).inner;
+    // Made only while the pointer is over the button.
+    let response = response.on_hover_ui(|ui| {
+        let what = say(if row.tooltip.is_empty() { name } else { row.tooltip }, ui);
+        let keys = keys_of(&[command]);
+        ui.label(if keys.is_empty() { what } else { format!("{what} ({})", say(&keys, ui)) });
+    });
+    if response.clicked() {
+        command.run(&mut Target { session, state, out, ui });
+    }
+}
+
+/// Shows a line of a menu that gives a command.
+pub(crate) fn command_item_ui(
+    command: UiCommand,
+    session: &Session,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
+    let shortcut = keys_of(&[command]);
+    let (text, icon) = (name_of(command, state), command.row().icon);
+    let item = MenuItem { text: text.into(), icon, shortcut: (&shortcut).into(), chosen: false };
+    let enabled = command.is_enabled(session);
+    if ui.add_enabled_ui(enabled, |ui| kit::menu_item_ui(item, ui)).inner.clicked() {
+        command.run(&mut Target { session, state, out, ui });
+    }
+}
+
+/// Returns what a command is called where its label alone does not say it.
+fn name_of(command: UiCommand, state: &UiState) -> Word {
+    match command {
+        UiCommand::SwitchLanguage => state.language.next().switch(),
+        UiCommand::ToggleProjector => text::PROJECTOR,
+        _ => command.row().text,
+    }
+}
