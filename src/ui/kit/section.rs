@@ -44,7 +44,7 @@ pub(crate) fn folded_ui<'a>(
         .font(theme_of(ui).font(Type::Strong))
         .color(palette_of(ui).muted);
     let header =
-        CollapsingHeader::new(words).id_salt(title.english()).icon(|ui, openness, response| {
+        CollapsingHeader::new(words).id_salt(title.template()).icon(|ui, openness, response| {
             let sign = if openness < 0.5 { Icon::ChevronRight } else { Icon::ChevronDown };
             let palette = palette_of(ui);
             let ink = if response.hovered() { palette.text } else { palette.muted };

@@ -64,6 +64,16 @@ impl<'a> Text<'a> {
         }
     }
 
+    /// Returns the text in English, but for the arguments of a message: it stays when a number in
+    /// the text changes.
+    pub(crate) fn template(self) -> &'a str {
+        match self {
+            Self::Word(word) => word.english(),
+            Self::Message(message) => message.template(),
+            Self::Data(data) => data,
+        }
+    }
+
     /// Returns the text in English, which tells widgets apart in every language.
     pub(crate) fn english(self) -> Cow<'a, str> {
         match self {

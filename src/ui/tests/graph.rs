@@ -240,3 +240,13 @@ fn the_distances_of_very_many_frames_are_seen_from_afar_and_nearby() {
     assert!(harness.state().session.graph_walk().unwrap().is_jump);
     assert_eq!(harness.state().state.labs.graph.last_jump, None);
 }
+
+/// The number in the title of a folded section changes with every clip that is removed.
+#[test]
+fn list_of_clips_stays_open_when_one_is_removed() {
+    let mut harness = harness(DESK, DARK, page("lab=graph&clips=walk,run,idle&play=off"));
+    press("Clips of the graph: 3", &mut harness);
+    press("Remove Run", &mut harness);
+    harness.get_by_label("Clips of the graph: 2");
+    assert!(harness.query_by_label("Remove Walk").is_some());
+}
