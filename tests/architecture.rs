@@ -27,12 +27,13 @@ const BELOW: &str = "math skeleton clip synth registration transition gait blend
 
 /// The folders of the app, and the worker that reads files, with the folders and crates that each
 /// may use.
-const APP: [(&str, &str); 7] = [
+const APP: [(&str, &str); 8] = [
     ("render", "segue_scene segue_motion"),
     ("ui", "segue_scene segue_motion segue_formats segue_session"),
     ("platform", "segue_formats segue_session"),
     ("app", "render ui platform segue_scene segue_motion segue_formats segue_session"),
-    ("web_api", "app platform segue_session"),
+    ("outline", "ui"),
+    ("web_api", "app outline platform segue_session"),
     ("main", "app platform render ui"),
     ("bin", "segue_session"),
 ];

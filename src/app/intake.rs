@@ -86,7 +86,7 @@ impl Segue {
                 }
             }
             Incoming::StoredElsewhere(entries) => {
-                self.autosave.on_stored_elsewhere(&self.session, entries)
+                self.autosave.on_stored_elsewhere(&self.session, entries);
             }
             Incoming::FetchedElsewhere(stored) => {
                 self.autosave.on_fetched_elsewhere(

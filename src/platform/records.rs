@@ -94,7 +94,7 @@ impl Records {
                 serde_json::from_str(text).map(|saved| records.saved = Some(saved))
             } else if clip_id(key).is_some() {
                 serde_json::from_str(text).map(|ClipRecord { at_ms, entry }| {
-                    later.push((at_ms, Later::Clip(Box::new(entry))))
+                    later.push((at_ms, Later::Clip(Box::new(entry))));
                 })
             } else if is_exit_key(key) {
                 serde_json::from_str(text).map(|ExitRecord { at_ms, known, saved }| {

@@ -10,9 +10,10 @@
 //! ```
 //!
 //! One table ([`PARAMS`]) defines the parameters: their keys in the link, ranges, steps, defaults
-//! and help. Sliders, link, API, comparison and undo are made from it. A *recipe* is a pure function
-//! of clips and parameters. Its inputs are stored with its result, so that unchanged results are not
-//! computed again, as in a spreadsheet, where a change recomputes only the cells that depend on it.
+//! and help. Sliders, link, API, comparison and undo are made from it. A *recipe* is a pure
+//! function of clips and parameters. Its inputs are stored with its result, so that unchanged
+//! results are not computed again, as in a spreadsheet, where a change recomputes only the cells
+//! that depend on it.
 //!
 //! Work that takes longer than a frame is cut into slices ([`Session::work`]). Files and texts from
 //! outside are requested from the app ([`Request`]) and handed over; nothing here depends on a
@@ -58,9 +59,9 @@
 //!
 //! # What it does not do
 //!
-//! It draws nothing, plays nothing by itself, and stores nothing: [`Saved`] is the state that an app
-//! may store. A link contains parameters, not data: it names a file by its name and the first digits
-//! of its SHA-256, and the reader of the link must have that file.
+//! It draws nothing, plays nothing by itself, and stores nothing: [`Saved`] is the state that an
+//! app may store. A link contains parameters, not data: it names a file by its name and the first
+//! digits of its SHA-256, and the reader of the link must have that file.
 
 mod built_in;
 mod clip_info;

@@ -1,4 +1,4 @@
-//! StorageState of changed work and of new clips.
+//! Storage of changed work and of new clips.
 
 use super::{Autosave, Changed, Fingerprint, MAX_SAVE_INTERVAL_MS, Phase, SAVE_DELAY_MS};
 use crate::platform::{LargeFileStore, NewClip, Storage, StoredFiles, Work};

@@ -1,12 +1,10 @@
 //! The rows of the table of parameters as values.
 
-use super::choices::{
-    AlignBy, Atan, Backdrop, Camera, Construction, Curve, EdgeWeight, Ends, Follow, GoingOn,
-    Hysteresis, JumpMethod, LabId, LayerFit, LayerMode, LayerReference, Look, LoopMethod,
-    MadeAction, Mask, MatchBy, Mistake, Normalisation, OF_A, OF_B, OF_FEET, PageLanguage,
-    PageTheme, PathFacing, PathKeep, PathOffset, PathSpline, RootMotion, RootWay, Scenario,
-    SearchBy, Skinning, Transform, TransitionMethod, WalkMethod, WarpMode, WarpWith, WeightLaw,
-};
+#[cfg_attr(
+    not(test),
+    expect(clippy::wildcard_imports, reason = "the rows name the types of nearly all choices")
+)]
+use super::choices::*;
 use super::grammar::ListKind;
 use super::key::Key;
 use super::param::{Group, Kind, Mark, Param, Start};

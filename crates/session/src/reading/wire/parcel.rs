@@ -38,7 +38,8 @@ impl Parcel {
         &self.head
     }
 
-    /// Sends the arrays piece by piece, in the order that [`Unpacker::push`](super::Unpacker::push) expects.
+    /// Sends the arrays piece by piece, in the order that [`Unpacker::push`](super::Unpacker::push)
+    /// expects.
     pub fn pieces(&self, mut send: impl FnMut(&[u8])) {
         let mut piece = Piece { bytes: Vec::with_capacity(PIECE_BYTES), send: &mut send };
         for file in &self.report.files {
