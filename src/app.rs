@@ -93,7 +93,7 @@ fn is_embedded(link: &str) -> bool {
     link::read(link).values.contains(&(Key::Embed, Value::Switch(true)))
 }
 
-/// The state that listeners of the page's API have been told of.
+/// The state that was last reported to the listeners of the page's API.
 #[derive(Debug, Default)]
 struct Reported {
     revision: u64,

@@ -1,5 +1,5 @@
-//! The worker that reads files for the page. It contains the readers of segue-formats, and nothing of
-//! the app. `web/js/reader.js` calls it.
+//! The worker that reads files for the page. It contains the readers of segue-formats, and nothing
+//! of the app. `web/js/reader.js` calls it.
 
 #[cfg(target_arch = "wasm32")]
 mod worker {

@@ -46,8 +46,8 @@ impl LargeFileStore {
         self.files.remove(key);
     }
 
-    /// Takes over a file of stored work, if it is large. Returns the content that the document is to
-    /// hold for it; `None` where the file is not among the stored ones.
+    /// Takes over a file of stored work, if it is large. Returns the content that the document is
+    /// to hold for it; `None` where the file is not among the stored ones.
     pub(crate) fn restore(&mut self, stored: &StoredFiles, sha256: &str) -> Option<Content> {
         Some(match stored.get(sha256)? {
             FileBytes::Here(bytes) => Content::Here(bytes.clone()),

@@ -27,7 +27,7 @@ pub(crate) enum ReadError {
     /// The browser has no room for a copy of the file.
     #[error("there is no room for the file")]
     NoRoom,
-    /// The page has not told the app how to make a worker.
+    /// The page has set no function that makes a worker.
     #[error("the page makes no workers")]
     NoWorkers,
     /// The worker's program could not be loaded.

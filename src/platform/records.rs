@@ -2,10 +2,10 @@
 //! from a file, and the exit records of closed windows.
 //!
 //! A clip's record is stored together with the bytes of its file, as soon as the file is read; the
-//! record of all work follows later. A clip that the record of all work does not name is thus newer,
-//! or that record is damaged; its own record has what is needed. A window that is being closed has
-//! no time to read what others have stored, so it writes an exit record of its own, which is merged
-//! when the work is read or stored next.
+//! record of all work follows later. A clip that the record of all work does not name is thus
+//! newer, or that record is damaged; its own record has what is needed. A window that is being
+//! closed has no time to read what others have stored, so it writes an exit record of its own,
+//! which is merged when the work is read or stored next.
 
 use segue_session::{Saved, SavedEntry};
 use serde::{Deserialize, Serialize};

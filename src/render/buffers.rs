@@ -68,8 +68,8 @@ impl GrowingBuffer {
     }
 }
 
-/// Writes `blocks` to `out`, each at a multiple of `stride`, and one more block of zeros, so that no
-/// binding reaches past the end.
+/// Writes `blocks` to `out`, each at a multiple of `stride`, and one more block of zeros, so that
+/// no binding reaches past the end.
 pub(super) fn spaced<T: bytemuck::Pod>(blocks: &[T], stride: usize, out: &mut Vec<u8>) {
     out.clear();
     out.resize(stride * (blocks.len() + 1), 0);

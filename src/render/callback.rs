@@ -20,8 +20,8 @@ pub(crate) fn install(render_state: &RenderState) {
 
 /// Returns a shape that shows `stage` in `rect`. Every stage of the page has an `id` of its own.
 ///
-/// Keep the `Arc`, and change the stage with `Arc::make_mut` in the next frame. egui has dropped its
-/// handle by then, so that nothing is copied.
+/// Keep the `Arc`, and change the stage with `Arc::make_mut` in the next frame. egui has dropped
+/// its handle by then, so that nothing is copied.
 pub(crate) fn paint_callback(
     id: u64,
     rect: egui::Rect,

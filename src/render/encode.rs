@@ -95,8 +95,8 @@ impl StageEncoder<'_> {
         complete
     }
 
-    /// Draws all panes. Returns `false` where something is left out because its pipeline is not made
-    /// yet.
+    /// Draws all panes. Returns `false` where something is left out because its pipeline is not
+    /// made yet.
     pub(super) fn encode(&self, encoder: &mut wgpu::CommandEncoder) -> bool {
         let view = self.view;
         let is_lit = view.drawn.panes.iter().any(|pane| pane.lit.is_some());
@@ -222,8 +222,8 @@ impl StageEncoder<'_> {
 
         let has_edges = view.drawn.views.first().is_some_and(ViewUniform::has_edges);
         let solids = || figures().filter(|figure| !figure.ghost && !figure.limbs().is_empty());
-        // The depths of fronts come first, so that hidden surfaces are not lit: most limbs are inside
-        // others.
+        // The depths of fronts come first, so that hidden surfaces are not lit: most limbs are
+        // inside others.
         for (kind, wanted) in [
             (PipelineKind::Front, true),
             (PipelineKind::Solid, true),
@@ -246,11 +246,11 @@ impl StageEncoder<'_> {
             }
         }
         quads(pass, PipelineKind::SpaceLine, strokes, &pane.strokes[1]);
-        // Of each ghost, the depths of the front are drawn, then its colours. Far ghosts come first.
+        // The depths of a ghost's front are drawn before its colours. Far ghosts come first.
         for (number, figure) in figures().filter(|figure| figure.ghost).enumerate() {
             pass.set_stencil_reference(number as u32 % 255 + 1);
             if let Some(skin) = &figure.skin {
-                // A skin of glass has an outline, too.
+                // A skin of glass also has an outline.
                 for (kind, wanted) in [
                     (PipelineKind::SkinFront, true),
                     (PipelineKind::SkinGhost, true),

@@ -1,5 +1,5 @@
-//! Conversion of a draw list to data for the GPU: plain bytes, and the order of drawing. Buffers are
-//! reused, so that a frame like the last one allocates nothing.
+//! Conversion of a draw list to data for the GPU: plain bytes, and the order of drawing. Buffers
+//! are reused, so that a frame like the last one allocates nothing.
 
 use super::instances::{
     bytes, figure_uniform, find_nearest, limb_instance, lowest, ring_instance, stroke_instance,
@@ -335,7 +335,7 @@ impl Frame {
     }
 }
 
-/// The greatest number of figures in a pane whose high limbs cast soft shadows, too.
+/// The greatest number of figures in a pane whose high limbs also cast soft shadows.
 const MAX_SHADED_FIGURES: usize = 12;
 
 /// The height up to which limbs cast soft shadows where those of high limbs are left out, metres.

@@ -3,8 +3,8 @@
 use eframe::wgpu;
 use segue_scene::Color;
 
-/// The format of a stage's colours. They are sRGB-encoded, as egui's own, so that blending looks the
-/// same in the stage and beside it.
+/// The format of a stage's colours. They are sRGB-encoded, as egui's own, so that blending looks
+/// the same in the stage and beside it.
 pub(super) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 /// The format of a stage's depths.
 pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth24PlusStencil8;

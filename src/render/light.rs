@@ -1,5 +1,5 @@
-//! The main light's shadow map: the box around the bodies of a pane, and the map of depths that they
-//! are drawn into.
+//! The main light's shadow map: the box around the bodies of a pane, and the map of depths that
+//! they are drawn into.
 
 use super::layout::MAP_FORMAT;
 use super::pipelines::Pipelines;
@@ -9,8 +9,8 @@ use segue_scene::{Figure, Pane, Viewport};
 
 /// The width and the height of the map of all panes, texels.
 pub(super) const MAP_SIZE: u32 = 2048;
-/// The greatest distance from the pane's focus at which a limb casts a shadow, metres. A farther one
-/// would make the map coarse for the others.
+/// The greatest distance from the pane's focus at which a limb casts a shadow, metres. A farther
+/// one would make the map coarse for the others.
 const MAX_DISTANCE_M: f32 = 16.0;
 /// The greatest height from which a shadow reaches the ground, metres. A greater one would make the
 /// map's depths coarse.
@@ -18,8 +18,8 @@ const MAX_HEIGHT_M: f32 = 30.0;
 /// The margin around every limb, metres, because a skin may be wider than its limbs.
 const MARGIN_M: f32 = 0.08;
 
-/// Returns whether a figure casts a shadow of the main light: solid ones do, and those whose skin is
-/// of glass.
+/// Returns whether a figure casts a shadow of the main light: solid ones do, and those whose skin
+/// is of glass.
 pub(super) fn casts_key_shadow(figure: &Figure) -> bool {
     figure.shadow >= 1.0
 }
@@ -39,8 +39,8 @@ pub(super) struct LightBox {
     pub(super) half_depth: f32,
 }
 
-/// Returns the unit vector towards the main light of a pane. The light is above the left shoulder of
-/// the camera, so that the shape of a body shows from all sides.
+/// Returns the unit vector towards the main light of a pane. The light is above the left shoulder
+/// of the camera, so that the shape of a body shows from all sides.
 pub(super) fn key_direction(right: Vec3, yaw: f32) -> Vec3 {
     let level_back = Vec3::new(yaw.sin(), 0.0, yaw.cos());
     (Vec3::Y * 0.86 - right * 0.62 + level_back * 0.55).normalize_or(Vec3::Y)

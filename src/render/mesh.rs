@@ -3,8 +3,8 @@
 use super::buffers::filled_buffer;
 use eframe::wgpu;
 
-/// A vertex: the cosine and the sine about the axis, the position from the seam (0) to the pole (1),
-/// and the ball (0 or 1).
+/// A vertex: the cosine and the sine about the axis, the position from the seam (0) to the pole
+/// (1), and the ball (0 or 1).
 pub(super) type ConeVertex = [f32; 4];
 
 /// A unit rounded cone.
@@ -75,8 +75,8 @@ mod tests {
     use super::*;
     use glam::Vec3;
 
-    /// Bends a vertex as the shader does, for a ball of radius 1 at the origin and one of radius 0.5 at
-    /// (0, 3, 0).
+    /// Bends a vertex as the shader does, for a ball of radius 1 at the origin and one of radius
+    /// 0.5 at (0, 3, 0).
     fn bend(vertex: ConeVertex) -> Vec3 {
         let tilt = (0.5f32 / 3.0).asin();
         let pole = if vertex[3] > 0.5 { 1.0 } else { -1.0 } * std::f32::consts::FRAC_PI_2;

@@ -52,7 +52,8 @@ const MAX_PLAIN_PIXELS: f32 = 180_000.0;
 const FORGET_AFTER: u32 = 240;
 
 impl StageRenderer {
-    /// Makes the resources that all stages share. `output_format` is the format of the page's target.
+    /// Makes the resources that all stages share. `output_format` is the format of the page's
+    /// target.
     pub(crate) fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,

@@ -1,4 +1,5 @@
-//! Skinned bodies on the GPU: each mesh once, and the joints of all figures of a stage in a texture.
+//! Skinned bodies on the GPU: each mesh once, and the joints of all figures of a stage in a
+//! texture.
 
 use super::buffers::filled_buffer;
 use super::frame::SharedMesh;
@@ -100,8 +101,8 @@ pub(super) struct JointTexture {
 }
 
 impl JointTexture {
-    /// Writes the joints, into a larger texture where it is needed. Joints beyond the largest texture
-    /// are left out.
+    /// Writes the joints, into a larger texture where it is needed. Joints beyond the largest
+    /// texture are left out.
     pub(super) fn write(
         &mut self,
         device: &wgpu::Device,

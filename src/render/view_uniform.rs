@@ -5,8 +5,8 @@ use super::light::{self, LightBox, MAP_SIZE};
 use glam::Vec4;
 use segue_scene::{Lens, Look, Pane, Skinning, Stage, Viewport};
 
-/// The ratio of the main light's radius to its distance, which is the widening of a shadow's edge in
-/// metres per metre.
+/// The ratio of the main light's radius to its distance, which is the widening of a shadow's edge
+/// in metres per metre.
 const SPREAD: f32 = 0.055;
 /// The greatest width of a shadow's edge to either side, metres.
 const MAX_SPREAD_M: f32 = 0.13;

@@ -45,15 +45,15 @@ onBothBackends("keys has every parameter, and set calls the listeners", async ({
   assert.ok(stats.frames > 0 && stats.wasm_bytes > 1e6 && stats.frame_ms.p50 <= stats.frame_ms.max);
 
   const before = await segue("pose", "result", 2.4);
-  const told = await page.evaluate(async () => {
-    const told = [];
-    const stop = window.segue.on("change", ({ query }) => told.push(query));
+  const reported = await page.evaluate(async () => {
+    const reported = [];
+    const stop = window.segue.on("change", ({ query }) => reported.push(query));
     await window.segue.set({ blend_window: 90 });
     await new Promise((resolve) => setTimeout(resolve));
     stop();
-    return told;
+    return reported;
   });
-  assert.ok(told.some((query) => query.includes("blend_window=90")), String(told));
+  assert.ok(reported.some((query) => query.includes("blend_window=90")), String(reported));
   assert.ok(apart(await segue("pose", "result", 2.4), before) > 1e-3, "set resolves when the result is computed");
 });
 

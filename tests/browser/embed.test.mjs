@@ -64,13 +64,13 @@ onBothBackends("frame with the link of an embedded state answers", async ({ open
     wait: false,
     prepare: (page) => page.route(({ pathname, search }) => pathname === "/" && search === "", (route) => route.fulfill({ contentType: "text/html", body: "<!doctype html><title>A course</title>" })),
   });
-  const told = await page.evaluate((search) => new Promise((resolve) => {
+  const reported = await page.evaluate((search) => new Promise((resolve) => {
     window.addEventListener("message", ({ data }) => { if (data?.event === "ready") resolve("ready"); });
     const frame = document.createElement("iframe");
     frame.src = `/${search}`;
     document.body.append(frame);
   }), search);
-  assert.equal(told, "ready");
+  assert.equal(reported, "ready");
 });
 
 // Fails when the app and the page's modules parse a link differently. A frame that answers must

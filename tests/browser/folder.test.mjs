@@ -70,6 +70,6 @@ onBothBackends("folder without motion files is reported", async ({ open }) => {
   });
   await segue("set", {});
   await dropFolder(page, [["/papers/notes.txt", "no motion"]]);
-  const [message] = await until("it is told", () => page.evaluate(() => window.errors.length && window.errors));
+  const [message] = await until("it is reported", () => page.evaluate(() => window.errors.length && window.errors));
   assert.match(message, /^papers has no motion files \(\.bvh/);
 });

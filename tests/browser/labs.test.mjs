@@ -70,7 +70,7 @@ onBothBackends("character follows the path of the link, beside others", async ({
   await segue("set", {});
   const half = async (which) => (await segue("pose", which, 1.6)).positions.slice(0, 3);
   const before = await half("result");
-  assert.ok(apart(await segue("pose", "result", 1), await segue("pose", "walk", 1)) < 1e-3, "nobody edited it");
+  assert.ok(apart(await segue("pose", "result", 1), await segue("pose", "walk", 1)) < 1e-3, "the path is not edited");
   await segue("set", { path: "AAUAAADIAfAByAF3yAF3rAI", others: "run,walk_left" });
   const [x] = await half("result");
   assert.ok(x - before[0] > 0.3, `the hips are ${x - before[0]} m to the left`);
@@ -134,7 +134,7 @@ onBothBackends("built-in walk is the same in every browser and natively", async 
   const golden = JSON.parse(readFileSync(new URL("../../crates/session/tests/golden/walk.json", import.meta.url), "utf8"));
   const { segue } = await open(golden.link, DESK);
   await segue("set", {});
-  let [looked, told] = [0, 0];
+  let [compared, distinct] = [0, 0];
   for (const { clip, from, to, start } of golden.stays) {
     // After its transition and before the next one, a stretch is its clip, frame by frame. A short
     // one has no such frame.
@@ -143,14 +143,14 @@ onBothBackends("built-in walk is the same in every browser and natively", async 
       const shown = await segue("pose", "result", (start + frame) / golden.fps);
       const off = bentApart(shown, await segue("pose", clip, (from + frame) / golden.fps));
       assert.ok(off < 2e-3, `${clip} ${from} to ${to}, at ${start}: ${off} off in frame ${frame}`);
-      looked += 1;
+      compared += 1;
       // The test is only meaningful where the next frame differs, which it does not in a character
       // at rest.
-      if (bentApart(shown, await segue("pose", clip, (from + frame + 1) / golden.fps)) > 4e-3) told += 1;
+      if (bentApart(shown, await segue("pose", clip, (from + frame + 1) / golden.fps)) > 4e-3) distinct += 1;
     }
   }
-  assert.ok(looked > golden.stays.length, `${looked} frames looked at`);
-  assert.ok(2 * told > looked, `of ${looked} frames ${told} can be told from the next one`);
+  assert.ok(compared > golden.stays.length, `${compared} frames were compared`);
+  assert.ok(2 * distinct > compared, `of ${compared} frames ${distinct} differ from the next one`);
 });
 
 // Fails when a scenario does not turn the character, when weights need a reload, and when the

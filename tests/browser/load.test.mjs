@@ -95,7 +95,7 @@ onBothBackends("dropped broken file is reported", async ({ open }) => {
   await segue("set", {});
   const before = await segue("clips");
   await dropFile("torn.bvh", Buffer.from("HIERARCHY\nROOT Hips\n{\n  OFFSET a b c\n"));
-  const [message] = await until("an error is told", () => page.evaluate(() => window.errors.length && window.errors));
+  const [message] = await until("an error is reported", () => page.evaluate(() => window.errors.length && window.errors));
   assert.match(message, /torn\.bvh:4:\d+: found .*a.*, expected /);
   assert.deepEqual(await segue("clips"), before);
 });

@@ -23,8 +23,8 @@ onBothBackends("large file is read while the page goes on", async ({ open }) => 
   });
   assert.deepEqual([clip.name, clip.joints, clip.frames], ["long", 31, 12_000]);
   assert.equal((await segue("params")).a, clip.id);
-  const told = await page.evaluate(() => window.progress.filter(({ name }) => name === "long.bvh").map(({ progress }) => progress));
-  assert.ok(told.length > 0 && told.every((progress) => progress >= 0 && progress <= 1), `progress: ${told}`);
+  const reported = await page.evaluate(() => window.progress.filter(({ name }) => name === "long.bvh").map(({ progress }) => progress));
+  assert.ok(reported.length > 0 && reported.every((progress) => progress >= 0 && progress <= 1), `progress: ${reported}`);
   // The same motion as a short file that is read at once.
   const short = (await load("short.bvh", striding({ frames: 200 }))).clips[0];
   for (const time of [0, 1.5]) assert.ok(apart(await segue("pose", clip.id, time), await segue("pose", short.id, time)) < 1e-6);

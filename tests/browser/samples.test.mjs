@@ -35,7 +35,7 @@ onBackend("webgl2", "graph and match labs load all nine takes of a link", async 
   const asked = [];
   const { segue } = await open("lab=graph&play=off", { ...DESK, prepare: watch(asked) });
   await segue("set", {});
-  assert.deepEqual(asked, [], "nobody asked for any");
+  assert.deepEqual(asked, [], "none was requested");
   await segue("set", { clips: NINE.join(","), edge_threshold: 16 });
   await until("all have come", async () => (await segue("clips")).filter(({ id, frames }) => NINE.includes(id) && frames > 0).length === NINE.length);
   await segue("set", {});

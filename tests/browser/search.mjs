@@ -46,8 +46,8 @@ function build() {
     if (status !== 0) throw new Error(`${program} failed`);
     return stdout;
   };
-  const told = run("cargo", ["build", "--release", "--locked", "--target", target, "--package", "segue-tools", "--bin", "match_speed", "--message-format", "json-render-diagnostics"]);
-  const messages = told.trim().split("\n").map((line) => JSON.parse(line));
+  const output = run("cargo", ["build", "--release", "--locked", "--target", target, "--package", "segue-tools", "--bin", "match_speed", "--message-format", "json-render-diagnostics"]);
+  const messages = output.trim().split("\n").map((line) => JSON.parse(line));
   const made = messages.filter((message) => message.target?.name === "match_speed").flatMap((message) => message.filenames ?? []);
   run("cargo", ["run", "--quiet", "--locked", "--package", "segue-bindgen", made.find((name) => name.endsWith(".wasm")), folder]);
 }

@@ -42,8 +42,8 @@ for (const [seed, [end, endPage]] of Object.entries(ENDS).entries()) {
     let resolved = 0;
     for (let moment = 0; moment < MOMENTS; moment++) {
       const { page } = await open("lab=view&play=off", SMALL);
-      const told = [];
-      await page.exposeFunction("tell", (id) => void told.push(id));
+      const reported = [];
+      await page.exposeFunction("tell", (id) => void reported.push(id));
       const loading = page.evaluate(async (texts) => {
         const segue = await window.segueReady;
         for (const [index, text] of texts.entries()) {
@@ -55,7 +55,7 @@ for (const [seed, [end, endPage]] of Object.entries(ENDS).entries()) {
       await page.waitForTimeout(wait);
       const again = await endPage(page);
       await loading;
-      const expected = [...told];
+      const expected = [...reported];
       resolved += expected.length;
       if (again !== page) await again.goto(new URL(page.url()).origin, { waitUntil: "commit" });
       await again.waitForFunction(() => "segueReady" in window);
@@ -139,8 +139,8 @@ onBackend("webgl2", "full storage stores what has room and names the rest", asyn
   const large = striding({ frames: 1800 });
   assert.ok(large.length > 800_000, `${large.length} bytes`);
   const [{ clips: [huge] }, { clips: [more] }] = await Promise.all([load("huge.bvh", large), load("more.bvh", striding({ frames: 14 }))]);
-  const [told] = await until("it is said", () => page.evaluate(() => window.errors.length && window.errors));
-  assert.match(told, /storage is full: huge\.bvh will not be here/);
+  const [reported] = await until("it is reported", () => page.evaluate(() => window.errors.length && window.errors));
+  assert.match(reported, /storage is full: huge\.bvh will not be here/);
   await until("the rest is stored", async () => (await keysOf(page, "files")).length === 2);
   await segue("set", { blend_window: 19 });
   await linkStored(page, "blend_window=19");

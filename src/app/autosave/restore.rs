@@ -61,7 +61,7 @@ impl Autosave {
                     session.restore(&stored.saved, content_of, None);
                     self.mark_stored(session);
                 } else {
-                    // What was opened or changed meanwhile stays as it is, and is yet to be stored.
+                    // The user's changes stay, and will be stored.
                     session.restore_late(&stored.saved, content_of);
                 }
             }

@@ -291,7 +291,7 @@ mod tests {
         }
     }
 
-    /// Returns work with a clip of each of these files, by a window that had `removed` ones, too.
+    /// Returns work with a clip of each of these files, by a window that had also `removed` ones.
     fn work_of(query: &str, files: &[&str], removed: &[&str]) -> Work {
         Work {
             saved: Saved {

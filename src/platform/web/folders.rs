@@ -24,7 +24,7 @@ pub(crate) fn watch_folders(inbox: &Inbox) {
         }
         event.prevent_default();
         event.stop_propagation();
-        // eframe has seen the drag and does not see the drop, so it is told that the drag has left.
+        // eframe has seen the drag and does not see the drop, so the drag is ended for it.
         let left = event.target().and_then(|target| {
             Some(target.dispatch_event(DragEvent::new("dragleave").ok()?.as_ref()))
         });

@@ -5,7 +5,8 @@ use crate::platform::gamepad::Gamepad;
 use wasm_bindgen::JsCast as _;
 
 /// Returns the state of the first gamepad that has two sticks. Browsers hide a gamepad until one of
-/// its buttons is pressed. Buttons are numbered as in the [standard layout](https://www.w3.org/TR/gamepad/#remapping).
+/// its buttons is pressed. Buttons are numbered as in the [standard
+/// layout](https://www.w3.org/TR/gamepad/#remapping).
 pub(crate) fn gamepad() -> Option<Gamepad> {
     let pads = window()?.navigator().get_gamepads().ok()?;
     let pads = pads.iter().filter_map(|pad| pad.dyn_into::<web_sys::Gamepad>().ok());

@@ -211,9 +211,9 @@ thread_local! {
     static TURN_CHANNEL: Option<TurnChannel> = TurnChannel::open();
 }
 
-/// A message channel of the page to itself, shared by all calls of [`next_turn`]. A channel for each
-/// call would stay in memory, because a browser keeps a port with a listener while its other end
-/// exists.
+/// A message channel of the page to itself, shared by all calls of [`next_turn`]. A channel for
+/// each call would stay in memory, because a browser keeps a port with a listener while its other
+/// end exists.
 struct TurnChannel {
     sender: MessagePort,
     waiting: Rc<RefCell<VecDeque<Function>>>,

@@ -22,8 +22,8 @@ const MAX_AWAITED_FRAMES: usize = 120;
 
 /// The greatest width of a picture that is embedded in a text, pixels.
 const MAX_TEXT_PICTURE_WIDTH: f64 = 960.0;
-/// The JPEG quality of a picture that is embedded in a text. A dark stage with a few bodies then has
-/// about 30 KB.
+/// The JPEG quality of a picture that is embedded in a text. A dark stage with a few bodies then
+/// has about 30 KB.
 const TEXT_PICTURE_QUALITY: f64 = 0.85;
 
 /// Returns a part of the canvas as a PNG. The arguments are those of [`capture`].

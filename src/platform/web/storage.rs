@@ -428,7 +428,7 @@ impl Storage {
         };
         let posted = text_of(&new).map(|text| channel.post_message(&JsValue::from(text)));
         if !matches!(posted, Ok(Ok(()))) {
-            log::warn!("other windows were not told of {} clips", new.len());
+            log::warn!("{} clips were not announced to other windows", new.len());
         }
     }
 }

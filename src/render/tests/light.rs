@@ -57,8 +57,8 @@ fn shadow_follows_the_light_and_is_crisp_below_low_bodies() {
     };
     let far = light(1.3, &[0.0, 0.8]);
     assert!(far[0] < far[1] - 40, "in the shadow {} and beside it {}", far[0], far[1]);
-    // The edge of the ball's shadow is at 0.2 m / sin(elevation of the light). Beyond it, the ground
-    // is lit at once when the ball is low, and gradually when it is high.
+    // The edge of the ball's shadow is at 0.2 m / sin(elevation of the light). Beyond it, the
+    // ground is lit at once when the ball is low, and gradually when it is high.
     let edge = 0.2 / key.y;
     let reach = [edge - 0.05, edge + 0.05];
     let (low, high) = (light(0.45, &reach), light(1.3, &reach));

@@ -1,5 +1,5 @@
-//! Tests that draw pictures on a device without a window. `cargo test --bin segue render` leaves them
-//! in `target/stage/*.png`.
+//! Tests that draw pictures on a device without a window. `cargo test --bin segue render` leaves
+//! them in `target/stage/*.png`.
 
 mod exact;
 mod light;
@@ -130,8 +130,8 @@ const A: [u32; 2] = [0xf2_a3_5e, 0xd9_79_2a];
 const B: [u32; 2] = [0x5f_a8_f5, 0x2f_7f_d6];
 const RESULT: [u32; 2] = [0x58_d6_a9, 0x16_9d_72];
 
-/// Returns a pane with a walker, two ghosts behind and two runners in front, paths on the ground, and
-/// a planted foot.
+/// Returns a pane with a walker, two ghosts behind and two runners in front, paths on the ground,
+/// and a planted foot.
 fn blend_pane(actors: &Actors, viewport: Viewport, light: bool, frame: usize) -> Pane {
     let theme = usize::from(light);
     let look = if light { Look::LIGHT } else { Look::DARK };

@@ -184,8 +184,8 @@ fn figures_of_other_heights_are_drawn() {
             &options(&[(0, viewport)], Look::LIGHT, &colors(1)),
             0.0,
         );
-        // The world around a figure of 60 % height appears smaller by as much: the camera is farther
-        // away, and the cells of the grid are wider.
+        // The world around a figure of 60 % height appears smaller by as much: the camera is
+        // farther away, and the cells of the grid are wider.
         let height = if stature == "figure_height=0.6" { 0.6 } else { 1.0 };
         assert!(
             (stage.panes[0].camera.distance * height - 4.8).abs() < 1e-4
