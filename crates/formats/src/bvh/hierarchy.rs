@@ -279,7 +279,11 @@ mod tests {
 
     #[test]
     fn hierarchy_in_any_layout_is_read() {
-        let tree = parse("root A { channels 1 zROTATION offset 1 2 3 JOINT B C { OFFSET 4 5 6} END SITE x{OFFSET 7 8 9}}").unwrap();
+        let tree = parse(
+            "root A { channels 1 zROTATION offset 1 2 3 JOINT B C { OFFSET 4 5 6} \
+             END SITE x{OFFSET 7 8 9}}",
+        )
+        .unwrap();
         assert_eq!(tree.joints[0].offset, [1.0, 2.0, 3.0]);
         assert_eq!(tree.joints[0].end_site, Some([7.0, 8.0, 9.0]));
         assert_eq!((tree.joints[1].name.as_str(), tree.joints[1].parent), ("B C", Some(0)));

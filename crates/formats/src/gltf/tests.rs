@@ -32,7 +32,9 @@ struct GltfBuilder {
 impl GltfBuilder {
     /// Returns a file with nodes, and a skin with joints.
     fn new(nodes: &Value, joints: &[usize]) -> Self {
-        let mut root = json!({ "asset": { "version": "2.0" }, "nodes": nodes, "accessors": [], "bufferViews": [] });
+        let mut root = json!({
+            "asset": { "version": "2.0" }, "nodes": nodes, "accessors": [], "bufferViews": []
+        });
         if !joints.is_empty() {
             root["skins"] = json!([{ "joints": joints }]);
         }
@@ -62,7 +64,9 @@ impl GltfBuilder {
     fn floats(&mut self, kind: &str, width: usize, values: &[f32]) -> usize {
         let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
         let view = self.view(&bytes);
-        self.accessor(json!({ "bufferView": view, "componentType": 5126, "count": values.len() / width, "type": kind }))
+        self.accessor(json!({
+            "bufferView": view, "componentType": 5126, "count": values.len() / width, "type": kind
+        }))
     }
 
     /// Adds a channel to the first animation.
@@ -128,7 +132,11 @@ fn sentences(imported: &Imported) -> Vec<String> {
 
 /// Returns two bones: `Hips` at 1 m with `Chest` 0.5 m above.
 fn two_bones() -> Value {
-    json!([{ "name": "Hips", "translation": [0, 1, 0], "children": [1] }, { "name": "Chest", "translation": [0, 0.5, 0], "children": [2] }, { "name": "Tip", "translation": [0, 0.3, 0] }])
+    json!([
+        { "name": "Hips", "translation": [0, 1, 0], "children": [1] },
+        { "name": "Chest", "translation": [0, 0.5, 0], "children": [2] },
+        { "name": "Tip", "translation": [0, 0.3, 0] }
+    ])
 }
 
 fn about_z(angle: f32) -> [f32; 4] {
@@ -242,7 +250,9 @@ fn accessors_of_every_layout_are_read() {
     let view = builder.view(&turns);
     builder.root["bufferViews"][view]["byteStride"] = json!(12);
     let input = builder.floats("SCALAR", 1, &[0.0, 0.1, 0.2]);
-    let output = builder.accessor(json!({ "bufferView": view, "componentType": 5122, "normalized": true, "count": 3, "type": "VEC4" }));
+    let output = builder.accessor(json!({
+        "bufferView": view, "componentType": 5122, "normalized": true, "count": 3, "type": "VEC4"
+    }));
     builder.sampler(1, "rotation", json!({ "input": input, "output": output }));
     // Translations that are all zero except the last one.
     let (indices, values) =
@@ -306,7 +316,12 @@ fn skeleton_with_a_skin_includes_moving_nodes_above() {
 #[test]
 fn characters_and_animations_each_give_a_clip() {
     let mut builder = GltfBuilder::new(
-        &json!([{ "name": "A", "children": [1] }, { "name": "A2", "translation": [0, 1, 0] }, { "name": "B", "children": [3] }, { "name": "B2", "translation": [0, 1, 0] }]),
+        &json!([
+            { "name": "A", "children": [1] },
+            { "name": "A2", "translation": [0, 1, 0] },
+            { "name": "B", "children": [3] },
+            { "name": "B2", "translation": [0, 1, 0] }
+        ]),
         &[],
     );
     builder.root["skins"] = json!([{ "joints": [0, 1] }, { "joints": [1] }, { "joints": [2, 3] }]);

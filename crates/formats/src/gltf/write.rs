@@ -241,7 +241,10 @@ fn material(color: &[f32; 4], name: &str, index: usize) -> Value {
     if name == MADE_BODY {
         return json!({ "name": "Clay", "pbrMetallicRoughness": surface });
     }
-    json!({ "name": format!("{name} {}", index + 1), "pbrMetallicRoughness": surface, "doubleSided": true })
+    json!({
+        "name": format!("{name} {}", index + 1), "pbrMetallicRoughness": surface,
+        "doubleSided": true
+    })
 }
 
 fn primitive(file: &mut File, mesh: &SkinnedMesh, joints: usize, material: usize) -> Value {
@@ -267,7 +270,9 @@ fn primitive(file: &mut File, mesh: &SkinnedMesh, joints: usize, material: usize
         .accessor(&followed, json!({ "componentType": component, "count": count, "type": "VEC4" }));
     let weights = file.accessor(
         weights.as_flattened(),
-        json!({ "componentType": UNSIGNED_BYTE, "normalized": true, "count": count, "type": "VEC4" }),
+        json!({
+            "componentType": UNSIGNED_BYTE, "normalized": true, "count": count, "type": "VEC4"
+        }),
     );
     let corners = mesh.triangles.as_flattened();
     let (component, indices): (u32, Vec<u8>) = if u16::try_from(count).is_ok() {

@@ -2,8 +2,8 @@
 
 use super::{ASF, amc, skeleton_of};
 use proptest::prelude::*;
-use segue_formats::ImportOptions;
 use segue_formats::acclaim::{self, AcclaimSkeleton, best_skeleton, read_motion};
+use segue_formats::{ImportOptions, ImportWarning};
 
 /// Inserts, removes, doubles and swaps bytes.
 fn damage(bytes: &mut Vec<u8>, edits: &[(prop::sample::Index, u8, u8, prop::sample::Index)]) {
@@ -87,7 +87,10 @@ proptest! {
                             .all(|frame| clip.rotations(frame).iter().all(|q| q.is_normalized()))
                     );
                     prop_assert!(clip.root_translations().iter().all(|p| p.is_finite()));
-                    prop_assert!(imported.warnings.iter().all(|warning| warning.count > 0 && !warning.to_string().contains('\n')));
+                    let is_one_line =
+                        |warning: &ImportWarning| !warning.to_string().contains('\n');
+                    prop_assert!(imported.warnings.iter().all(|warning| warning.count > 0));
+                    prop_assert!(imported.warnings.iter().all(is_one_line));
                 }
                 Err(error) => prop_assert!(
                     error.line >= 1 && error.column >= 1 && !error.to_string().contains('\n'),

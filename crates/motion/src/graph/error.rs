@@ -102,7 +102,8 @@ pub enum GraphError {
     #[error(
         "with a blend window of {window} frames, a jump in the only clip that is long enough spans at most {most_secs:.2} s, less than the minimum of {min_jump_secs} s: lower the jump to {most_secs:.2} s, {lower_window}or add a clip",
         most_secs = floored(*farthest_secs),
-        lower_window = lower_window.map_or_else(Message::default, |window| msg!("the window to {window}, ", window))
+        lower_window = lower_window
+            .map_or_else(Message::default, |window| msg!("the window to {window}, ", window))
     )]
     NowhereToGo {
         /// Frames of the blend window.

@@ -22,25 +22,28 @@ impl MotionGraph {
                 component[node.index()] = index;
             }
         }
-        let nodes = self.graph.node_weights().zip(&component).map(
-            |(stretch, component)| json!({ "clip": stretch.clip, "start": stretch.start, "end": stretch.end, "component": component }),
-        );
-        let edges = self
-            .graph
-            .node_indices()
-            .flat_map(|node| choices.probabilities(node))
-            .filter_map(|(edge, probability)| {
-                let (from, to) = self.graph.edge_endpoints(edge)?;
-                let (from, to) = (from.index(), to.index());
-                Some(match self.jump(edge) {
-                    None => json!({ "from": from, "to": to, "probability": probability }),
-                    Some(jump) => json!({
-                        "from": from, "to": to, "probability": probability,
-                        "leave": jump.leave, "enter": jump.enter, "window": jump.window, "distance_cm": jump.distance_cm,
-                        "yaw": jump.alignment.yaw, "x": jump.alignment.shift.x, "z": jump.alignment.shift.y,
-                    }),
-                })
-            });
+        let nodes = self.graph.node_weights().zip(&component).map(|(stretch, component)| {
+            json!({
+                "clip": stretch.clip, "start": stretch.start, "end": stretch.end,
+                "component": component
+            })
+        });
+        let edges =
+            self.graph.node_indices().flat_map(|node| choices.probabilities(node)).filter_map(
+                |(edge, probability)| {
+                    let (from, to) = self.graph.edge_endpoints(edge)?;
+                    let (from, to) = (from.index(), to.index());
+                    Some(match self.jump(edge) {
+                        None => json!({ "from": from, "to": to, "probability": probability }),
+                        Some(jump) => json!({
+                            "from": from, "to": to, "probability": probability,
+                            "leave": jump.leave, "enter": jump.enter, "window": jump.window,
+                            "distance_cm": jump.distance_cm, "yaw": jump.alignment.yaw,
+                            "x": jump.alignment.shift.x, "z": jump.alignment.shift.y,
+                        }),
+                    })
+                },
+            );
         json!({
             "fps": self.set.fps(),
             "options": self.options,

@@ -107,7 +107,10 @@ pub enum RecordingError {
         found: String,
     },
     /// The recording is longer than [`Recording::MAX_TICKS`].
-    #[error("the recorded input is longer than {minutes} minutes", minutes = Recording::MAX_TICKS / 3_600)]
+    #[error(
+        "the recorded input is longer than {minutes} minutes",
+        minutes = Recording::MAX_TICKS / 3_600
+    )]
     TooLong,
 }
 

@@ -102,13 +102,19 @@ pub enum PathEditError {
         frames: usize,
     },
     /// The character does not travel.
-    #[error("this motion stays within {extent_cm:.0} cm, so that there is no path to edit: choose one that travels", extent_cm = extent_m * 100.0)]
+    #[error(
+        "this motion stays within {extent_cm:.0} cm, so that there is no path to edit: choose one that travels",
+        extent_cm = extent_m * 100.0
+    )]
     Stands {
         /// The diagonal of the bounding box of the root's trajectory, metres.
         extent_m: f64,
     },
     /// The path is shorter than the least length.
-    #[error("a path of {length_cm:.1} cm has no direction: draw its control points apart", length_cm = length_m * 100.0)]
+    #[error(
+        "a path of {length_cm:.1} cm has no direction: draw its control points apart",
+        length_cm = length_m * 100.0
+    )]
     NoLength {
         /// Its length, metres.
         length_m: f64,

@@ -49,7 +49,11 @@ pub enum PathError {
         second: (usize, usize),
     },
     /// A pin that excludes the corner at which the path must begin or end.
-    #[error("the pin at frames {a} | {b} excludes the path's {end}: free the {end}, or move the pin inwards", a = pin.0, b = pin.1)]
+    #[error(
+        "the pin at frames {a} | {b} excludes the path's {end}: free the {end}, or move the pin inwards",
+        a = pin.0,
+        b = pin.1
+    )]
     PinAtEnd {
         /// Frames of the pin.
         pin: (usize, usize),

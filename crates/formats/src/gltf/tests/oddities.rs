@@ -5,7 +5,11 @@ use std::sync::Arc;
 
 #[test]
 fn oddities_of_a_file_give_warnings() {
-    let nodes = json!([{ "name": "Hips", "children": [1], "scale": [1, 2, 1] }, { "name": "Chest", "children": [2], "translation": [0, 0.5, 0] }, { "translation": [0, 0.5, 0] }]);
+    let nodes = json!([
+        { "name": "Hips", "children": [1], "scale": [1, 2, 1] },
+        { "name": "Chest", "children": [2], "translation": [0, 0.5, 0] },
+        { "translation": [0, 0.5, 0] }
+    ]);
     let mut builder = GltfBuilder::new(&nodes, &[0, 1]);
     let times = [0.0, 0.0123, 0.5171, 0.9];
     builder.channel(
@@ -46,7 +50,11 @@ fn oddities_of_a_file_give_warnings() {
     );
     // A file in centimetres, against the specification.
     let mut builder = GltfBuilder::new(
-        &json!([{ "name": "Hips", "children": [1], "translation": [0, 90, 0] }, { "name": "Head", "translation": [0, 85, 0] }, { "name": "Foot", "translation": [0, -88, 0] }]),
+        &json!([
+            { "name": "Hips", "children": [1], "translation": [0, 90, 0] },
+            { "name": "Head", "translation": [0, 85, 0] },
+            { "name": "Foot", "translation": [0, -88, 0] }
+        ]),
         &[0, 1, 2],
     );
     builder.root["nodes"][0]["children"] = json!([1, 2]);
@@ -82,7 +90,10 @@ fn buffers_are_found_beside_the_file_or_refused_by_name() {
             .unwrap_err();
     assert!(error.to_string().contains("expected all bytes of the animation"), "{error}");
     // A missing buffer of images alone is no error.
-    root["buffers"] = json!([{ "byteLength": builder.bytes.len(), "uri": "walk.bin" }, { "byteLength": 9, "uri": "images.bin" }]);
+    root["buffers"] = json!([
+        { "byteLength": builder.bytes.len(), "uri": "walk.bin" },
+        { "byteLength": 9, "uri": "images.bin" }
+    ]);
     let beside = |name: &str| (name == "walk.bin").then(|| Arc::clone(&bytes));
     assert!(
         read("a.gltf", root.to_string().as_bytes(), &beside, &ImportOptions::default()).is_ok()
@@ -151,7 +162,10 @@ fn invalid_keys_are_refused() {
 fn channels_without_a_node_are_skipped() {
     let mut builder = GltfBuilder::new(&two_bones(), &[0, 1]);
     builder.channel(1, "rotation", "LINEAR", &[0.0, 1.0], &[about_z(0.0), about_z(1.0)].concat());
-    let pointer = json!({ "sampler": 0, "target": { "path": "pointer", "extensions": { "KHR_animation_pointer": { "pointer": "/materials/0" } } } });
+    let pointer = json!({
+        "sampler": 0,
+        "target": { "path": "pointer", "extensions": { "KHR_animation_pointer": { "pointer": "/materials/0" } } }
+    });
     builder.root["animations"][0]["channels"].as_array_mut().unwrap().push(pointer);
     builder.root["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
     assert_eq!(only(&builder.read()).frames(), 31);
@@ -165,7 +179,9 @@ fn small_files_cannot_claim_much_memory() {
     assert!(refused(&builder).contains("more motion than fits"), "{}", refused(&builder));
     for accessor in [
         json!({ "componentType": 5126, "count": 4_000_000_000_u64, "type": "SCALAR" }),
-        json!({ "bufferView": 0, "componentType": 5126, "count": 4_000_000_000_u64, "type": "SCALAR" }),
+        json!({
+            "bufferView": 0, "componentType": 5126, "count": 4_000_000_000_u64, "type": "SCALAR"
+        }),
         json!({ "bufferView": 0, "componentType": 5126, "count": u64::MAX, "type": "SCALAR" }),
     ] {
         let mut builder = GltfBuilder::new(&two_bones(), &[0, 1]);

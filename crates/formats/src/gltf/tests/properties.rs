@@ -36,14 +36,22 @@ proptest! {
     ) {
         let turn = |v: [f32; 3]| quat::exp(Vec3::from_array(v));
         let parent = |node: usize| (node > 0).then(|| tree[node].0.index(node));
-        let nodes: Vec<Value> = tree.iter().enumerate().map(|(node, (_, place, angles, scale))| {
-            let children: Vec<usize> = (node + 1..tree.len()).filter(|&child| parent(child) == Some(node)).collect();
-            let mut builder = json!({ "name": format!("n{node}"), "translation": place, "rotation": turn(*angles).to_array(), "scale": vec![scale; 3] });
-            if !children.is_empty() {
-                builder["children"] = json!(children);
-            }
-            builder
-        }).collect();
+        let nodes: Vec<Value> = tree
+            .iter()
+            .enumerate()
+            .map(|(node, (_, place, angles, scale))| {
+                let children: Vec<usize> =
+                    (node + 1..tree.len()).filter(|&child| parent(child) == Some(node)).collect();
+                let mut builder = json!({
+                    "name": format!("n{node}"), "translation": place,
+                    "rotation": turn(*angles).to_array(), "scale": vec![scale; 3]
+                });
+                if !children.is_empty() {
+                    builder["children"] = json!(children);
+                }
+                builder
+            })
+            .collect();
         let joints: Vec<usize> = joints.into_iter().filter(|&joint| joint < tree.len()).collect();
         prop_assume!(!joints.is_empty());
         let mut builder = GltfBuilder::new(&json!(nodes), &joints);

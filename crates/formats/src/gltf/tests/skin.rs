@@ -149,7 +149,10 @@ fn mesh_of_every_layout_is_read() {
     let sparse = builder.accessor(json!({ "componentType": 5126, "count": 4, "type": "VEC3", "sparse": {
         "count": 1, "indices": { "bufferView": index, "componentType": 5121 }, "values": { "bufferView": value } } }));
     let weights = builder.view(&[255u8, 0, 0, 0].repeat(4));
-    let weights = builder.accessor(json!({ "bufferView": weights, "componentType": 5121, "normalized": true, "count": 4, "type": "VEC4" }));
+    let weights = builder.accessor(json!({
+        "bufferView": weights, "componentType": 5121, "normalized": true, "count": 4,
+        "type": "VEC4"
+    }));
     let attributes = &mut builder.root["meshes"][0]["primitives"][0]["attributes"];
     attributes["POSITION"] = json!(sparse);
     attributes["WEIGHTS_0"] = json!(weights);
@@ -209,7 +212,9 @@ fn invalid_meshes_are_left_out_and_the_motion_is_kept() {
             "indices out of range",
             spoilt(&|builder| {
                 let view = builder.view(&[0u16, 1, 77].map(u16::to_le_bytes).concat());
-                let at = builder.accessor(json!({ "bufferView": view, "componentType": 5123, "count": 3, "type": "SCALAR" }));
+                let at = builder.accessor(json!({
+                    "bufferView": view, "componentType": 5123, "count": 3, "type": "SCALAR"
+                }));
                 builder.root["meshes"][0]["primitives"][0]["indices"] = json!(at);
             }),
         ),
@@ -217,7 +222,9 @@ fn invalid_meshes_are_left_out_and_the_motion_is_kept() {
             "joints out of range",
             spoilt(&|builder| {
                 let view = builder.view(&[200u8; 16]);
-                let at = builder.accessor(json!({ "bufferView": view, "componentType": 5121, "count": 4, "type": "VEC4" }));
+                let at = builder.accessor(json!({
+                    "bufferView": view, "componentType": 5121, "count": 4, "type": "VEC4"
+                }));
                 builder.root["meshes"][0]["primitives"][0]["attributes"]["JOINTS_0"] = json!(at);
             }),
         ),
