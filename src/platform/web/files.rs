@@ -69,7 +69,7 @@ pub(super) async fn read(files: Vec<(String, File)>, inbox: Inbox) {
         let bytes = file.array_buffer().await.map(|buffer| Uint8Array::new(&buffer).to_vec());
         match bytes {
             Ok(bytes) => deliver(name, bytes, &inbox),
-            Err(error) => refuse(name, &js_error_text(&error), &inbox),
+            Err(error) => refuse(&name, &js_error_text(&error), &inbox),
         }
     }
 }
@@ -80,10 +80,13 @@ fn deliver(name: String, bytes: Vec<u8>, inbox: &Inbox) {
 }
 
 /// Reports a file that the browser cannot read. The log gets the reason in the browser's words.
-fn refuse(name: String, reason: &str, inbox: &Inbox) {
+fn refuse(name: &str, reason: &str, inbox: &Inbox) {
     log::warn!("{name}: {reason}");
     inbox.push(Incoming::Failed {
-        reason: msg!("{name} cannot be read. If it is a folder, drop the files in it.", name),
+        reason: msg!(
+            "{name} cannot be read. If it is a folder, drop the files in it.",
+            name = name.to_owned()
+        ),
     });
 }
 
@@ -109,7 +112,7 @@ pub(crate) fn read_dropped(files: Vec<DroppedFileHandle>, inbox: &Inbox) {
                 }
                 None => match file.bytes_async().await {
                     Ok(bytes) => deliver(name, bytes, &inbox),
-                    Err(error) => refuse(name, &error, &inbox),
+                    Err(error) => refuse(&name, &error, &inbox),
                 },
             }
         }
