@@ -191,8 +191,8 @@ pub(crate) fn button_ui(button: Button<'_>, ui: &mut Ui) -> Response {
                 ui.painter(),
             );
         }
-        focus_ring(rect, radius::M, &response, ui);
     }
+    focus_ring(rect, radius::M, &response, ui);
     let mut info = WidgetInfo::labeled(Role::Button, enabled, say(button.name, ui));
     info.selected = button.selected.then_some(true);
     describe(&response, &info);

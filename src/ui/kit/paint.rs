@@ -114,10 +114,12 @@ pub(crate) fn faded(color: Color32, enabled: bool) -> Color32 {
 fn keyboard_in_use(ui: &Ui) -> bool {
     let id = Id::unique("segue keyboard in use");
     let (pointer, key) = ui.input(|input| {
-        let key = input
-            .events
-            .iter()
-            .any(|event| matches!(event, egui::Event::Key { pressed: true, .. }));
+        let key = input.events.iter().any(|event| {
+            matches!(
+                event,
+                egui::Event::Key { pressed: true, .. } | egui::Event::AccessKitActionRequest(_)
+            )
+        });
         (input.pointer.any_pressed(), key)
     });
     ui.ctx().data_mut(|data| {
@@ -128,9 +130,13 @@ fn keyboard_in_use(ui: &Ui) -> bool {
     })
 }
 
-/// The ring around what the keyboard acts on.
+/// The ring around the widget that the keyboard acts on. A widget that gets the focus by keyboard is
+/// scrolled into view.
 pub(crate) fn focus_ring(rect: Rect, corner: u8, response: &Response, ui: &Ui) {
     if response.has_focus() && keyboard_in_use(ui) {
+        if response.gained_focus() {
+            response.scroll_to_me(None);
+        }
         let stroke = Stroke::new(2.0, palette_of(ui).accent);
         ui.painter().rect_stroke(
             rect.expand(2.0),

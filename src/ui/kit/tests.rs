@@ -5,7 +5,8 @@ use super::*;
 use crate::ui::language::{Text, Word};
 use crate::ui::theme::Theme;
 use eframe::egui::{
-    self, Event, Key, Modifiers, PointerButton, Pos2, Role, Ui, accesskit::Toggled, pos2, vec2,
+    self, Event, Key, Modifiers, PointerButton, Pos2, Role, ScrollArea, Ui, accesskit::Toggled,
+    pos2, vec2,
 };
 use egui_kittest::{
     Harness,
@@ -547,4 +548,20 @@ fn of_many_tabs_those_without_room_stand_in_a_menu() {
     harness.get_by_label("View").click();
     harness.run();
     assert_eq!(*harness.state(), 0);
+}
+
+#[test]
+fn widget_that_gets_the_focus_by_keyboard_is_scrolled_into_view() {
+    let mut harness = bench((), |(), ui| {
+        ScrollArea::vertical().max_height(120.0).show(ui, |ui| {
+            for number in 0..20 {
+                button_ui(Button::new(Text::Data(&number.to_string())), ui);
+            }
+        });
+    });
+    let visible = harness.get_by_label("0").rect();
+    harness.get_by_label("19").focus();
+    harness.run();
+    let last = harness.get_by_label("19").rect();
+    assert!(last.bottom() <= visible.top() + 121.0, "{last} beside {visible}");
 }
