@@ -62,7 +62,7 @@ const UNSEEN: [&str; 17] = [
 
 /// Literals that look like sentences and are not: names of files, of joints and of widgets' memory,
 /// and texts that only the tests of a library read.
-const NO_SENTENCE: [&str; 29] = [
+const NO_SENTENCE: [&str; 30] = [
     "{} and {}",
     "{} and {} registered",
     "{} loop",
@@ -84,6 +84,7 @@ const NO_SENTENCE: [&str; 29] = [
     "Inter SemiBold",
     "Noto Sans TC",
     "segue labels",
+    "segue outline",
     "BTreeMap<Role, Assigned>",
     "LargeFile({} bytes)",
     "a joint that this skeleton does not have",
