@@ -24,6 +24,8 @@ mod character_tests;
 #[cfg(test)]
 mod external_reader_tests;
 #[cfg(test)]
+mod fixtures;
+#[cfg(test)]
 mod memory_tests;
 #[cfg(test)]
 mod mend_tests;
@@ -35,5 +37,3 @@ mod skeleton_tests;
 mod storage_tests;
 #[cfg(test)]
 mod task_tests;
-#[cfg(test)]
-mod test_files;

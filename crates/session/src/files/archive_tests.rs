@@ -1,7 +1,7 @@
 //! Tests of archives with several motions.
 
+use super::fixtures::{BVH, stored, zip};
 use super::messages::MAX_NAMED;
-use super::test_files::{BVH, stored, zip};
 use crate::fixtures::*;
 use segue_formats::archive::MAX_FILES;
 use std::io::Write as _;

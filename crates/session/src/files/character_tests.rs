@@ -1,6 +1,6 @@
 //! Tests of files with a skinned mesh.
 
-use super::test_files::{figure, person};
+use super::fixtures::{figure, person};
 use crate::fixtures::*;
 
 /// Returns a creature with eight legs, none of which a person has.

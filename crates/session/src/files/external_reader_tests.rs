@@ -1,6 +1,6 @@
 //! Tests of files that are read outside the session, and of changes meanwhile.
 
-use super::test_files::{BVH, count_notices, person, stored, zip};
+use super::fixtures::{BVH, count_notices, person, stored, zip};
 use crate::fixtures::*;
 use std::io::Write as _;
 

@@ -1,6 +1,6 @@
 //! Tests of clips that are read better by what a notice offers.
 
-use super::test_files::zip;
+use super::fixtures::zip;
 use crate::Notice;
 use crate::fixtures::*;
 use segue_formats::ImportOptions;

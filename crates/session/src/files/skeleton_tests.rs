@@ -1,6 +1,6 @@
 //! Tests of motions and their skeletons in files of their own (ASF and AMC).
 
-use super::test_files::{BVH, count_notices, stored};
+use super::fixtures::{BVH, count_notices, stored};
 use crate::fixtures::*;
 
 #[test]
