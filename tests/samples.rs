@@ -97,7 +97,7 @@ fn takes_are_documented_correctly() {
             "{name}: {cells:?}"
         );
     }
-    assert_eq!(packed, Session::samples().len() + set().len(), "a file that nobody can ask for");
+    assert_eq!(packed, Session::samples().len() + set().len(), "a file that no take names");
 }
 
 /// Returns the frame of the original at which a take begins: the one with its first pose.

@@ -32,10 +32,10 @@ fn notices_ui(session: &Session, state: &UiState, out: &mut Out, ui: &mut Ui) {
         .map(|notice| Notice {
             text: &notice.text,
             mood: mood(notice.level),
-            action: match notice.mends.len() {
+            action: match notice.corrections.len() {
                 0 => Word::default(),
-                1 => text::MEND,
-                _ => text::MEND_ALL,
+                1 => text::CORRECT,
+                _ => text::CORRECT_ALL,
             },
         })
         .collect();
@@ -45,7 +45,7 @@ fn notices_ui(session: &Session, state: &UiState, out: &mut Out, ui: &mut Ui) {
         && let Some(notice) = list.get(index)
     {
         out.commands.push(match event {
-            NoticeEvent::Acted => Command::File(FileCommand::Mend(notice.id)),
+            NoticeEvent::Acted => Command::File(FileCommand::Correct(notice.id)),
             NoticeEvent::Dismissed => Command::Dismiss(notice.id),
         });
     }

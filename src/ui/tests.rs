@@ -418,10 +418,10 @@ fn notice_offers_to_mend_a_clip() {
     let wild = text.replace(rows[row], &format!("1e9 {rest}"));
     page.session.load("x.bvh", Arc::from(wild.as_bytes())).expect("a file that is read");
     let mut harness = harness(DESK, DARK, page);
-    press(text::MEND.english(), &mut harness);
+    press(text::CORRECT.english(), &mut harness);
     let commands = &harness.state().out.commands;
     assert!(
-        matches!(commands.as_slice(), [.., Command::File(FileCommand::Mend(_))]),
+        matches!(commands.as_slice(), [.., Command::File(FileCommand::Correct(_))]),
         "{commands:?}"
     );
 }

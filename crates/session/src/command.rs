@@ -101,7 +101,7 @@ pub enum FileCommand {
     /// Reads a clip's file again with other options.
     Reimport(String, ImportOptions),
     /// Reads the clips of a notice again with better options, as one step, and removes the notice.
-    Mend(u64),
+    Correct(u64),
     /// Stops reading a file, by the number of its task.
     StopReading(u64),
 }

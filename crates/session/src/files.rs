@@ -2,8 +2,8 @@
 //! that the page has for them.
 
 mod admission;
+mod corrections;
 mod intake;
-mod mends;
 mod messages;
 mod reread;
 mod samples;
@@ -22,13 +22,13 @@ mod archive_tests;
 #[cfg(test)]
 mod character_tests;
 #[cfg(test)]
+mod correction_tests;
+#[cfg(test)]
 mod external_reader_tests;
 #[cfg(test)]
 mod fixtures;
 #[cfg(test)]
 mod memory_tests;
-#[cfg(test)]
-mod mend_tests;
 #[cfg(test)]
 mod sample_tests;
 #[cfg(test)]

@@ -25,9 +25,9 @@ pub struct Notice {
     pub text: Message,
     /// The subject in a word: a file, a key. It replaces the text where a row has no room for more.
     pub about: String,
-    /// Ids of the clips that can be read better: [`FileCommand::Mend`](super::FileCommand::Mend)
-    /// does it.
-    pub mends: Vec<String>,
+    /// Ids of the clips that can be read better:
+    /// [`FileCommand::Correct`](super::FileCommand::Correct) does it.
+    pub corrections: Vec<String>,
     /// The missing clip that it asks for.
     awaits: Option<String>,
     age_secs: f64,
@@ -74,14 +74,14 @@ impl Notices {
         let about = clips.first().cloned().unwrap_or_default();
         self.put(Level::Warning, text.into(), &about, None);
         if let Some(notice) = self.list.last_mut() {
-            notice.mends = clips;
+            notice.corrections = clips;
         }
     }
 
     /// Removes the notice that offers to fix clips, and returns their ids.
     pub fn take_offer(&mut self) -> Vec<String> {
-        let at = self.list.iter().position(|notice| !notice.mends.is_empty());
-        at.map(|at| self.list.remove(at).mends).unwrap_or_default()
+        let at = self.list.iter().position(|notice| !notice.corrections.is_empty());
+        at.map(|at| self.list.remove(at).corrections).unwrap_or_default()
     }
 
     /// Adds a notice that a clip is missing. It stays until [`Notices::keep_missing`] finds the
@@ -108,7 +108,7 @@ impl Notices {
             level,
             text,
             about: short(about),
-            mends: Vec::new(),
+            corrections: Vec::new(),
             awaits,
             age_secs: 0.0,
         };
@@ -137,7 +137,8 @@ impl Notices {
     fn drop_oldest(&mut self, level: Level) -> bool {
         let of_level = |notice: &Notice| notice.level == level;
         // Notices with a fix stay longest within their level.
-        let plain = self.list.iter().position(|notice| of_level(notice) && notice.mends.is_empty());
+        let plain =
+            self.list.iter().position(|notice| of_level(notice) && notice.corrections.is_empty());
         let at = plain.or_else(|| self.list.iter().position(of_level));
         at.map(|at| self.list.remove(at)).is_some()
     }
@@ -164,7 +165,7 @@ impl Notices {
             level: Level::Error,
             text,
             about: String::new(),
-            mends: Vec::new(),
+            corrections: Vec::new(),
             awaits: None,
             age_secs: 0.0,
         });

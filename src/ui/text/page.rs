@@ -21,9 +21,9 @@ pub(crate) const DROP_HERE: Word = Word::new("Drop BVH, ASF + AMC, GLB, a zip or
 pub(crate) const OPEN_FILES: Word = Word::new("open…");
 pub(crate) const DROP_NOW: Word = Word::new("Drop to open");
 /// Of a clip that was read in the wrong unit, or with a root that is elsewhere in a row.
-pub(crate) const MEND: Word = Word::new("Correct it");
+pub(crate) const CORRECT: Word = Word::new("Correct it");
 /// Of several of them.
-pub(crate) const MEND_ALL: Word = Word::new("Correct all");
+pub(crate) const CORRECT_ALL: Word = Word::new("Correct all");
 /// In a frame of another page.
 pub(crate) const HOST_READS: Word =
     Word::new("The page that embeds Segue can read and save what you open here.");

@@ -1,7 +1,7 @@
 //! Admission of the clips of read files to the library.
 
+use super::corrections::{corrected_options, offer_corrections};
 use super::intake::{FileIntake, LoadedFile};
-use super::mends::{mend_of, offer_mends};
 use super::messages::{in_the_library, tell_all_unread, tell_unread};
 use super::setup::misses_skeleton;
 use super::skeletons::drop_used_skeletons;
@@ -105,10 +105,10 @@ impl FileIntake {
             // The takes of whole databases begin with a T-pose: good to know, and nothing has to be
             // done about it.
             let is_odd = loaded.warnings.len() > t_poses;
-            let mends: Vec<String> = loaded
+            let corrections: Vec<String> = loaded
                 .ids
                 .iter()
-                .filter(|id| mend_of(&document.library, id).is_some())
+                .filter(|id| corrected_options(&document.library, id).is_some())
                 .cloned()
                 .collect();
             match loaded.ids.as_slice() {
@@ -120,7 +120,9 @@ impl FileIntake {
                         notices.say(Level::Info, text);
                     }
                 }
-                _ if !mends.is_empty() => offer_mends(&document.library, notices, text, mends),
+                _ if !corrections.is_empty() => {
+                    offer_corrections(&document.library, notices, text, corrections);
+                }
                 _ => notices.say(if is_odd { Level::Warning } else { Level::Info }, text),
             }
         } else if !loaded.warnings.is_empty() {

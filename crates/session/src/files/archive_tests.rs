@@ -49,7 +49,7 @@ fn unreadable_files_of_an_archive_are_counted_in_one_notice() {
         errors[MAX_NAMED],
         "197 more failed: many.zip/003.bvh, many.zip/004.bvh, many.zip/005.bvh, …."
     );
-    assert_eq!(loaded.warnings.len(), 200, "whoever loads it by the API is told of each");
+    assert_eq!(loaded.warnings.len(), 200, "the API returns each of them");
 }
 
 #[test]

@@ -116,7 +116,7 @@ impl FileIntake {
                 self.correct_role(document, &id, role, joint)?;
             }
             FileCommand::Reimport(id, options) => self.reimport(document, &id, &options)?,
-            FileCommand::Mend(notice) => self.mend(document, notices, notice),
+            FileCommand::Correct(notice) => self.correct(document, notices, notice),
             FileCommand::StopReading(task) => self.stop_reading(document, task),
         }
         Ok(())

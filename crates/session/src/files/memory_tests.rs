@@ -24,7 +24,7 @@ fn file_beyond_memory_is_refused_with_its_name_and_size() {
     let Some(Request::Read(read)) = session.take_requests().pop() else {
         panic!("it is not asked for");
     };
-    assert_eq!(session.memory_lacking_for(&read), None, "nobody says that memory ends");
+    assert_eq!(session.memory_lacking_for(&read), None, "the memory is unlimited");
     session.note_memory(page(LIMIT - 360_000_000));
     assert_eq!(session.memory_lacking_for(&read), None, "it just fits");
     session.note_memory(page(LIMIT - 359_000_000));

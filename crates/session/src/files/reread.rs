@@ -2,8 +2,8 @@
 //! options that a notice offers.
 
 use super::admission::refill;
+use super::corrections::corrected_options;
 use super::intake::FileIntake;
-use super::mends::mend_of;
 use super::setup::setup_of;
 use crate::command::CommandError;
 use crate::document::Document;
@@ -82,13 +82,13 @@ impl FileIntake {
 
     /// Reads the clips of a notice again with better options, as one step for undo. Reports those
     /// that cannot be read; they stay as they are.
-    pub(crate) fn mend(&mut self, document: &mut Document, notices: &mut Notices, notice: u64) {
+    pub(crate) fn correct(&mut self, document: &mut Document, notices: &mut Notices, notice: u64) {
         let found = notices.list().iter().find(|found| found.id == notice);
-        let clips = found.map(|found| found.mends.clone()).unwrap_or_default();
+        let clips = found.map(|found| found.corrections.clone()).unwrap_or_default();
         let library = document.library.clone();
         for (id, options) in clips
             .iter()
-            .filter_map(|id| Some((id, mend_of(&document.library, id)?)))
+            .filter_map(|id| Some((id, corrected_options(&document.library, id)?)))
             .collect::<Vec<_>>()
         {
             if let Err(error) = self.reread(document, id, &options) {

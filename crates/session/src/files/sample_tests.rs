@@ -60,7 +60,7 @@ fn load() -> Command {
 fn set_of_takes_is_loaded_and_taken_back_in_one_step() {
     let mut session = Session::new();
     let all = set().samples.len();
-    assert_eq!(here(&session), (0, 0), "nobody asked for it");
+    assert_eq!(here(&session), (0, 0), "it was not requested");
     session.apply(load()).unwrap();
     assert_eq!((session.samples_progress(), here(&session)), (Some((0, all)), (all, 0)));
     let wanted = asked(&mut session);

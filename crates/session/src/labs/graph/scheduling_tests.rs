@@ -1,4 +1,4 @@
-//! Tests of the work in slices: what is computed again after a change, and what is refused.
+//! Tests of the work in slices: caches, cancellation, and refused settings.
 
 use super::fixtures::{SMALL, set, walk};
 use crate::JobKind;

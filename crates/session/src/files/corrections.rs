@@ -9,7 +9,7 @@ use segue_formats::ImportOptions;
 use segue_text::{Message, msg};
 
 /// Warns of clips that can be read better, together with those of an earlier warning.
-pub(super) fn offer_mends(
+pub(super) fn offer_corrections(
     library: &Library,
     notices: &mut Notices,
     text: Message,
@@ -36,7 +36,7 @@ pub(super) fn offer_mends(
 }
 
 /// Returns the options by which a clip is read better; `None` where there are none that are safe.
-pub(super) fn mend_of(library: &Library, id: &str) -> Option<ImportOptions> {
+pub(super) fn corrected_options(library: &Library, id: &str) -> Option<ImportOptions> {
     let entry = library.get(id)?;
     let (Origin::File(file), Some(about)) = (&entry.origin, &entry.about) else {
         return None;

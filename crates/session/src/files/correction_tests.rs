@@ -36,7 +36,8 @@ fn with_size(text: &str, factor: f64) -> String {
 
 /// Returns the notice that offers to read clips better.
 fn offer(session: &Session) -> Notice {
-    let mut offers = session.notices().list().iter().filter(|notice| !notice.mends.is_empty());
+    let mut offers =
+        session.notices().list().iter().filter(|notice| !notice.corrections.is_empty());
     let offer = offers.next().expect("an offer").clone();
     assert!(offers.next().is_none(), "one offer for all");
     offer
@@ -54,7 +55,7 @@ fn longest_step_metres(session: &Session, id: &str) -> f32 {
 }
 
 #[test]
-fn clip_in_a_wrong_unit_or_with_a_wild_row_is_mended_by_its_notice() {
+fn clip_in_a_wrong_unit_or_with_a_wild_row_is_corrected_by_its_notice() {
     let text = walk_bvh();
     for (text, part) in [
         (with_wild_row(&text), "1 row with a root that is 1.0e18 m away"),
@@ -69,8 +70,8 @@ fn clip_in_a_wrong_unit_or_with_a_wild_row_is_mended_by_its_notice() {
             loaded.warnings
         );
         let notice = offer(&session);
-        assert_eq!(notice.mends, loaded.ids);
-        session.apply(Command::File(FileCommand::Mend(notice.id))).unwrap();
+        assert_eq!(notice.corrections, loaded.ids);
+        session.apply(Command::File(FileCommand::Correct(notice.id))).unwrap();
         assert!(session.notices().list().iter().all(|left| left.id != notice.id));
         let height = height_metres(&session, &loaded.ids[0]);
         assert!((0.9..2.5).contains(&height), "{part}: {height} m");
@@ -85,7 +86,7 @@ fn clip_in_a_wrong_unit_or_with_a_wild_row_is_mended_by_its_notice() {
 }
 
 #[test]
-fn several_absurd_clips_are_mended_at_once_from_an_archive_or_single_files() {
+fn several_absurd_clips_are_corrected_at_once_from_an_archive_or_single_files() {
     let text = walk_bvh();
     let (tiny, huge, wild) = (with_size(&text, 1e-4), with_size(&text, 1e4), with_wild_row(&text));
     let files =
@@ -106,14 +107,14 @@ fn several_absurd_clips_are_mended_at_once_from_an_archive_or_single_files() {
             );
         }
         let notice = offer(&session);
-        assert_eq!((ids.len(), notice.mends.len()), (4, 3), "{notice:?}");
+        assert_eq!((ids.len(), notice.corrections.len()), (4, 3), "{notice:?}");
         // Clips that were removed or set by hand meanwhile are left alone.
         let (tiny, wild) = (ids_named(&session, "tiny"), ids_named(&session, "wild"));
         session.apply(Command::Remove(ids_named(&session, "huge"))).unwrap();
         let by_hand = ImportOptions { metres_per_unit: Some(150.0), ..ImportOptions::default() };
         session.apply(Command::File(FileCommand::Reimport(tiny.clone(), by_hand))).unwrap();
         let tall = height_metres(&session, &tiny);
-        session.apply(Command::File(FileCommand::Mend(notice.id))).unwrap();
+        session.apply(Command::File(FileCommand::Correct(notice.id))).unwrap();
         assert_eq!(height_metres(&session, &tiny), tall);
         assert!(longest_step_metres(&session, &wild) < 0.2);
         // Reading better, setting by hand and removing are one step each.
@@ -129,7 +130,7 @@ fn several_absurd_clips_are_mended_at_once_from_an_archive_or_single_files() {
 }
 
 #[test]
-fn mending_several_clips_is_one_step_for_undo() {
+fn correcting_several_clips_is_one_step_for_undo() {
     let text = walk_bvh();
     let (tiny, huge) = (with_size(&text, 1e-4), with_size(&text, 1e4));
     let mut session = Session::new();
@@ -139,7 +140,7 @@ fn mending_several_clips_is_one_step_for_undo() {
     let ids = [ids_named(&session, "tiny"), ids_named(&session, "huge")];
     let heights = |session: &Session| ids.each_ref().map(|id| height_metres(session, id));
     let before = heights(&session);
-    session.apply(Command::File(FileCommand::Mend(offer(&session).id))).unwrap();
+    session.apply(Command::File(FileCommand::Correct(offer(&session).id))).unwrap();
     assert!(heights(&session).iter().all(|height| (0.9..2.5).contains(height)), "{before:?}");
     session.apply(Command::Undo).unwrap();
     settle(&mut session);
