@@ -412,9 +412,9 @@ fn graphs_of_lessons_have_the_quoted_transitions() {
             assert_eq!(built.whole().jumps().len().to_string(), jumps, "{lesson}: {query}");
         }
         assert!(
-            (100.0 * built.rings()[0] - percent).abs() < 0.6,
+            (100.0 * built.component_shares()[0] - percent).abs() < 0.6,
             "{lesson}: {query}: {:?}",
-            built.rings()
+            built.component_shares()
         );
         for language in LANGUAGES {
             assert!(text(language, lesson).contains(jumps), "{language}, {lesson}");

@@ -64,7 +64,7 @@ impl ClipResolver<'_> {
         let motion = match &entry.origin {
             Origin::Sample(sample) => {
                 let sample = *sample;
-                self.files.ask_for_sample(self.document, sample);
+                self.files.request_sample(self.document, sample);
                 let failed = self.document.library.get(&id).and_then(|entry| entry.unread.clone());
                 return Err(
                     failed.map_or(LabError::Loading { name: sample.label }, LabError::Unread)
@@ -116,7 +116,7 @@ impl ClipResolver<'_> {
     /// before it fails with the first missing one.
     fn motions(&mut self, ids: &[String]) -> Result<Vec<Arc<Motion>>, LabError> {
         let motion = |id: &String| {
-            self.document.bring(id);
+            self.document.ensure_clip(id);
             self.motion(id)
         };
         let motions: Vec<_> = ids.iter().map(motion).collect();
@@ -127,9 +127,10 @@ impl ClipResolver<'_> {
     fn make_again(&mut self, params: &Params) -> Result<Arc<Motion>, LabError> {
         for key in [Key::A, Key::B] {
             let reference = params.text(key).to_owned();
-            let _was_gone = self.document.bring_back(&reference) || self.document.bring(&reference);
+            let _was_gone =
+                self.document.restore_built_in(&reference) || self.document.ensure_clip(&reference);
         }
-        self.labs.graphs.guide_by(None);
+        self.labs.graphs.set_guide(None);
         match self.answer(params, None, widest_window(params, None)) {
             Answer::Made { outcome, is_draft: false, .. } => Ok(Arc::clone(&outcome.motion)),
             Answer::Refused(problem) => Err(problem),

@@ -153,13 +153,13 @@ impl Document {
         let new_sources = self.replace_params(params, &named);
         for slot in chosen.into_iter().flatten() {
             let id = self.params.text(slot.key()).to_owned();
-            self.bring_back(&id);
+            self.restore_built_in(&id);
         }
         if changed
             .iter()
             .any(|key| *key == Key::Lab || key.param().kind == Kind::List(ListKind::ClipIds))
         {
-            self.bring_back_listed();
+            self.restore_listed();
         }
         Ok(Changes { keys: changed, new_sources })
     }

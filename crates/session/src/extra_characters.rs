@@ -55,7 +55,7 @@ impl ExtraCharacters {
             return;
         }
         for id in ids(clips.document).into_iter().take(MAX_CHARACTERS) {
-            clips.document.bring(&id);
+            clips.document.ensure_clip(&id);
             let motion = clips.motion(&id);
             let entry = clips.document.library.find(&id);
             let name =

@@ -133,7 +133,7 @@ fn megabytes(bytes: u64) -> u64 {
 /// The number of removable clips that a message names.
 const MAX_NAMED: usize = 3;
 /// The least size of a clip that is worth removing, bytes.
-const WORTH_REMOVING: u64 = 10_000_000;
+const MIN_REMOVABLE_BYTES: u64 = 10_000_000;
 
 /// Returns the message that there is no memory for a file of `size` bytes, which needs `needed`,
 /// with the remedy.
@@ -148,7 +148,7 @@ pub(super) fn refusal(
         .entries()
         .iter()
         .map(|entry| (entry.name.as_str(), entry_bytes(entry)))
-        .filter(|(_, bytes)| *bytes >= WORTH_REMOVING)
+        .filter(|(_, bytes)| *bytes >= MIN_REMOVABLE_BYTES)
         .collect();
     large.sort_by_key(|(_, bytes)| Reverse(*bytes));
     let named: Vec<Message> = large

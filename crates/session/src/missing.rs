@@ -20,11 +20,14 @@ pub(crate) fn look_for_clips(document: &mut Document, notices: &mut Notices) {
     for (reference, _) in document.params.weighted_clips().to_vec() {
         look_for(document, notices, "A clip of the blend", &reference);
     }
-    document.bring_back_listed();
+    document.restore_listed();
 }
 
 fn look_for(document: &mut Document, notices: &mut Notices, what: &'static str, reference: &str) {
-    if reference.is_empty() || document.bring_back(reference) || document.bring(reference) {
+    if reference.is_empty()
+        || document.restore_built_in(reference)
+        || document.ensure_clip(reference)
+    {
         return;
     }
     let (name, sha, _) = split_reference(reference);
@@ -36,7 +39,7 @@ fn look_for(document: &mut Document, notices: &mut Notices, what: &'static str, 
             "{what} is `{name}` (SHA-256 {sha}…), which is not here: drop that file to complete the link."
         )
     };
-    notices.miss(reference, text);
+    notices.say_missing(reference, text);
 }
 
 /// Removes the notices about clips that have arrived since, or are no longer named.
@@ -46,7 +49,7 @@ pub(crate) fn dismiss_found(document: &Document, notices: &mut Notices) {
     let named: Vec<String> =
         slots.into_iter().chain(document.compared_clips()).chain(others).collect();
     notices.keep_missing(|reference| match document.library.find(reference) {
-        Some(entry) => document.is_half(&entry.id),
+        Some(entry) => document.is_unpaired(&entry.id),
         None => named.iter().any(|name| name == reference),
     });
 }

@@ -86,7 +86,7 @@ impl Notices {
 
     /// Adds a notice that a clip is missing. It stays until [`Notices::keep_missing`] finds the
     /// clip.
-    pub fn miss(&mut self, reference: &str, text: impl Into<Message>) {
+    pub fn say_missing(&mut self, reference: &str, text: impl Into<Message>) {
         self.put(Level::Warning, text.into(), reference, Some(reference.to_owned()));
     }
 
@@ -326,8 +326,8 @@ mod tests {
     #[test]
     fn notices_of_missing_clips_stay_until_they_arrive() {
         let mut notices = Notices::default();
-        notices.miss("walk~1234", "drop walk");
-        notices.miss("run~5678", "drop run");
+        notices.say_missing("walk~1234", "drop walk");
+        notices.say_missing("run~5678", "drop run");
         notices.say(Level::Warning, "odd");
         notices.keep_missing(|reference| reference == "run~5678");
         let left: Vec<String> =

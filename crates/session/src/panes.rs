@@ -81,7 +81,7 @@ impl Panes {
         let match_window = widest_window(&clips.document.params, compare);
         let mut old = std::mem::take(&mut self.list).into_iter();
         clips.labs.clear_requests();
-        clips.labs.graphs.guide_by(None);
+        clips.labs.graphs.set_guide(None);
         for variant in variants {
             let mut pane = old.next().unwrap_or_default();
             pane.variant = variant;
@@ -92,7 +92,7 @@ impl Panes {
                 pane.measure(&mut clips.labs.meter);
             }
             if self.list.is_empty() {
-                clips.labs.graphs.guide_by(Some(&params));
+                clips.labs.graphs.set_guide(Some(&params));
             }
             self.list.push(pane);
         }

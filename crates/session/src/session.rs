@@ -382,9 +382,9 @@ impl Session {
     /// Recomputes everything that depends on the document and whose inputs have changed.
     fn refresh(&mut self) {
         self.revision += 1;
-        self.lessons.ask_for_text(&self.document.params);
+        self.lessons.request_text(&self.document.params);
         for clip in self.document.compared_clips() {
-            self.document.bring(&clip);
+            self.document.ensure_clip(&clip);
         }
         dismiss_found(&self.document, &mut self.notices);
         let mut clips = ClipResolver {

@@ -170,7 +170,7 @@ fn parts_that_do_not_reach_each_other_are_told_apart() {
     let link = "lab=graph&clips=walk,run,idle,jump,walk_left&walk_seconds=20&edge_threshold=5&prune=off&play=off";
     for (name, theme) in [("graph-parts-dark", DARK), ("graph-parts-light", LIGHT)] {
         let mut harness = harness(DESK, theme, page(link));
-        let rings = harness.state().session.graph_built().unwrap().rings().len();
+        let rings = harness.state().session.graph_built().unwrap().component_shares().len();
         assert!(rings > 1, "{rings}");
         picture(name, &mut harness);
     }
@@ -185,7 +185,7 @@ fn the_distances_of_very_many_frames_are_seen_from_afar_and_nearby() {
         let session = &harness.state().session;
         let (built, field) = (session.graph_built().unwrap(), session.graph_field().unwrap());
         let frames = built.clips().set().frames();
-        assert!(frames > 6_000 && matches!(field.distances(), Distances::FromAfar(_)), "{frames}");
+        assert!(frames > 6_000 && matches!(field.distances(), Distances::Overview(_)), "{frames}");
         let jump = built.whole().jumps()[0];
         let number = |place| built.clips().set().number(place).unwrap() as f32 + 0.5;
         let at = vec2(number(jump.enter), number(jump.leave)) / frames as f32;

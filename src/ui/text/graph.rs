@@ -150,7 +150,7 @@ pub(crate) fn graph_in_words(built: &BuiltGraph, run_secs: Option<f64>) -> Messa
         dead = built.dead_ends()
     );
     let percent = |share: &f64| msg!("{percent:.0} %", percent = 100.0 * share);
-    let components = match built.rings() {
+    let components = match built.component_shares() {
         [] => "The graph has no cycle: every walk ends.".into(),
         [one] => msg!("One component, with {share} of all frames.", share = percent(one)),
         rings => {

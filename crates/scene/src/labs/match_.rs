@@ -79,8 +79,8 @@ fn add_trajectories(driven: &DriveHistory, moment: &DriveMoment, colors: &Colors
         Layer::Ground,
     );
     let trajectories = [
-        (driven.matched_way(moment, SEGMENTS), colors.b, MATCHED_HEIGHT_M),
-        (driven.asked_way(moment, SEGMENTS), colors.a, DESIRED_HEIGHT_M),
+        (driven.matched_path(moment, SEGMENTS), colors.b, MATCHED_HEIGHT_M),
+        (driven.requested_path(moment, SEGMENTS), colors.a, DESIRED_HEIGHT_M),
     ];
     for (trajectory, color, height) in trajectories {
         add_trajectory(driven, &trajectory, color, height, pane);

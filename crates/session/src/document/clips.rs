@@ -23,8 +23,8 @@ impl Document {
 
     /// Makes sure that a clip is in the library. Returns whether it is, or can be made or fetched
     /// by its id.
-    pub(crate) fn bring(&mut self, reference: &str) -> bool {
-        if self.library.find(reference).is_some() || self.bring_sample(reference) {
+    pub(crate) fn ensure_clip(&mut self, reference: &str) -> bool {
+        if self.library.find(reference).is_some() || self.ensure_sample(reference) {
             return true;
         }
         let Some(params) = recipe_params(reference) else {
@@ -36,7 +36,7 @@ impl Document {
     }
 
     /// Makes sure that a bundled take is in the library. Returns whether the id is that of one.
-    pub(crate) fn bring_sample(&mut self, id: &str) -> bool {
+    pub(crate) fn ensure_sample(&mut self, id: &str) -> bool {
         let Some(sample) = samples::all().find(|sample| sample.id == id) else {
             return false;
         };
@@ -54,7 +54,7 @@ impl Document {
     }
 
     /// Restores a built-in clip that was removed from the library. Returns whether it did.
-    pub(crate) fn bring_back(&mut self, id: &str) -> bool {
+    pub(crate) fn restore_built_in(&mut self, id: &str) -> bool {
         let Some(entry) = self.removed_built_in(id) else {
             return false;
         };
@@ -64,9 +64,9 @@ impl Document {
     }
 
     /// Restores the built-in clips in the open lab's own list.
-    pub(crate) fn bring_back_listed(&mut self) {
+    pub(crate) fn restore_listed(&mut self) {
         for id in lab_of(self.params.lab()).listed(&self.params) {
-            self.bring_back(&id);
+            self.restore_built_in(&id);
         }
     }
 
@@ -81,7 +81,7 @@ impl Document {
 
     /// Returns whether a clip of the library is a motion without its skeleton, or a skeleton
     /// without a motion.
-    pub(crate) fn is_half(&self, id: &str) -> bool {
+    pub(crate) fn is_unpaired(&self, id: &str) -> bool {
         let is_skeleton = |entry: &Entry| matches!(&entry.origin, Origin::File(file) if file.kind == FileKind::Asf);
         self.library.get(id).is_some_and(|entry| entry.awaits_skeleton() || is_skeleton(entry))
     }

@@ -2,8 +2,8 @@
 
 use super::corrections::{corrected_options, offer_corrections};
 use super::intake::{FileIntake, LoadedFile};
-use super::messages::{in_the_library, tell_all_unread, tell_unread};
-use super::setup::misses_skeleton;
+use super::messages::{in_the_library, notify_all_unread, notify_unread};
+use super::setup::lacks_skeleton;
 use super::skeletons::drop_used_skeletons;
 use crate::document::Document;
 use crate::library::{Arrival, Entry, Origin, SourceFile, file_id, file_stem};
@@ -32,7 +32,7 @@ impl FileIntake {
         // A single file fails as a whole; of several, some may be good.
         if let [ReadFile { result: Err(error), .. }] = report.files.as_slice() {
             let error = error.clone();
-            tell_unread(notices, &error);
+            notify_unread(notices, &error);
             return Err(error);
         }
         document.remember(None);
@@ -43,7 +43,7 @@ impl FileIntake {
                 || file.result.as_ref().is_ok_and(|read| read.companion.is_some())
         };
         let skeleton_arrived = report.files.iter().any(brings_skeleton)
-            || misses_skeleton(&document.library, &report, setup);
+            || lacks_skeleton(&document.library, &report, setup);
         for file in report.files {
             let name = file.name.clone();
             match file_entries(file, content, &setup.options) {
@@ -78,7 +78,7 @@ impl FileIntake {
             }
         }
         loaded.warnings.extend(report.notes);
-        tell_all_unread(notices, &failures);
+        notify_all_unread(notices, &failures);
         if skeleton_arrived {
             self.read_waiting(document, notices, arrival);
             drop_used_skeletons(&mut document.library);
@@ -113,7 +113,7 @@ impl FileIntake {
                 .collect();
             match loaded.ids.as_slice() {
                 // Until its other half arrives.
-                [id] if is_odd && document.is_half(id) => notices.miss(id, text),
+                [id] if is_odd && document.is_unpaired(id) => notices.say_missing(id, text),
                 // A skeleton that a motion waited for: the motion has it now.
                 [id] if document.library.get(id).is_none() => {
                     if let Some(text) = in_the_library(&names) {
@@ -190,7 +190,7 @@ impl FileIntake {
             return;
         }
         if let Err(error) = self.read_anew(document, &file, None) {
-            tell_unread(notices, &error);
+            notify_unread(notices, &error);
         }
     }
 }

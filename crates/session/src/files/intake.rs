@@ -237,11 +237,11 @@ impl FileIntake {
         self.tasks += 1;
         let task =
             ReadTask { id: self.tasks, name: outside::file_name(name), content, size, setup };
-        self.ask(task, purpose);
+        self.request(task, purpose);
         self.tasks
     }
 
-    pub(super) fn ask(&mut self, task: ReadTask, purpose: Purpose) {
+    pub(super) fn request(&mut self, task: ReadTask, purpose: Purpose) {
         self.requests.push(Request::Read(task.clone()));
         self.reading.push(Reading { task, done: 0, purpose });
     }

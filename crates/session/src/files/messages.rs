@@ -8,16 +8,16 @@ use segue_text::{Message, ToMessage, msg};
 pub(crate) const MAX_NAMED: usize = 3;
 
 /// Adds a notice that says why a file was not read.
-pub(super) fn tell_unread(notices: &mut Notices, error: &ImportError) {
+pub(super) fn notify_unread(notices: &mut Notices, error: &ImportError) {
     notices.say_of(Level::Error, &error.file, error.to_message());
 }
 
 /// Adds a notice that says why the files of an archive were not read: the reason of each of the
 /// first ones, and the number of the others.
-pub(super) fn tell_all_unread(notices: &mut Notices, errors: &[ImportError]) {
+pub(super) fn notify_all_unread(notices: &mut Notices, errors: &[ImportError]) {
     let (first, rest) = errors.split_at_checked(MAX_NAMED).unwrap_or((errors, &[]));
     for error in first {
-        tell_unread(notices, error);
+        notify_unread(notices, error);
     }
     if !rest.is_empty() {
         let mut named: Vec<String> =

@@ -28,7 +28,7 @@ impl FileIntake {
     }
 
     /// Requests a take, unless it is awaited, or has failed since the last command.
-    pub(crate) fn ask_for_sample(&mut self, document: &mut Document, sample: &'static Sample) {
+    pub(crate) fn request_sample(&mut self, document: &mut Document, sample: &'static Sample) {
         let AwaitedSamples { samples, asked, failed } = &mut self.samples;
         if samples.contains(&sample) || failed.contains(&sample) {
             return;
@@ -55,14 +55,14 @@ impl FileIntake {
             document.remember(None);
         }
         for sample in &new {
-            document.bring_sample(sample.id);
+            document.ensure_sample(sample.id);
         }
         document.offer_together(new.into_iter().map(|sample| sample.id));
-        self.ask_for_missing_samples(document);
+        self.request_missing_samples(document);
     }
 
     /// Requests the motions of all takes in the library that have none.
-    pub(crate) fn ask_for_missing_samples(&mut self, document: &mut Document) {
+    pub(crate) fn request_missing_samples(&mut self, document: &mut Document) {
         let missing: Vec<_> =
             (document.library.entries().iter())
                 .filter(|entry| entry.motion.is_none())
@@ -71,7 +71,7 @@ impl FileIntake {
                 })
                 .collect();
         for sample in missing {
-            self.ask_for_sample(document, sample);
+            self.request_sample(document, sample);
         }
     }
 

@@ -62,7 +62,7 @@ pub(super) fn companions(library: &Library) -> Vec<Companion> {
 }
 
 /// Returns whether a motion needs a skeleton file, and one has arrived since it was read.
-pub(super) fn misses_skeleton(library: &Library, report: &ReadReport, setup: &ReadSetup) -> bool {
+pub(super) fn lacks_skeleton(library: &Library, report: &ReadReport, setup: &ReadSetup) -> bool {
     let needs_skeleton = |file: &ReadFile| file.kind == FileKind::Amc;
     report.files.iter().any(needs_skeleton) && companions(library) != setup.companions
 }

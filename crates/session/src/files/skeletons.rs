@@ -1,7 +1,7 @@
 //! Motions without their skeleton, and skeletons without a motion (ASF and AMC).
 
 use super::intake::FileIntake;
-use super::messages::tell_unread;
+use super::messages::notify_unread;
 use super::setup::companions;
 use crate::document::Document;
 use crate::library::{Arrival, Library, Origin, SourceFile};
@@ -39,20 +39,20 @@ impl FileIntake {
             match self.read_anew(document, &file, awaits.then_some(arrival)) {
                 Ok(true) if awaits => {
                     offer_moving(document, &entry.id, arrival);
-                    tell_misfit(&document.library, notices, &entry.id);
+                    notify_misfit(&document.library, notices, &entry.id);
                 }
                 Ok(_) => {}
-                Err(error) => tell_unread(notices, &error),
+                Err(error) => notify_unread(notices, &error),
             }
         }
     }
 }
 
 /// Reports why a motion still waits although a skeleton has arrived.
-fn tell_misfit(library: &Library, notices: &mut Notices, id: &str) {
+fn notify_misfit(library: &Library, notices: &mut Notices, id: &str) {
     if let Some(entry) = library.get(id).filter(|entry| entry.awaits_skeleton()) {
         let told: Vec<Message> = entry.warnings.iter().map(ToMessage::to_sentence).collect();
-        notices.miss(id, Message::joined(told, " "));
+        notices.say_missing(id, Message::joined(told, " "));
     }
 }
 

@@ -22,7 +22,7 @@ impl FileIntake {
         notices: &mut Notices,
         mut lost: Vec<String>,
     ) {
-        self.ask_for_missing_samples(document);
+        self.request_missing_samples(document);
         let entries = document.library.entries().to_vec();
         for entry in entries {
             let Origin::File(file) = &entry.origin else {

@@ -2,8 +2,8 @@
 
 use super::admission::refill;
 use super::intake::{FileIntake, LoadedFile, Purpose, Reading};
-use super::messages::tell_unread;
-use super::setup::{misses_skeleton, setup_for_new, setup_of};
+use super::messages::notify_unread;
+use super::setup::{lacks_skeleton, setup_for_new, setup_of};
 use super::skeletons::{drop_used_skeletons, offer_moving};
 use crate::command::Request;
 use crate::document::Document;
@@ -108,7 +108,7 @@ impl FileIntake {
                         task.setup.sha256.as_deref().unwrap_or_default(),
                         Some(&error.to_message()),
                     );
-                    tell_unread(notices, error);
+                    notify_unread(notices, error);
                 }
                 if let Some(arrival) = arrival {
                     for id in &waiting {
@@ -122,10 +122,10 @@ impl FileIntake {
             // is read again from there.
             Purpose::New(_)
                 if report.is_one_file()
-                    && misses_skeleton(&document.library, &report, &task.setup) =>
+                    && lacks_skeleton(&document.library, &report, &task.setup) =>
             {
                 let setup = setup_for_new(&document.library);
-                self.ask(ReadTask { content, setup, ..task }, purpose);
+                self.request(ReadTask { content, setup, ..task }, purpose);
                 return None;
             }
             Purpose::New(arrival) => {

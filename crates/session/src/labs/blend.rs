@@ -266,7 +266,7 @@ impl BlendCache {
         params: &Params,
         match_window: usize,
     ) -> Result<BlendInputs, LabError> {
-        self.meet(pair)?;
+        self.set_pair(pair)?;
         let (frames_a, frames_b) = (pair.a.clip().frames(), pair.incoming.clip().frames());
         let in_transition = params.lab() == LabId::Transition;
         let fps = pair.a.clip().fps();
@@ -324,7 +324,7 @@ impl BlendCache {
     }
 
     /// Begins to compare the frames of two new clips.
-    fn meet(&mut self, pair: &Arc<Pair>) -> Result<(), LabError> {
+    fn set_pair(&mut self, pair: &Arc<Pair>) -> Result<(), LabError> {
         if self.pair.as_ref().is_some_and(|known| Arc::ptr_eq(known, pair)) {
             return Ok(());
         }

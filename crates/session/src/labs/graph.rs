@@ -52,7 +52,7 @@ impl<S: HasPart<GraphScheduler>> Lab<S> for GraphLab {
         "walk".to_owned()
     }
 
-    fn grown(&self, outcome: &Outcome) -> Vec<(Key, Value)> {
+    fn length_parameters(&self, outcome: &Outcome) -> Vec<(Key, Value)> {
         // In whole seconds, within the range of the parameter.
         let secs = outcome.duration_secs().round().clamp(10.0, 600.0);
         vec![(Key::WalkSeconds, Value::Number(secs))]

@@ -100,7 +100,7 @@ impl LabInputs for InPlaceInputs {
         };
         let clip = Arc::clone(if self.way == RootWay::TakeOut { &standing } else { &going });
         let slid = |clip| foot_slide_cm(clip, source.roles(), &contacts);
-        let mut metrics = way_metrics(frames, source.clip().fps()).to_vec();
+        let mut metrics = travel_metrics(frames, source.clip().fps()).to_vec();
         metrics.push(slide(slid(&going)));
         metrics.push(Metric::new(MetricId::FootSlideInPlace, slid(&standing)));
         Ok(Outcome {
@@ -115,13 +115,13 @@ impl LabInputs for InPlaceInputs {
 }
 
 /// Returns metrics of the travel of a body: distance, speed and turn.
-fn way_metrics(frames: &[Planar], fps: f64) -> [Metric; 3] {
+fn travel_metrics(frames: &[Planar], fps: f64) -> [Metric; 3] {
     let steps = || frames.windows(2).map(|pair| pair[0].inverse().after(&pair[1]));
-    let way_m: f64 = steps().map(|step| step.shift.length()).sum();
+    let travel_m: f64 = steps().map(|step| step.shift.length()).sum();
     let secs = frames.len().saturating_sub(1).max(1) as f64 / fps;
     [
-        Metric::new(MetricId::Distance, way_m),
-        Metric::new(MetricId::MeanSpeed, way_m / secs),
+        Metric::new(MetricId::Distance, travel_m),
+        Metric::new(MetricId::MeanSpeed, travel_m / secs),
         Metric::new(MetricId::TotalTurn, steps().map(|step| step.yaw).sum::<f64>().to_degrees()),
     ]
 }
@@ -138,7 +138,7 @@ mod tests {
     }
 
     /// Returns the distance between the first and the last position on the ground, metres.
-    fn way_m(session: &Session) -> f64 {
+    fn travel_m(session: &Session) -> f64 {
         let frames = session.main_outcome().expect("a result").motion.ground_frames();
         frames[0].shift.distance(frames[frames.len() - 1].shift)
     }
@@ -147,13 +147,13 @@ mod tests {
     fn root_motion_that_was_removed_is_rebuilt_from_the_feet() {
         let walk = opened("lab=view&a=walk");
         let mut session = opened("lab=in_place&a=walk");
-        assert!(way_m(&session) < 1e-3, "{} m", way_m(&session));
-        assert!((number(&session, MetricId::Distance) - way_m(&walk)).abs() < 0.2);
+        assert!(travel_m(&session) < 1e-3, "{} m", travel_m(&session));
+        assert!((number(&session, MetricId::Distance) - travel_m(&walk)).abs() < 0.2);
         assert!(number(&session, MetricId::FootSlideInPlace) > 40.0);
         session.apply(Command::Keep(0)).expect("kept");
 
         let back = opened("lab=in_place&a=in_place(a:walk)&root_way=put_back");
-        let (wanted, found) = (way_m(&walk), way_m(&back));
+        let (wanted, found) = (travel_m(&walk), travel_m(&back));
         assert!((found - wanted).abs() < 0.02 * wanted, "{found} m of {wanted} m");
         assert!(number(&back, MetricId::FootSlide) < 2.0, "{}", number(&back, MetricId::FootSlide));
         assert!(number(&back, MetricId::FootSlideInPlace) > 40.0);

@@ -74,7 +74,7 @@ pub(crate) trait Lab<S>: Sync {
     }
 
     /// Returns the parameters to set so that the recipe makes the result as long as it is now.
-    fn grown(&self, _outcome: &Outcome) -> Vec<(Key, Value)> {
+    fn length_parameters(&self, _outcome: &Outcome) -> Vec<(Key, Value)> {
         Vec::new()
     }
 
@@ -118,7 +118,7 @@ pub(crate) fn slots_of(lab: LabId) -> impl Iterator<Item = Slot> {
 
 /// Returns whether a parameter can change the result. Those of the foot lock cannot while it is
 /// off.
-pub(super) fn counts(params: &Params, key: Key) -> bool {
+pub(super) fn can_change_result(params: &Params, key: Key) -> bool {
     params.is_on(Key::FootLock) || !key.param().has(Mark::Lock)
 }
 

@@ -200,7 +200,7 @@ impl LayerCache {
         let reading = GaitCycle::find(&pair.incoming).ok().and_then(|cycle| {
             let phases = strike_phases(pair.a.contacts(), cycle.events().right_strike)?;
             Some(Reading {
-                over: once_more(cycle.looped())?,
+                over: with_first_frame_repeated(cycle.looped())?,
                 times: Arc::new(phases.into_iter().map(|phase| phase * cycle.secs()).collect()),
             })
         });
@@ -213,11 +213,11 @@ impl LayerCache {
 fn closed(pair: &Pair) -> Option<Arc<Clip>> {
     let source = &pair.incoming;
     let last = source.clip().frames().checked_sub(1)?;
-    once_more(&close_loop(source, 0..last, &LoopOptions::default()).ok()?)
+    with_first_frame_repeated(&close_loop(source, 0..last, &LoopOptions::default()).ok()?)
 }
 
 /// Returns a cycle and its first frame again: where a layer loops, its last frame is its first.
-fn once_more(looped: &Loop) -> Option<Arc<Clip>> {
+fn with_first_frame_repeated(looped: &Loop) -> Option<Arc<Clip>> {
     let twice = looped.repeat(2).ok()?;
     twice.crop(0..looped.clip.frames() + 1).ok().map(Arc::new)
 }

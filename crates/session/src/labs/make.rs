@@ -2,7 +2,7 @@
 
 use super::Outcome;
 use super::feet::{Lock, slide, slide_before, with_feet};
-use super::lab::{Inputs, Lab, LabClips, LabInputs, counts};
+use super::lab::{Inputs, Lab, LabClips, LabInputs, can_change_result};
 use crate::labs::LabError;
 use crate::motion::foot_options;
 use crate::outside::short;
@@ -158,7 +158,7 @@ pub(crate) fn made_id(params: &Params) -> String {
     let changed = params
         .changed()
         .filter(|(param, _)| param.is_used_by(LabId::Make) && param.key != Key::Gait)
-        .filter(|(param, _)| has(params, param.key) && counts(params, param.key));
+        .filter(|(param, _)| has(params, param.key) && can_change_result(params, param.key));
     let list: Vec<String> = changed
         .map(|(param, value)| match (value, range_of(params, param.key)) {
             // The value in use, not one that was set for another action.

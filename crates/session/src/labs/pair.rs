@@ -109,7 +109,7 @@ mod tests {
 
     /// The largest change of a joint's angular velocity from one frame to the next, radians per
     /// second.
-    fn roughest(clip: &Clip) -> f32 {
+    fn largest_velocity_change(clip: &Clip) -> f32 {
         let step = |frame: usize, joint: usize| {
             let (from, to) = (clip.rotations(frame)[joint], clip.rotations(frame + 1)[joint]);
             quat::angular_velocity(from, to, clip.fps().recip() as f32)
@@ -133,8 +133,10 @@ mod tests {
         let (a, b) = (at(120.0), at(30.0));
         let (incoming, _) = fitted(&a, &b).unwrap();
         assert_eq!(incoming.clip().fps(), 120.0);
-        let (made, true_one) = (roughest(incoming.clip()), roughest(a.clip()));
-        let linear = roughest(&resample(b.clip(), 120.0, Interpolation::Linear).unwrap());
+        let (made, true_one) =
+            (largest_velocity_change(incoming.clip()), largest_velocity_change(a.clip()));
+        let linear =
+            largest_velocity_change(&resample(b.clip(), 120.0, Interpolation::Linear).unwrap());
         assert!(made < 0.6 * linear, "{made} rad/s per frame, linearly {linear}, truly {true_one}");
     }
 }

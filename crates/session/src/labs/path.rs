@@ -223,7 +223,7 @@ impl Paths {
             inputs.feet = if motion.clip().frames() <= AT_ONCE {
                 Feet::AtOnce
             } else {
-                self.locked_feet.ask(&inputs).map_or(Feet::Awaited, Feet::Locked)
+                self.locked_feet.get_or_schedule(&inputs).map_or(Feet::Awaited, Feet::Locked)
             };
         }
         Ok(inputs)

@@ -1,6 +1,6 @@
 //! Recipes: the ids of results, from which they are made again.
 
-use super::lab::counts;
+use super::lab::can_change_result;
 use super::lab_set::lab_of;
 use super::outcome::Outcome;
 use crate::params::{Key, Kind, PARAMS, Param, Params, Value, escaped, is_recipe, parts};
@@ -29,7 +29,7 @@ pub(crate) fn recipe_id(params: &Params, outcome: &Outcome, fps: [f64; 2]) -> Op
         return Some(id);
     }
     let mut params = params.clone();
-    for (key, value) in facts.grown(outcome) {
+    for (key, value) in facts.length_parameters(outcome) {
         params.set(key, value).ok()?;
     }
     for (key, value) in facts.found(outcome, fps) {
@@ -37,14 +37,15 @@ pub(crate) fn recipe_id(params: &Params, outcome: &Outcome, fps: [f64; 2]) -> Op
             params.set(key, Value::Number(value)).ok()?;
         }
     }
-    let ingredients =
-        PARAMS.iter().filter(|param| param.is_ingredient_of(lab) && counts(&params, param.key));
+    let ingredients = PARAMS
+        .iter()
+        .filter(|param| param.is_ingredient_of(lab) && can_change_result(&params, param.key));
     let ingredients = ingredients.filter(|param| {
         let named = matches!(param.kind, Kind::Clip);
         named || params.is_changed(param.key)
     });
     let list: Vec<String> = ingredients
-        .map(|param| format!("{}:{}", param.name, written(param, params.get(param.key))))
+        .map(|param| format!("{}:{}", param.name, encoded_value(param, params.get(param.key))))
         .collect();
     Some(format!("{}({})", lab.word(), list.join(",")))
 }
@@ -100,7 +101,7 @@ pub fn file_stem(params: &Params) -> String {
 }
 
 /// Encodes a value inside an id. The id of a kept clip stays unchanged, because its brackets close.
-fn written(param: &Param, value: &Value) -> String {
+fn encoded_value(param: &Param, value: &Value) -> String {
     let text = param.format(value);
     if is_text(param) && !is_recipe(&text) { escaped(&text) } else { text }
 }

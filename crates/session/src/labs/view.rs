@@ -2,7 +2,7 @@
 //! motion, and its metrics.
 
 use super::feet::{Lock, locking, slide, slide_before};
-use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs, counts};
+use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs, can_change_result};
 use super::sliced::{JobKind, Sliced};
 use super::{MeasuredMotion, Outcome};
 use crate::labs::LabError;
@@ -42,7 +42,7 @@ impl<S: HasPart<ViewCache>> Lab<S> for ViewLab {
         let changes = |param: &Param| {
             !matches!(param.kind, Kind::Clip)
                 && param.is_used_by(LabId::View)
-                && counts(params, param.key)
+                && can_change_result(params, param.key)
                 && params.is_changed(param.key)
         };
         !PARAMS.iter().any(changes)

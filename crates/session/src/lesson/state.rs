@@ -134,7 +134,7 @@ impl LessonState {
         };
         let links =
             [page.state.as_ref().map_or("", |state| state.query.as_str()), query].map(link::read);
-        let wanted = laid_over(params, &links, false);
+        let wanted = with_links(params, &links, false);
         let named = |key: Key| links.iter().any(|link| names(link, key));
         let counts = |param: &&Param| {
             is_of_page_state(param) || (param.group == Group::Stage && named(param.key))
@@ -173,7 +173,7 @@ impl LessonState {
     }
 
     /// Requests the text of the open lesson, if it was not requested yet.
-    pub(crate) fn ask_for_text(&mut self, params: &Params) {
+    pub(crate) fn request_text(&mut self, params: &Params) {
         let name = params.text(Key::Lesson);
         if name.is_empty() {
             return;
@@ -214,20 +214,20 @@ impl LessonState {
         self.to_set_up = None;
         let state = state?;
         Some(NewParams {
-            params: laid_over(params, std::slice::from_ref(&state), true),
+            params: with_links(params, std::slice::from_ref(&state), true),
             named: state.values.iter().map(|(key, _)| *key).collect(),
             problems: state.problems,
         })
     }
 
     /// Returns the parameters that a link of the open page sets; `None` if no lesson is open.
-    pub(crate) fn tried(&self, params: &Params, link: Link) -> Option<NewParams> {
+    pub(crate) fn try_params(&self, params: &Params, link: Link) -> Option<NewParams> {
         let page = self.page(params)?;
         let state = link::read(page.state.as_ref().map_or("", |state| state.query.as_str()));
         let problems = link.problems.clone();
         let links = [state, link];
         Some(NewParams {
-            params: laid_over(params, &links, false),
+            params: with_links(params, &links, false),
             named: links.iter().flat_map(|link| &link.values).map(|(key, _)| *key).collect(),
             problems,
         })
@@ -244,7 +244,7 @@ pub(crate) fn would_set_up(params: &Params) -> bool {
 /// Returns the parameters after several links, applied in order to the defaults of everything that
 /// makes a result. Parameters about the reader stay as they are, as do A and B if no link names
 /// them; stage, camera and time too, unless the page is `new`.
-fn laid_over(present: &Params, links: &[Link], new: bool) -> Params {
+fn with_links(present: &Params, links: &[Link], new: bool) -> Params {
     let mut params = present.clone();
     let defaults = Params::default();
     let starts_anew =

@@ -18,7 +18,7 @@ pub(crate) struct SpeedRamp {
 
 /// Differences of speed, metres per second, and accelerations, metres per second squared, below
 /// which a speed change counts as finished.
-const FINISHED: [f64; 2] = [0.01, 0.05];
+const FINISHED_BELOW: [f64; 2] = [0.01, 0.05];
 
 impl SpeedRamp {
     /// Returns a ramp that is at its end: a result at its own speed.
@@ -38,7 +38,7 @@ impl SpeedRamp {
         let half_life_secs = SpeedOptions::default().half_life_secs;
         let (speed, acceleration) =
             spring::towards(self.speed_mps, self.acceleration, target, half_life_secs, dt_secs);
-        if (speed - target).abs() < FINISHED[0] && acceleration.abs() < FINISHED[1] {
+        if (speed - target).abs() < FINISHED_BELOW[0] && acceleration.abs() < FINISHED_BELOW[1] {
             return None;
         }
         self.outcome = Arc::new(gait_inputs(inputs)?.run_at(speed).ok()?);

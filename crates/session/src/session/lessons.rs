@@ -36,7 +36,7 @@ impl Session {
     /// Chooses the language of the bundled lessons, by their folder: `en` or `zh-Hant`.
     pub fn set_lesson_language(&mut self, language: &'static str) {
         if self.lessons.set_language(language) {
-            self.lessons.ask_for_text(&self.document.params);
+            self.lessons.request_text(&self.document.params);
             self.revision += 1;
         }
     }
@@ -66,7 +66,7 @@ impl Session {
             }
             return self.set_as_step(vec![lesson.clone()]);
         }
-        let new = (self.lessons.tried(&self.document.params, link))
+        let new = (self.lessons.try_params(&self.document.params, link))
             .ok_or(CommandError::NotPossible("no lesson is open"))?;
         self.document.remember(None);
         self.replace_params(new);

@@ -197,14 +197,14 @@ fn result_that_cannot_be_made_is_replaced_by_no_other() {
     // All failures are reported together.
     let stale = refusals().into_iter().filter(|(link, bad, part)| {
         let checked = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
-            stands_for_nothing(link, bad, part);
+            assert_nothing_is_shown(link, bad, part);
         }));
         checked.is_err()
     });
     assert_eq!(stale.count(), 0);
 }
 
-fn stands_for_nothing(link: &str, bad: &Change, part: &str) {
+fn assert_nothing_is_shown(link: &str, bad: &Change, part: &str) {
     let mut session = opened(link);
     assert!(session.panes()[0].result().is_ok(), "{link}: {:?}", session.panes()[0].problem);
     let stand_in = change(&mut session, bad);

@@ -94,7 +94,7 @@ impl Drawn {
         let stretches = whole.graph().node_indices().filter_map(|node| {
             let stretch = whole.graph().node_weight(node)?;
             let from = set.number(Place { clip: stretch.clip, frame: stretch.start })?;
-            let fate = match built.ring_of(node.index()) {
+            let fate = match built.component_of(node.index()) {
                 Some(0) => Fate::Main,
                 Some(ring) => Fate::Apart(ring - 1),
                 None if dead.contains(&node) => Fate::End,
@@ -173,7 +173,7 @@ pub(crate) fn map_ui(
         size: set.frames(),
         known: match field.distances() {
             Distances::Held(_) => 1,
-            Distances::FromAfar(overview) => overview.block(),
+            Distances::Overview(overview) => overview.block(),
         },
         parts: &parts,
         marks: drawn.as_ref().map_or(&[], |drawn| &drawn.marks),
@@ -277,7 +277,7 @@ impl Tiles {
         let field = Arc::clone(&self.field);
         let frames = match field.distances() {
             Distances::Held(distances) => distances.set().frames(),
-            Distances::FromAfar(overview) => overview.set().frames(),
+            Distances::Overview(overview) => overview.set().frames(),
         };
         let range = |at: usize| (at * cells).min(frames)..((at + 1) * cells).min(frames);
         let (rows, columns) = (range(tile.row), range(tile.column));
@@ -286,12 +286,12 @@ impl Tiles {
         }
         let size = [columns.len().div_ceil(tile.factor), rows.len().div_ceil(tile.factor)];
         let cm = match field.distances() {
-            Distances::FromAfar(overview) if tile.factor < overview.block() => {
+            Distances::Overview(overview) if tile.factor < overview.block() => {
                 let detail = || overview.detail(rows, columns, tile.factor);
                 self.computed(tile, detail, ctx)?
             }
             _ if self.budget == 0 => return None,
-            Distances::FromAfar(overview) => {
+            Distances::Overview(overview) => {
                 let blocks = tile.factor / overview.block();
                 self.budget = self.budget.saturating_sub(TILE * TILE * blocks.pow(2));
                 overview.picture(rows, columns, tile.factor)

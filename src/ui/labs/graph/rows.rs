@@ -186,7 +186,7 @@ fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         if let Some(words) = text::ways_left_out(built) {
             kit::note_ui(&words, palette.warning, ui);
         }
-        if built.lacks_some() {
+        if built.is_truncated() {
             kit::note_ui(text::GRAPH_LACKS_SOME, palette.warning, ui);
         }
     }

@@ -25,7 +25,7 @@ pub enum Distances {
     /// Every distance.
     Held(FrameDistances),
     /// The smallest distance in every square of windows.
-    FromAfar(Box<DistanceOverview>),
+    Overview(Box<DistanceOverview>),
 }
 
 impl DistanceField {
@@ -34,8 +34,8 @@ impl DistanceField {
         Self { distances: Distances::Held(distances), histogram: vec![0; DistanceOverview::BINS] }
     }
 
-    pub(super) fn from_afar(overview: DistanceOverview) -> Self {
-        Self { distances: Distances::FromAfar(Box::new(overview)), histogram: Vec::new() }
+    pub(super) fn overview(overview: DistanceOverview) -> Self {
+        Self { distances: Distances::Overview(Box::new(overview)), histogram: Vec::new() }
     }
 
     /// Counts about `cells` more cells; returns `true` after the last one.
@@ -44,7 +44,7 @@ impl DistanceField {
             Distances::Held(distances) => {
                 distances.count(at, cells, DistanceOverview::BIN_CM, &mut self.histogram)
             }
-            Distances::FromAfar(_) => true,
+            Distances::Overview(_) => true,
         }
     }
 
@@ -58,7 +58,7 @@ impl DistanceField {
     pub(super) fn all(&self) -> Option<&FrameDistances> {
         match &self.distances {
             Distances::Held(distances) => Some(distances),
-            Distances::FromAfar(_) => None,
+            Distances::Overview(_) => None,
         }
     }
 
@@ -67,7 +67,7 @@ impl DistanceField {
     pub fn window(&self) -> usize {
         match &self.distances {
             Distances::Held(distances) => distances.window(),
-            Distances::FromAfar(overview) => overview.window(),
+            Distances::Overview(overview) => overview.window(),
         }
     }
 
@@ -77,7 +77,7 @@ impl DistanceField {
     pub fn cm(&self, a: Place, b: Place) -> Option<f64> {
         match &self.distances {
             Distances::Held(distances) => distances.cm(a, b),
-            Distances::FromAfar(overview) => overview.cm(a, b),
+            Distances::Overview(overview) => overview.cm(a, b),
         }
     }
 
@@ -87,7 +87,7 @@ impl DistanceField {
     pub fn histogram(&self) -> &[u32] {
         match &self.distances {
             Distances::Held(_) => &self.histogram,
-            Distances::FromAfar(overview) => overview.histogram(),
+            Distances::Overview(overview) => overview.histogram(),
         }
     }
 
@@ -101,7 +101,7 @@ impl DistanceField {
     pub(super) fn cells(&self) -> usize {
         match &self.distances {
             Distances::Held(_) => self.histogram.iter().map(|&count| count as usize).sum(),
-            Distances::FromAfar(overview) => overview.cells(),
+            Distances::Overview(overview) => overview.cells(),
         }
     }
 }
@@ -116,11 +116,11 @@ pub struct BuiltGraph {
     /// The component of each node of the whole graph, the largest first.
     component: Vec<usize>,
     /// The share of all frames of each component that allows endless walks, the largest first.
-    rings: Vec<f64>,
+    component_shares: Vec<f64>,
     /// The components of these shares, in the same order.
-    ring_components: Vec<usize>,
+    share_components: Vec<usize>,
     dead_ends: usize,
-    lacks_some: bool,
+    is_truncated: bool,
     /// For each clip, whether walks can use any of it.
     is_walked: Vec<bool>,
 }
@@ -146,17 +146,17 @@ impl Building {
     ) -> Result<ControlFlow<BuiltGraph, Self>, GraphError> {
         Ok(match self {
             Self::Found(candidates) => {
-                let lacks_some = !candidates.are_all_within(key.options.edge_threshold_cm);
+                let is_truncated = !candidates.are_all_within(key.options.edge_threshold_cm);
                 let whole = MotionGraph::new(clips.set(), &candidates, &key.options)?;
-                ControlFlow::Continue(Self::Linked(whole, lacks_some))
+                ControlFlow::Continue(Self::Linked(whole, is_truncated))
             }
-            Self::Linked(whole, lacks_some) => {
+            Self::Linked(whole, is_truncated) => {
                 let components = whole.components();
-                ControlFlow::Continue(Self::Parted(Arc::new(whole), lacks_some, components))
+                ControlFlow::Continue(Self::Parted(Arc::new(whole), is_truncated, components))
             }
-            Self::Parted(whole, lacks_some, components) => {
+            Self::Parted(whole, is_truncated, components) => {
                 let built = BuiltGraph::new(clips, whole, &components, key)?;
-                ControlFlow::Break(BuiltGraph { lacks_some, ..built })
+                ControlFlow::Break(BuiltGraph { is_truncated, ..built })
             }
         })
     }
@@ -172,7 +172,7 @@ impl BuiltGraph {
         let graph =
             if key.pruned { Arc::new(whole.pruned_to(components)?) } else { Arc::clone(&whole) };
         let mut component = vec![0; whole.graph().node_count()];
-        let (mut rings, mut ring_components) = (Vec::new(), Vec::new());
+        let (mut component_shares, mut share_components) = (Vec::new(), Vec::new());
         let all = clips.set().frames().max(1) as f64;
         for (index, nodes) in components.iter().enumerate() {
             for node in nodes {
@@ -185,9 +185,9 @@ impl BuiltGraph {
                 next.any(|next| nodes.binary_search(&next).is_ok())
             };
             if nodes.iter().any(inside) {
-                ring_components.push(index);
+                share_components.push(index);
                 let stretches = nodes.iter().filter_map(|&node| whole.graph().node_weight(node));
-                rings.push(
+                component_shares.push(
                     stretches.map(|stretch| stretch.end - stretch.start).sum::<usize>() as f64
                         / all,
                 );
@@ -198,7 +198,7 @@ impl BuiltGraph {
             is_walked[stretch.clip] = true;
         }
         Ok(Self {
-            lacks_some: false,
+            is_truncated: false,
             is_walked,
             clips: Arc::clone(clips),
             key,
@@ -206,8 +206,8 @@ impl BuiltGraph {
             whole,
             graph,
             component,
-            rings,
-            ring_components,
+            component_shares,
+            share_components,
         })
     }
 
@@ -241,19 +241,19 @@ impl BuiltGraph {
         &self.graph
     }
 
-    /// Returns the index in [`Self::rings`] of the component of a node of the whole graph; `None`
-    /// if it is in none of them.
+    /// Returns the index in [`Self::component_shares`] of the component of a node of the whole
+    /// graph; `None` if it is in none of them.
     #[must_use]
-    pub fn ring_of(&self, node: usize) -> Option<usize> {
+    pub fn component_of(&self, node: usize) -> Option<usize> {
         let component = self.component.get(node)?;
-        self.ring_components.iter().position(|ring| ring == component)
+        self.share_components.iter().position(|known| known == component)
     }
 
     /// Returns the shares of all frames of the components that allow endless walks, the largest
     /// first.
     #[must_use]
-    pub fn rings(&self) -> &[f64] {
-        &self.rings
+    pub fn component_shares(&self) -> &[f64] {
+        &self.component_shares
     }
 
     /// Returns the number of nodes without an outgoing edge.
@@ -265,8 +265,8 @@ impl BuiltGraph {
     /// Returns whether there are more transitions below the threshold than can be kept: the closest
     /// are kept.
     #[must_use]
-    pub fn lacks_some(&self) -> bool {
-        self.lacks_some
+    pub fn is_truncated(&self) -> bool {
+        self.is_truncated
     }
 
     /// Returns whether walks can use any of a clip; from everywhere, if the graph is pruned.

@@ -59,7 +59,7 @@ impl Plan {
     pub(super) fn stay(&mut self, number: usize, mut guide: Option<&mut Self>) -> Option<Stay> {
         while self.stays.len() <= number {
             if let Some(guide) = guide.as_deref_mut() {
-                self.go_like(guide);
+                self.follow_guide(guide);
             }
             let stay = self.next()?;
             self.frames += stay.to - stay.from;
@@ -106,7 +106,7 @@ impl Plan {
 
     /// Takes the edge that is most like the next transition of another walk; a random one if there
     /// is none, and follows it again once both are in the same clip.
-    fn go_like(&mut self, guide: &mut Self) {
+    fn follow_guide(&mut self, guide: &mut Self) {
         // A visit determines the way.
         if self.walker.has_way() {
             return;

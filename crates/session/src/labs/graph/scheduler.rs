@@ -98,7 +98,7 @@ enum Search {
 impl GraphScheduler {
     /// Makes walks that are requested from now on follow the walk of these parameters, where their
     /// graphs allow it.
-    pub(crate) fn guide_by(&mut self, params: Option<&Params>) {
+    pub(crate) fn set_guide(&mut self, params: Option<&Params>) {
         self.guide = params.cloned();
     }
 
@@ -109,7 +109,7 @@ impl GraphScheduler {
         clips: Vec<(String, Arc<Motion>)>,
         params: &Params,
     ) -> Result<Option<GraphInputs>, LabError> {
-        self.meet(clips);
+        self.set_clips(clips);
         let wanted = WalkRequest::guided(params, self.guide.as_ref(), self.clips.len())?;
         let known = self.builders.iter().find(|(known, _)| *known == wanted);
         let found = match (known, &self.graph_clips) {
@@ -249,7 +249,7 @@ impl GraphScheduler {
     }
 
     /// Discards everything for other clips.
-    fn meet(&mut self, clips: Vec<(String, Arc<Motion>)>) {
+    fn set_clips(&mut self, clips: Vec<(String, Arc<Motion>)>) {
         let same = clips.len() == self.clips.len()
             && clips.iter().zip(&self.clips).all(|(a, b)| a.0 == b.0 && Arc::ptr_eq(&a.1, &b.1));
         if !same {
@@ -380,7 +380,7 @@ impl GraphScheduler {
                 let (found, overview) = stream.finish()?;
                 // The same for every threshold, so that drawings of it stay valid.
                 if self.fields.iter().all(|field| field.window() != overview.window()) {
-                    self.keep_field(Arc::new(DistanceField::from_afar(overview)));
+                    self.keep_field(Arc::new(DistanceField::overview(overview)));
                 }
                 return Ok(Some(self.keep_found(options, found)));
             }

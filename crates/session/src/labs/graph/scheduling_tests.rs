@@ -142,7 +142,7 @@ fn threshold_that_is_dragged_needs_no_new_search() {
     let base = format!("lab=graph&clips={clips}&walk_seconds=10&blend_window=12&edge_threshold=6");
     let mut session = opened(&base);
     let field = Arc::clone(session.graph_field().unwrap());
-    assert!(matches!(field.distances(), crate::Distances::FromAfar(_)));
+    assert!(matches!(field.distances(), crate::Distances::Overview(_)));
     // Returns the progress at the first moment after a change.
     let starts_at = |session: &mut Session, key: Key, value: Value| {
         session.apply(Command::Set(vec![(key, value)])).unwrap();
@@ -177,7 +177,7 @@ fn threshold_that_is_dragged_needs_no_new_search() {
     let known = starts_at(&mut session, Key::Prune, Value::Switch(false));
     assert!(known >= 0.85, "{known}");
     assert!(
-        Arc::ptr_eq(session.graph_field().unwrap(), &field) && !walk(&session).built.lacks_some()
+        Arc::ptr_eq(session.graph_field().unwrap(), &field) && !walk(&session).built.is_truncated()
     );
     // The graph is the one that is built when nothing else was requested before.
     let direct =

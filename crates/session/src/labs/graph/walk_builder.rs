@@ -156,7 +156,7 @@ impl WalkBuilder {
                 && other.wanted.weights == wanted.weights
         };
         let mut builder = if let Some(known) = others.find(knows) {
-            Self::like(known, wanted)?
+            Self::with_known_run(known, wanted)?
         } else {
             let choices = Choices::new(built.graph(), &wanted.weights)?;
             let run = RunLength::new(built.graph(), &choices);
@@ -178,13 +178,13 @@ impl WalkBuilder {
 
     /// Begins a walk along the path as far as it has been found.
     fn preview(&self, found: Followed, length_m: f64) -> Result<Self, LabError> {
-        let mut builder = Self::like(self, &self.wanted)?;
+        let mut builder = Self::with_known_run(self, &self.wanted)?;
         builder.follow(found, length_m, true);
         Ok(builder)
     }
 
     /// Begins a walk in the same graph with the same weights, whose expected run is known.
-    fn like(other: &Self, wanted: &WalkRequest) -> Result<Self, LabError> {
+    fn with_known_run(other: &Self, wanted: &WalkRequest) -> Result<Self, LabError> {
         let mut builder =
             Self::idle(&other.built, wanted, Arc::clone(&other.choices), other.run.clone())?;
         builder.run_is_known = true;

@@ -33,7 +33,11 @@ fn walk_through_the_built_in_clips_has_no_jump() {
     );
     let slide = number(&session, 0, MetricId::FootSlide);
     assert!(slide < 15.0, "{slide}");
-    assert!(walk.built.rings()[0] > 0.6, "one large component: {:?}", walk.built.rings());
+    assert!(
+        walk.built.component_shares()[0] > 0.6,
+        "one large component: {:?}",
+        walk.built.component_shares()
+    );
     assert!(walk.run_secs.unwrap() > 0.5);
     // The state at a time is that of the stays, and its ghosts are clips of the walk.
     for secs in [0.0, 3.3, 17.0, 59.0] {

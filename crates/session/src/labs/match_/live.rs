@@ -11,11 +11,11 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 /// The length of the history that is kept, ticks: 5 s.
-const KEPT: usize = 5 * RATE;
+const HISTORY_TICKS: usize = 5 * RATE;
 /// The period over which jumps are counted, ticks: 30 s.
-const COUNTED: u64 = 30 * RATE as u64;
+const COUNTED_TICKS: u64 = 30 * RATE as u64;
 /// The interval of measurements, ticks: four times a second, about as fast as one can read.
-const MEASURED: u64 = RATE as u64 / 4;
+const MEASUREMENT_TICKS: u64 = RATE as u64 / 4;
 
 /// A controller with live input, and the last seconds of its motion.
 #[derive(Debug)]
@@ -34,7 +34,7 @@ impl Live {
         options: ControllerOptions,
     ) -> Result<Self, LabError> {
         let controller = Controller::new(Arc::clone(database), options, &Planar::IDENTITY)?;
-        let mut tracer = Tracer::new(controller, KEPT);
+        let mut tracer = Tracer::new(controller, HISTORY_TICKS);
         tracer.note(false);
         Ok(Self { tracer, jumps: VecDeque::new(), metrics: Vec::new(), found: None })
     }
@@ -74,7 +74,7 @@ impl Live {
         if self.tracer.controller.jumps() > before {
             self.jumps.push_back(now);
         }
-        while self.jumps.front().is_some_and(|tick| tick + COUNTED < now) {
+        while self.jumps.front().is_some_and(|tick| tick + COUNTED_TICKS < now) {
             self.jumps.pop_front();
         }
     }
@@ -94,12 +94,12 @@ impl Live {
     pub(crate) fn outcome(&mut self, meter: &mut ArtefactMeter) -> Result<Outcome, LabError> {
         let mut outcome = self.tracer.outcome(true)?;
         let ticks = self.tracer.controller.ticks();
-        if ticks.is_multiple_of(MEASURED) || self.metrics.is_empty() {
+        if ticks.is_multiple_of(MEASUREMENT_TICKS) || self.metrics.is_empty() {
             self.found = meter.numbers_now(&outcome);
             self.metrics = self.tracer.metrics(&outcome.motion);
             // Most turns in the history have no beginning or no end.
             self.metrics.retain(|metric| metric.id != MetricId::TurnTime);
-            let over_secs = ticks.min(COUNTED) as f64 / RATE as f64;
+            let over_secs = ticks.min(COUNTED_TICKS) as f64 / RATE as f64;
             let jumps = |metric: &&mut Metric| metric.id == MetricId::JumpsPerMinute;
             for metric in self.metrics.iter_mut().filter(jumps) {
                 metric.value =

@@ -60,7 +60,7 @@ impl DriveHistory {
     /// Returns the predicted path of the simulation object at that moment, `steps` and one places
     /// from now to the horizon.
     #[must_use]
-    pub fn asked_way(&self, moment: &DriveMoment, steps: usize) -> Vec<Planar> {
+    pub fn requested_path(&self, moment: &DriveMoment, steps: usize) -> Vec<Planar> {
         let horizon = self.horizon_secs();
         let secs = |step: usize| horizon * step as f64 / steps.max(1) as f64;
         (0..=steps)
@@ -70,7 +70,7 @@ impl DriveHistory {
 
     /// Returns the path of the clip that plays, in the same places.
     #[must_use]
-    pub fn matched_way(&self, moment: &DriveMoment, steps: usize) -> Vec<Planar> {
+    pub fn matched_path(&self, moment: &DriveMoment, steps: usize) -> Vec<Planar> {
         let Some(motion) = self.database.motion(moment.place.motion) else {
             return Vec::new();
         };

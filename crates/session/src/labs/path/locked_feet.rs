@@ -45,7 +45,7 @@ impl LockedFeetCache {
     }
 
     /// Returns the result if it is known; otherwise schedules it.
-    pub(super) fn ask(&mut self, of: &PathInputs) -> Option<Arc<LockedFeet>> {
+    pub(super) fn get_or_schedule(&mut self, of: &PathInputs) -> Option<Arc<LockedFeet>> {
         let known = self.done.iter().find(|planted| planted.of.makes_the_same(of));
         if known.is_none() {
             self.wanted.push(of.clone());

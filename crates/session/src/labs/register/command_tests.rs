@@ -150,7 +150,7 @@ fn impossible_registration_is_refused_and_shows_no_earlier_result() {
                 (Key::SlopeLimit, Value::Number(1.0)),
                 (Key::Ends, Value::Choice("corner")),
             ]);
-            session.document.bring(value);
+            session.document.ensure_clip(value);
         }
         session.apply(Command::Set(values)).unwrap();
         while session.work() {}

@@ -149,7 +149,7 @@ impl RegistrationScheduler {
         pair: &Arc<Pair>,
         wanted: RegistrationRequest,
     ) -> Result<Option<Arc<FoundRegistration>>, LabError> {
-        self.meet(pair)?;
+        self.set_pair(pair)?;
         let at_once =
             pair.a.clip().frames().saturating_mul(pair.incoming.clip().frames()) <= AT_ONCE;
         loop {
@@ -205,7 +205,7 @@ impl RegistrationScheduler {
         Some(0.45 * terms + 0.45 * swept)
     }
 
-    fn meet(&mut self, pair: &Arc<Pair>) -> Result<(), LabError> {
+    fn set_pair(&mut self, pair: &Arc<Pair>) -> Result<(), LabError> {
         if self.pair.as_ref().is_some_and(|known| Arc::ptr_eq(known, pair)) {
             return Ok(());
         }

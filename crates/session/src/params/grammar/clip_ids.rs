@@ -10,7 +10,7 @@ use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_enco
 /// The characters to percent-encode inside an id: its delimiters, and `%` itself.
 const RESERVED: &AsciiSet = &CONTROLS.add(b'(').add(b')').add(b',').add(b':').add(b'%');
 /// The characters to percent-encode at the ends of an id.
-const OUTER: &AsciiSet = &RESERVED.add(b' ');
+const RESERVED_AT_ENDS: &AsciiSet = &RESERVED.add(b' ');
 /// The greatest nesting of results in an id; deeper ids are not valid.
 const MAX_DEPTH: usize = 6;
 
@@ -58,7 +58,7 @@ pub(super) fn write_id(id: &str) -> String {
     // Spaces between entries are ignored.
     let (before, inner) = id.split_at(id.len() - id.trim_start().len());
     let (inner, behind) = inner.split_at(inner.trim_end().len());
-    let spaces = |spaces: &str| utf8_percent_encode(spaces, OUTER).to_string();
+    let spaces = |spaces: &str| utf8_percent_encode(spaces, RESERVED_AT_ENDS).to_string();
     format!("{}{}{}", spaces(before), escaped(inner), spaces(behind))
 }
 
