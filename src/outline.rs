@@ -1,8 +1,8 @@
 //! The widgets as a tree of elements for screen readers and keyboards.
 //!
 //! egui describes each widget by an AccessKit node. On a desktop eframe hands the nodes to the
-//! system. On the web it drops them: [`Outline`] takes each frame's nodes before, and tells the page
-//! which of them have changed. `web/js/outline.js` keeps elements of the page in step, and
+//! system. On the web it drops them: [`Outline`] takes each frame's nodes before, and tells the
+//! page which of them have changed. `web/js/outline.js` keeps elements of the page in step, and
 //! sends back what a reader does with them.
 
 use crate::ui;

@@ -182,8 +182,8 @@ impl SegueHandle {
         self.inbox.wake();
     }
 
-    /// Passes a key on that was pressed or released on one of those elements. `modifiers` is the sum
-    /// of 1 for Shift, 2 for Control, 4 for Alt and 8 for Command.
+    /// Passes a key on that was pressed or released on one of those elements. `modifiers` is the
+    /// sum of 1 for Shift, 2 for Control, 4 for Alt and 8 for Command.
     pub fn press(&self, key: &str, code: &str, pressed: bool, modifiers: u8) {
         let [shift, ctrl, alt, mac_cmd] = [1, 2, 4, 8].map(|bit| modifiers & bit != 0);
         let modifiers = Modifiers { alt, ctrl, shift, mac_cmd, command: ctrl || mac_cmd };

@@ -208,8 +208,8 @@ pub(crate) fn compare_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui
     }
 }
 
-/// Returns the number of frames that both clips have, at A's rate: no window is longer. `None` while
-/// neither clip is there.
+/// Returns the number of frames that both clips have, at A's rate: no window is longer. `None`
+/// while neither clip is there.
 pub(crate) fn frames_of_both(session: &Session) -> Option<f64> {
     let clips = [Slot::A, Slot::B]
         .into_iter()

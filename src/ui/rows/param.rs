@@ -166,8 +166,8 @@ fn number_ui(key: Key, detail: &Detail, session: &Session, out: &mut Out, ui: &m
     settle(&response, out);
 }
 
-/// Returns the end of the clip that a parameter is a place in, in its unit: of the shorter one where
-/// it is a place in both.
+/// Returns the end of the clip that a parameter is a place in, in its unit: of the shorter one
+/// where it is a place in both.
 fn end_of_clip(key: Key, session: &Session) -> Option<f64> {
     let param = key.param();
     let slots = [(Slot::A, PlaceInA), (Slot::B, PlaceInB)].into_iter();
