@@ -1,5 +1,5 @@
-//! The object by which the page's JavaScript drives the app. `web/js/boot.js` and `web/js/api.js`
-//! say what they expect of it.
+//! The object by which the page's JavaScript drives the app. `web/js/boot.js` lists the methods
+//! that the page needs.
 
 use crate::app::api::{self, ApiError};
 use crate::app::{Event, Segue, Shared, View};
@@ -25,10 +25,10 @@ use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::spawn_local;
 use web_sys::{Blob, HtmlCanvasElement, WebGl2RenderingContext};
 
-/// The running app, as the page holds it.
+/// The page's handle of the running app.
 ///
-/// Every method borrows it shared: after a panic inside of an exclusive one, wasm-bindgen would
-/// refuse all others, the one that tells of the panic among them.
+/// Every method borrows it shared. After a panic inside an exclusive one, wasm-bindgen would refuse
+/// all others, including the one that returns the panic.
 #[wasm_bindgen]
 #[derive(Clone)]
 pub struct SegueHandle {
@@ -38,7 +38,7 @@ pub struct SegueHandle {
     canvas: Rc<RefCell<HtmlCanvasElement>>,
     listener: Rc<RefCell<Option<Function>>>,
     outline: Outline,
-    /// When a WebGPU device that replaced a lost one began to draw, milliseconds.
+    /// The time at which a WebGPU device that replaced a lost one began to draw, milliseconds.
     replaced_ms: Rc<Cell<Option<f64>>>,
 }
 
@@ -57,9 +57,9 @@ fn show_outline(changes: &str) {
     }
 }
 
-/// WebGL 2 is taken when a WebGPU device that replaced a lost one is lost itself within this time
-/// of its start, milliseconds. How long the start took does not count: that says how slow the
-/// machine is, not how long a device lives.
+/// The shortest life of a WebGPU device that replaced a lost one, milliseconds from its first
+/// frame. After a shorter one, the app draws with WebGL 2. The start does not count, because its
+/// duration depends on the machine.
 const SOON_MS: f64 = 10_000.0;
 
 fn error(text: impl std::fmt::Display) -> JsValue {
@@ -108,8 +108,8 @@ impl SegueHandle {
         Ok(handle)
     }
 
-    /// Goes on, on a fresh canvas, after the graphics device was lost. The document is as it was.
-    /// When this fails it can be asked again, with another canvas.
+    /// Continues on a new canvas after the graphics device was lost. The document is unchanged.
+    /// After a failure, it can be called again with another canvas.
     pub async fn restart(&self, canvas: HtmlCanvasElement) -> Result<(), JsValue> {
         let backend = {
             let mut segue = self.borrow_mut()?;
@@ -119,7 +119,7 @@ impl SegueHandle {
         if backend == "webgl2" {
             return self.run_on(canvas, Backends::GL).await;
         }
-        // Where WebGL 2 fails, too, the next attempt is like the first.
+        // The time is taken out, so that the attempt after a failure of WebGL 2 is like the first.
         let is_soon = self.replaced_ms.take().is_some_and(|since_ms| now_ms() - since_ms < SOON_MS);
         if !is_soon || wanted_backend().as_deref() == Some("webgpu") {
             self.run(canvas).await?;
@@ -133,7 +133,7 @@ impl SegueHandle {
         })
     }
 
-    /// Resolves when the first frame is on screen.
+    /// Waits until the first frame is on screen.
     #[wasm_bindgen(js_name = firstFrame)]
     pub async fn first_frame(&self) {
         while self.segue.try_borrow().is_ok_and(|segue| segue.frames_drawn() == 0)
@@ -143,13 +143,13 @@ impl SegueHandle {
         }
     }
 
-    /// This version of Segue.
+    /// Returns the version of Segue.
     #[expect(clippy::unused_self, reason = "a method in JavaScript")]
     pub fn version(&self) -> String {
         env!("CARGO_PKG_VERSION").to_owned()
     }
 
-    /// Tells `listener(event, detail)` of what happens from now on.
+    /// Sets the function that receives events, `listener(event, detail)`.
     #[wasm_bindgen(js_name = setListener)]
     pub fn set_listener(&self, listener: Function) {
         self.listener.replace(Some(listener));
@@ -191,20 +191,20 @@ impl SegueHandle {
         self.inbox.wake();
     }
 
-    /// Whether the link says that the page is embedded: the frame then answers the page around it,
-    /// and stores nothing.
+    /// Returns whether the link says that the page is embedded. The page then answers the one
+    /// around it, and stores nothing.
     #[wasm_bindgen(js_name = isEmbedded)]
     pub fn is_embedded(&self) -> bool {
         self.segue.try_borrow().is_ok_and(|segue| segue.is_embedded())
     }
 
-    /// Whether the app has panicked: then nothing else is left to ask than [`Self::panic_summary`].
+    /// Returns whether the app has panicked. Then only [`Self::panic_summary`] can be called.
     #[wasm_bindgen(js_name = hasPanicked)]
     pub fn has_panicked(&self) -> bool {
         self.runner.has_panicked()
     }
 
-    /// What it panicked over, and where.
+    /// Returns the message and the call stack of the panic; `None` where there was none.
     #[wasm_bindgen(js_name = panicSummary)]
     pub fn panic_summary(&self) -> Option<String> {
         self.runner
@@ -226,14 +226,14 @@ impl SegueHandle {
         self.changed();
         while self.borrow()?.is_reading(task) {
             sleep(10).await;
-            // While the page is hidden no frame comes to do it.
+            // A hidden page has no frames that would poll.
             self.borrow_mut()?.poll();
         }
         self.settled().await?;
         let result = self.borrow_mut()?.read_result(task);
         match result {
             Some(Ok(loaded)) => {
-                // Whoever is told that a file is loaded may leave: by then it is stored.
+                // The caller may leave the page once the file is loaded, so it has to be stored.
                 let files = loaded.files();
                 while self.borrow()?.is_storing(&files) {
                     sleep(5).await;
@@ -245,16 +245,16 @@ impl SegueHandle {
         }
     }
 
-    /// Every clip of the library.
+    /// Returns every clip of the library.
     pub fn clips(&self) -> Result<JsValue, JsValue> {
         to_js(&self.borrow_mut()?.clips())
     }
 
-    /// Waits until no more clips are to come: what was stored is back, and what is fetched or read
-    /// is there. Every clip of the library then.
+    /// Waits until the stored work is restored, and all files are fetched and read. Returns every
+    /// clip of the library.
     pub async fn loaded(&self) -> Result<JsValue, JsValue> {
         self.opened().await?;
-        // While the page is hidden no frame comes to do it.
+        // A hidden page has no frames that would poll.
         while {
             let mut segue = self.borrow_mut()?;
             segue.poll();
@@ -265,12 +265,12 @@ impl SegueHandle {
         self.clips()
     }
 
-    /// Every parameter's value by its key.
+    /// Returns every parameter's value by its key.
     pub fn params(&self) -> Result<JsValue, JsValue> {
         to_js(&self.borrow()?.params())
     }
 
-    /// Sets parameters, all or none. Resolves when what depends on them is computed.
+    /// Sets parameters, all or none. Waits until everything that depends on them is computed.
     pub async fn set(&self, values: JsValue) -> Result<(), JsValue> {
         let values = serde_wasm_bindgen::from_value(values).map_err(|_| {
             error("set: expected an object of keys and values, as in { blend_window: 24 }")
@@ -282,43 +282,44 @@ impl SegueHandle {
         self.settled().await
     }
 
-    /// The table of parameters.
+    /// Returns the table of parameters.
     #[expect(clippy::unused_self, reason = "a method in JavaScript")]
     pub fn keys(&self) -> Result<JsValue, JsValue> {
         to_js(&api::keys())
     }
 
-    /// The link that restores this state.
+    /// Returns the link that restores this state.
     pub fn url(&self) -> Result<String, JsValue> {
         Ok(self.borrow()?.url())
     }
 
-    /// Lets time run.
+    /// Starts playback.
     pub fn play(&self) -> Result<(), JsValue> {
         self.change(|segue| segue.play(true))
     }
 
-    /// Stops time.
+    /// Stops playback.
     pub fn pause(&self) -> Result<(), JsValue> {
         self.change(|segue| segue.play(false))
     }
 
-    /// Moves the playhead, seconds.
+    /// Moves the playhead to a time, seconds.
     pub fn seek(&self, seconds: f64) -> Result<(), JsValue> {
         self.change(|segue| segue.seek(seconds))
     }
 
-    /// The playhead, seconds.
+    /// Returns the position of the playhead, seconds.
     pub fn time(&self) -> Result<f64, JsValue> {
         Ok(self.borrow()?.time())
     }
 
-    /// A pose in the world; `which` is a clip's id, `result`, or `result:1` for the second pane.
+    /// Returns a pose in the world; `which` is a clip's id, `result`, or `result:1` for the second
+    /// pane.
     pub fn pose(&self, which: &str, seconds: f64) -> Result<JsValue, JsValue> {
         to_js(&self.borrow()?.pose(which, seconds).map_err(error)?)
     }
 
-    /// The artefacts of the results, by name.
+    /// Returns the metrics of the results by their names.
     pub fn metrics(&self) -> Result<JsValue, JsValue> {
         to_js(&self.borrow()?.metrics().map_err(error)?)
     }
@@ -328,8 +329,8 @@ impl SegueHandle {
         self.change(|segue| segue.stop(name))
     }
 
-    /// A motion as the bytes of a file, a GLB file with the body that `body` names: "character" or
-    /// "plain".
+    /// Returns a motion as the bytes of a file. A GLB file has the body that `body` names:
+    /// "character" or "plain".
     #[expect(clippy::needless_pass_by_value, reason = "wasm-bindgen hands over what it has made")]
     #[wasm_bindgen(js_name = exportClip)]
     pub fn export_clip(
@@ -345,7 +346,7 @@ impl SegueHandle {
             .bytes)
     }
 
-    /// Puts a result into the library; its id there.
+    /// Puts a result into the library. Returns the id of the new clip.
     pub fn keep(&self, which: &str) -> Result<String, JsValue> {
         let kept =
             self.borrow_mut()?.keep(which).map_err(|reason| error(format!("keep: {reason}")));
@@ -353,13 +354,13 @@ impl SegueHandle {
         kept
     }
 
-    /// The stage as a PNG.
+    /// Returns the stage as a PNG.
     pub async fn snapshot(&self) -> Result<Blob, JsValue> {
         let canvas = self.canvas.borrow().clone();
         snapshot(&canvas, || self.frames(), || self.inbox.wake(), || self.stage_area()).await
     }
 
-    /// What is shown, in Markdown with the picture in it.
+    /// Returns a report of the results in Markdown, with a picture of the stage in it.
     pub async fn report(&self) -> Result<String, JsValue> {
         let canvas = self.canvas.borrow().clone();
         let picture =
@@ -368,12 +369,12 @@ impl SegueHandle {
         self.borrow()?.report(Some(&picture)).map_err(|reason| error(format!("report: {reason}")))
     }
 
-    /// Begins to film the page.
+    /// Begins to record the page.
     pub fn record(&self) -> Result<(), JsValue> {
         self.change(|segue| segue.begin_film().map_err(ApiError::Recording))
     }
 
-    /// Ends the film; all of it as a Blob.
+    /// Ends the recording. Returns it as a Blob.
     #[wasm_bindgen(js_name = stopRecording)]
     pub async fn stop_recording(&self) -> Result<Blob, JsValue> {
         let film = self.borrow_mut()?.end_film();
@@ -381,12 +382,12 @@ impl SegueHandle {
         film.map_err(|reason| error(format!("stopRecording: {reason}")))?.end().await
     }
 
-    /// How the app is doing.
+    /// Returns statistics of the app.
     pub fn stats(&self) -> Result<JsValue, JsValue> {
         to_js(&self.borrow()?.stats(wasm_memory_bytes()))
     }
 
-    /// Ends the app; what there is to store is stored.
+    /// Ends the app, and stores the work.
     pub fn destroy(&self) -> Result<(), JsValue> {
         {
             let mut segue = self.borrow_mut()?;
@@ -403,7 +404,7 @@ impl SegueHandle {
         self.segue.try_borrow().map_or(0, |segue| segue.frames_drawn())
     }
 
-    /// Where the stage is on the canvas.
+    /// Returns the area of the stage on the canvas.
     fn stage_area(&self) -> Option<Area> {
         let place = self.segue.try_borrow().ok()?.stage_rect()?;
         Some(area_of(place, self.inbox.ctx()?.pixels_per_point()))
@@ -421,7 +422,7 @@ impl SegueHandle {
             .map_err(|_| error("Segue is in the middle of something; ask again in a moment"))
     }
 
-    /// Runs on the canvas, with the graphics that the address asks for.
+    /// Runs the app on a canvas, with the graphics backend that the address selects.
     async fn run(&self, canvas: HtmlCanvasElement) -> Result<(), JsValue> {
         let both = Backends::BROWSER_WEBGPU | Backends::GL;
         match wanted_backend().as_deref() {
@@ -433,8 +434,8 @@ impl SegueHandle {
         let Err(reason) = self.run_on(canvas.clone(), both).await else {
             return Ok(());
         };
-        // An adapter that then gives no device: WebGL 2 may still do. A canvas keeps the kind of
-        // context it once had, so it needs a new one.
+        // An adapter may give no device, and WebGL 2 may still work. A canvas keeps the kind of its
+        // first context, so WebGL 2 needs a new one.
         log::warn!(
             "the graphics could not be set up, trying WebGL 2 alone: {}",
             js_error_text(&reason)
@@ -443,7 +444,7 @@ impl SegueHandle {
             canvas.clone_node()?.dyn_into().map_err(|_| reason.clone())?;
         canvas.replace_with_with_node_1(&fresh)?;
         let listener = Rc::clone(&self.listener);
-        // The page looks after the canvas that it knows of. This one tells it by itself.
+        // The page listens only to its own canvas, so the loss of this one is reported here.
         listen(Some(&fresh), "webglcontextlost", move |event| {
             event.prevent_default();
             tell(&listener, vec![Event::Lost { message: "the WebGL context was lost".to_owned() }]);
@@ -469,7 +470,7 @@ impl SegueHandle {
                 wgpu_setup: WgpuSetup::CreateNew(setup),
                 ..WgpuConfiguration::default()
             },
-            // There are no gradients among the panels, and the stage is copied as it is.
+            // The panels have no gradients, and the stage must be copied unchanged.
             dithering: false,
             ..WebOptions::default()
         };
@@ -492,7 +493,7 @@ impl SegueHandle {
         done.map_err(error)
     }
 
-    /// Has what changed drawn, and told.
+    /// Requests a frame, and reports events, after a change.
     fn changed(&self) {
         self.inbox.wake();
         if let Ok(mut segue) = self.segue.try_borrow_mut() {
@@ -500,8 +501,7 @@ impl SegueHandle {
         }
     }
 
-    /// Waits until what was stored has come back, or is not to be expected any longer: whoever asks
-    /// then finds it there.
+    /// Waits until the stored work is restored, or no longer expected.
     async fn opened(&self) -> Result<(), JsValue> {
         while self.borrow_mut()?.is_restoring() {
             sleep(5).await;
@@ -512,7 +512,7 @@ impl SegueHandle {
     /// Waits until everything that depends on the last change is computed.
     async fn settled(&self) -> Result<(), JsValue> {
         loop {
-            // While the page is hidden no frame comes to do it.
+            // A hidden page has no frames that would poll.
             let more = {
                 let mut segue = self.borrow_mut()?;
                 segue.poll() || segue.is_busy()
@@ -526,11 +526,11 @@ impl SegueHandle {
     }
 }
 
-/// Whether the canvas has a WebGL context that is lost already: wgpu stops at one that cannot tell
-/// its version.
+/// Returns whether the canvas has a lost WebGL context. wgpu panics on one, because it has no
+/// version.
 fn is_lost(canvas: &HtmlCanvasElement) -> bool {
     let options = Object::new();
-    // As wgpu asks for it: it is given this one.
+    // The same options as wgpu's, which then gets this context.
     let asked = Reflect::set(&options, &"antialias".into(), &JsValue::FALSE)
         .and_then(|_| canvas.get_context_with_context_options("webgl2", &options));
     let context =
@@ -538,7 +538,8 @@ fn is_lost(canvas: &HtmlCanvasElement) -> bool {
     context.is_some_and(|context| context.is_context_lost())
 }
 
-/// Tells the page, once whatever runs now is done: a listener may call back at once.
+/// Reports events to the page's listener after the current call, because the listener may call the
+/// API.
 fn tell(listener: &Rc<RefCell<Option<Function>>>, events: Vec<Event>) {
     if events.is_empty() {
         return;
