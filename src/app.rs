@@ -67,7 +67,7 @@ pub(crate) struct Segue {
     read: BTreeMap<u64, Option<Result<LoadedClips, ApiError>>>,
     frame_stats: FrameStats,
     events: Vec<Event>,
-    reported: Reported,
+    reported: ReportedState,
     clock: Clock,
     window: Window,
     panels: UiState,
@@ -95,7 +95,7 @@ fn is_embedded(link: &str) -> bool {
 
 /// The state that was last reported to the listeners of the page's API.
 #[derive(Debug, Default)]
-struct Reported {
+struct ReportedState {
     revision: u64,
     next_notice: u64,
 }
@@ -136,7 +136,7 @@ impl Segue {
     fn new(inbox: Inbox, storage: Option<Storage>, link: String) -> Self {
         let now_ms = platform::now_ms();
         Self {
-            session: if platform::READS_ELSEWHERE {
+            session: if platform::READS_IN_BACKGROUND {
                 Session::with_external_reader()
             } else {
                 Session::new()
@@ -150,7 +150,7 @@ impl Segue {
             downloads: Downloads::default(),
             frame_stats: FrameStats::default(),
             events: Vec::new(),
-            reported: Reported::default(),
+            reported: ReportedState::default(),
             clock: Clock { ticked: now_ms, left_work: None, frame_took: 0.0, frame_began: now_ms },
             window: Window::default(),
             panels: UiState::default(),

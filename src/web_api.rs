@@ -6,8 +6,8 @@ use crate::app::{Event, Segue, Shared, View};
 use crate::outline::{Deed, Outline};
 use crate::platform::{
     Area, FileBytes, Inbox, LargeFile, area_of, confirm_leaving_while, inline_picture,
-    js_error_text, listen, next_frame, next_turn, now_ms, set_worker_factory, sleep, snapshot,
-    wanted_backend, wasm_memory_bytes, watch_folders, watch_hiding,
+    js_error_text, listen, next_frame, next_turn, now_ms, requested_backend, set_worker_factory,
+    sleep, snapshot, wasm_memory_bytes, watch_folders, watch_hiding,
 };
 use eframe::egui::Modifiers;
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
@@ -60,7 +60,7 @@ fn show_outline(changes: &str) {
 /// The shortest life of a WebGPU device that replaced a lost one, milliseconds from its first
 /// frame. After a shorter one, the app draws with WebGL 2. The start does not count, because its
 /// duration depends on the machine.
-const SOON_MS: f64 = 10_000.0;
+const MIN_DEVICE_LIFE_MS: f64 = 10_000.0;
 
 fn error(text: impl std::fmt::Display) -> JsValue {
     Error::new(&text.to_string()).into()
@@ -120,8 +120,11 @@ impl SegueHandle {
             return self.run_on(canvas, Backends::GL).await;
         }
         // The time is taken out, so that the attempt after a failure of WebGL 2 is like the first.
-        let is_soon = self.replaced_ms.take().is_some_and(|since_ms| now_ms() - since_ms < SOON_MS);
-        if !is_soon || wanted_backend().as_deref() == Some("webgpu") {
+        let lived_shortly = self
+            .replaced_ms
+            .take()
+            .is_some_and(|since_ms| now_ms() - since_ms < MIN_DEVICE_LIFE_MS);
+        if !lived_shortly || requested_backend().as_deref() == Some("webgpu") {
             self.run(canvas).await?;
             self.replaced_ms.set(Some(now_ms()));
             return Ok(());
@@ -222,7 +225,7 @@ impl SegueHandle {
         } else {
             FileBytes::Here(Arc::from(bytes.to_vec()))
         };
-        let task = self.borrow_mut()?.load_elsewhere(&name, file);
+        let task = self.borrow_mut()?.load_in_background(&name, file);
         self.changed();
         while self.borrow()?.is_reading(task) {
             sleep(10).await;
@@ -425,7 +428,7 @@ impl SegueHandle {
     /// Runs the app on a canvas, with the graphics backend that the address selects.
     async fn run(&self, canvas: HtmlCanvasElement) -> Result<(), JsValue> {
         let both = Backends::BROWSER_WEBGPU | Backends::GL;
-        match wanted_backend().as_deref() {
+        match requested_backend().as_deref() {
             Some("webgl2") => return self.run_on(canvas, Backends::GL).await,
             Some("webgpu") => return self.run_on(canvas, Backends::BROWSER_WEBGPU).await,
             None | Some("auto") => {}
@@ -447,7 +450,10 @@ impl SegueHandle {
         // The page listens only to its own canvas, so the loss of this one is reported here.
         listen(Some(&fresh), "webglcontextlost", move |event| {
             event.prevent_default();
-            tell(&listener, vec![Event::Lost { message: "the WebGL context was lost".to_owned() }]);
+            report_events(
+                &listener,
+                vec![Event::Lost { message: "the WebGL context was lost".to_owned() }],
+            );
         });
         let both_reasons = |second: JsValue| {
             error(format!(
@@ -478,7 +484,7 @@ impl SegueHandle {
         let outline = self.outline.clone();
         let create: eframe::AppCreator<'static> = Box::new(move |cc| {
             outline.install(&cc.egui_ctx, show_outline);
-            Ok(Box::new(View::new(segue, cc, move |events| tell(&listener, events))))
+            Ok(Box::new(View::new(segue, cc, move |events| report_events(&listener, events))))
         });
         self.canvas.replace(canvas.clone());
         self.runner.start(canvas, options, create).await
@@ -497,7 +503,7 @@ impl SegueHandle {
     fn changed(&self) {
         self.inbox.wake();
         if let Ok(mut segue) = self.segue.try_borrow_mut() {
-            tell(&self.listener, segue.take_events());
+            report_events(&self.listener, segue.take_events());
         }
     }
 
@@ -540,7 +546,7 @@ fn is_lost(canvas: &HtmlCanvasElement) -> bool {
 
 /// Reports events to the page's listener after the current call, because the listener may call the
 /// API.
-fn tell(listener: &Rc<RefCell<Option<Function>>>, events: Vec<Event>) {
+fn report_events(listener: &Rc<RefCell<Option<Function>>>, events: Vec<Event>) {
     if events.is_empty() {
         return;
     }

@@ -134,7 +134,7 @@ impl Segue {
 
     /// Starts to read a file in the background, exactly as if it were dropped on the page. Returns
     /// the task's number, by which [`Self::read_result`] has the result.
-    pub(crate) fn load_elsewhere(&mut self, name: &str, file: FileBytes) -> u64 {
+    pub(crate) fn load_in_background(&mut self, name: &str, file: FileBytes) -> u64 {
         self.poll();
         let task = match file {
             FileBytes::Large(file) => self.begin_reading(name, file),
@@ -181,7 +181,7 @@ impl Segue {
         Ok(())
     }
 
-    /// Takes out the result of a task of [`Self::load_elsewhere`]; `None` when it was stopped.
+    /// Takes out the result of a task of [`Self::load_in_background`]; `None` when it was stopped.
     pub(crate) fn read_result(&mut self, task: u64) -> Option<Result<LoadedClips, ApiError>> {
         self.read.remove(&task).flatten()
     }

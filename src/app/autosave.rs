@@ -67,12 +67,12 @@ pub(crate) struct Autosave {
     /// The session's revision at which `seen` was computed.
     revision: u64,
     /// The changes that are not stored yet.
-    changed: Option<Changed>,
+    changed: Option<ChangeTimes>,
 }
 
 /// The times of the first and the last change since the work was stored, milliseconds.
 #[derive(Clone, Copy, Debug)]
-struct Changed {
+struct ChangeTimes {
     first_ms: f64,
     last_ms: f64,
 }

@@ -7,7 +7,7 @@ use segue_text::Message;
 use std::collections::VecDeque;
 
 /// The bytes of a file, or the reason why it was not fetched.
-pub(crate) type Fetched = Result<FileBytes, Message>;
+pub(crate) type FetchResult = Result<FileBytes, Message>;
 
 /// All downloads that are under way.
 #[derive(Debug, Default)]
@@ -22,7 +22,7 @@ struct Download {
     address: String,
     done: u64,
     total: Option<u64>,
-    fetched: Option<Fetched>,
+    fetched: Option<FetchResult>,
     /// Dropping it stops the transfer.
     _fetch: Fetch,
 }
@@ -78,14 +78,14 @@ impl Downloads {
     }
 
     /// Records that a file was fetched, or has failed.
-    pub(crate) fn finished(&mut self, address: &str, fetched: Fetched) {
+    pub(crate) fn finished(&mut self, address: &str, fetched: FetchResult) {
         if let Some(download) = self.find(address) {
             download.fetched = Some(fetched);
         }
     }
 
     /// Takes out the next file in order, once it is complete. Returns its name and the outcome.
-    pub(crate) fn next_ready(&mut self) -> Option<(String, Fetched)> {
+    pub(crate) fn next_ready(&mut self) -> Option<(String, FetchResult)> {
         self.files.front()?.fetched.as_ref()?;
         let download = self.files.pop_front()?;
         Some((file_name_of(&download.address), download.fetched?))

@@ -79,7 +79,7 @@ pub(crate) struct Records {
 }
 
 /// A record that is merged into that of all work.
-enum Later {
+enum LaterRecord {
     Clip(Box<SavedEntry>),
     Exit(BTreeSet<String>, Saved),
 }
@@ -94,11 +94,11 @@ impl Records {
                 serde_json::from_str(text).map(|saved| records.saved = Some(saved))
             } else if clip_id(key).is_some() {
                 serde_json::from_str(text).map(|ClipRecord { at_ms, entry }| {
-                    later.push((at_ms, Later::Clip(Box::new(entry))));
+                    later.push((at_ms, LaterRecord::Clip(Box::new(entry))));
                 })
             } else if is_exit_key(key) {
                 serde_json::from_str(text).map(|ExitRecord { at_ms, known, saved }| {
-                    later.push((at_ms, Later::Exit(known, saved)));
+                    later.push((at_ms, LaterRecord::Exit(known, saved)));
                 })
             } else {
                 Ok(())
@@ -116,16 +116,16 @@ impl Records {
         records
     }
 
-    fn add(&mut self, record: Later) {
+    fn add(&mut self, record: LaterRecord) {
         match record {
-            Later::Clip(entry) => {
+            LaterRecord::Clip(entry) => {
                 let entries =
                     self.saved.as_mut().map_or(&mut self.loose, |saved| &mut saved.entries);
                 if entries.iter().all(|there| there.id != entry.id) {
                     entries.push(*entry);
                 }
             }
-            Later::Exit(known, saved) => {
+            LaterRecord::Exit(known, saved) => {
                 let mut there = self.saved.take().unwrap_or_default();
                 there.entries.append(&mut self.loose);
                 self.saved = Some(saved.with_others_of(&there, &known));

@@ -99,7 +99,7 @@ fn clip(viewport: Viewport, [width, height]: [u32; 2]) -> Viewport {
 }
 
 /// Returns the same part of another target. Adjacent parts stay adjacent.
-fn stretched(viewport: Viewport, from: [u32; 2], to: [u32; 2]) -> Viewport {
+fn scaled(viewport: Viewport, from: [u32; 2], to: [u32; 2]) -> Viewport {
     let place = |at: u32, axis: usize| {
         (f64::from(at) * f64::from(to[axis]) / f64::from(from[axis].max(1))).round() as u32
     };
@@ -135,7 +135,7 @@ impl Frame {
         self.rings.clear();
         self.panes.clear();
         for pane in &stage.panes {
-            let viewport = stretched(clip(pane.viewport, size), size, target);
+            let viewport = scaled(clip(pane.viewport, size), size, target);
             if viewport.width == 0 || viewport.height == 0 {
                 continue;
             }

@@ -7,7 +7,7 @@ use glam::Vec4;
 use segue_scene::{Color, Figure, Limb, Ring, Stroke};
 
 /// The distance below which limbs blend into each other, metres.
-const TOUCHING: f32 = 0.02;
+const BLEND_DISTANCE_M: f32 = 0.02;
 /// The end of a list of nearest limbs.
 const NONE: u8 = 255;
 
@@ -81,11 +81,11 @@ pub(super) fn find_nearest(limbs: &[Limb], instances: &mut [LimbInstance], ghost
             let radius = limb.radius_a.max(limb.radius_b);
             // Touching limbs come first, then those that cover the largest angle seen from here.
             let score_at = |distance: f32, gap: f32| {
-                if gap < TOUCHING { 10.0 - gap } else { radius / distance.max(1e-4) }
+                if gap < BLEND_DISTANCE_M { 10.0 - gap } else { radius / distance.max(1e-4) }
             };
             let reach = (limb.b - limb.a).length() * 0.5 + half;
             let at_least = points[1].distance((limb.a + limb.b) * 0.5) - reach;
-            let too_far = ghost && at_least - own_radius - radius >= TOUCHING;
+            let too_far = ghost && at_least - own_radius - radius >= BLEND_DISTANCE_M;
             if too_far
                 || (at_least > 0.0
                     && score_at(at_least, at_least - own_radius - radius)

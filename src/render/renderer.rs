@@ -10,7 +10,7 @@ use super::pipelines::Pipelines;
 use super::quality::Quality;
 use super::skins::SkinStore;
 use super::targets::Targets;
-use super::view::{Shown, View};
+use super::view::{PictureState, View};
 use eframe::wgpu;
 use segue_scene::Stage;
 
@@ -35,7 +35,7 @@ pub(crate) struct StageRenderer {
 
 /// The result of [`StageRenderer::prepare`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Prepared {
+pub(crate) struct PrepareOutcome {
     /// Whether anything was drawn.
     pub(crate) drawn: bool,
     /// Whether every part was drawn. If not, the stage has to be drawn again at once.
@@ -116,9 +116,9 @@ impl StageRenderer {
         id: u64,
         stage: &Stage,
         size: [u32; 2],
-    ) -> Prepared {
+    ) -> PrepareOutcome {
         if size.contains(&0) {
-            return Prepared { drawn: false, complete: true, to_be_refined: false };
+            return PrepareOutcome { drawn: false, complete: true, to_be_refined: false };
         }
         let size = size.map(|side| side.min(self.max_side));
         for (_, view) in &mut self.views {
@@ -133,12 +133,12 @@ impl StageRenderer {
         if view.targets.size != size {
             view.targets = self.targets(device, size);
             view.coarse = None;
-            view.shown = Shown::Nothing;
+            view.shown = PictureState::Nothing;
             view.complete = false;
         }
         let small = self.coarse_size(size);
         self.scratch.build(stage, size, small.unwrap_or(size), self.quality);
-        if view.shown != Shown::Nothing {
+        if view.shown != PictureState::Nothing {
             self.pipelines.make_next();
         }
         let changed = !view.complete || view.drawn != self.scratch;
@@ -148,16 +148,16 @@ impl StageRenderer {
                 if !fits {
                     view.coarse = Some(self.targets(device, small));
                 }
-                Some(Shown::Coarse)
+                Some(PictureState::Coarse)
             }
-            (true, None) => Some(Shown::Fine),
-            (false, _) if view.shown == Shown::Coarse => Some(Shown::Fine),
+            (true, None) => Some(PictureState::Fine),
+            (false, _) if view.shown == PictureState::Coarse => Some(PictureState::Fine),
             (false, _) => None,
         };
         if let Some(shown) = draw {
             std::mem::swap(&mut view.drawn, &mut self.scratch);
             view.shown = shown;
-            if shown == Shown::Fine && small.is_some() {
+            if shown == PictureState::Fine && small.is_some() {
                 // The next stage is compared with the smaller frame, so that one is kept.
                 self.scratch.build(stage, size, size, self.quality);
                 std::mem::swap(&mut view.drawn, &mut self.scratch);
@@ -169,10 +169,10 @@ impl StageRenderer {
                 view.complete = self.encode(encoder, &view);
             }
         }
-        let prepared = Prepared {
+        let prepared = PrepareOutcome {
             drawn: draw.is_some(),
             complete: view.complete,
-            to_be_refined: view.shown == Shown::Coarse,
+            to_be_refined: view.shown == PictureState::Coarse,
         };
         self.views.push((id, view));
         prepared
@@ -269,7 +269,7 @@ impl StageRenderer {
     /// Copies the finished stage into the page, to the viewport of the pass.
     pub(crate) fn paint(&self, pass: &mut wgpu::RenderPass<'_>, id: u64) {
         if let Some(view) = self.view(id)
-            && view.shown != Shown::Nothing
+            && view.shown != PictureState::Nothing
         {
             pass.set_pipeline(&self.pipelines.composite);
             pass.set_bind_group(0, &view.current().composite, &[]);

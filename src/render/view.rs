@@ -13,7 +13,7 @@ pub(super) struct View {
     /// software.
     pub(super) coarse: Option<Targets>,
     pub(super) drawn: Frame,
-    pub(super) shown: Shown,
+    pub(super) shown: PictureState,
     /// Whether every part of the frame was drawn.
     pub(super) complete: bool,
     pub(super) limbs: GrowingBuffer,
@@ -31,7 +31,7 @@ pub(super) struct View {
 
 /// The picture in the targets of a stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Shown {
+pub(super) enum PictureState {
     Nothing,
     /// The frame last drawn, in the smaller target.
     Coarse,
@@ -43,7 +43,7 @@ impl View {
     /// Returns the targets of the shown picture.
     pub(super) fn current(&self) -> &Targets {
         match &self.coarse {
-            Some(coarse) if self.shown == Shown::Coarse => coarse,
+            Some(coarse) if self.shown == PictureState::Coarse => coarse,
             _ => &self.targets,
         }
     }
@@ -54,7 +54,7 @@ impl View {
             targets,
             coarse: None,
             drawn: Frame::default(),
-            shown: Shown::Nothing,
+            shown: PictureState::Nothing,
             complete: false,
             limbs: GrowingBuffer::new("limbs", vertex),
             skins: GrowingBuffer::new("skins", vertex),

@@ -40,7 +40,7 @@ impl Server {
             let folder = Arc::clone(&self.folder);
             std::thread::spawn(move || {
                 // A browser that disconnects early is not an error.
-                let _ = converse(stream, &folder);
+                let _ = serve_connection(stream, &folder);
             });
         }
         Ok(())
@@ -48,7 +48,7 @@ impl Server {
 }
 
 /// Serves one connection, with any number of requests.
-fn converse(stream: TcpStream, folder: &Path) -> io::Result<()> {
+fn serve_connection(stream: TcpStream, folder: &Path) -> io::Result<()> {
     stream.set_read_timeout(Some(Duration::from_secs(60)))?;
     stream.set_nodelay(true)?;
     let mut writer = stream.try_clone()?;

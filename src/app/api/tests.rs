@@ -13,7 +13,7 @@ fn open(link: &str) -> Segue {
 
 /// Loads a file as the page's `load` does.
 fn load(segue: &mut Segue, name: &str, bytes: &[u8]) -> Result<LoadedClips, ApiError> {
-    let task = segue.load_elsewhere(name, FileBytes::Here(Arc::from(bytes)));
+    let task = segue.load_in_background(name, FileBytes::Here(Arc::from(bytes)));
     while segue.is_reading(task) {
         segue.poll();
     }

@@ -1,6 +1,6 @@
 //! Storage of changed work and of new clips.
 
-use super::{Autosave, Changed, Fingerprint, MAX_SAVE_INTERVAL_MS, Phase, SAVE_DELAY_MS};
+use super::{Autosave, ChangeTimes, Fingerprint, MAX_SAVE_INTERVAL_MS, Phase, SAVE_DELAY_MS};
 use crate::platform::{LargeFileStore, NewClip, Storage, StoredFiles, Work};
 use segue_session::{Origin, SavedEntry, Session, StorageState};
 
@@ -71,7 +71,7 @@ impl Autosave {
             if now != self.seen {
                 self.seen = now;
                 let first_ms = self.changed.map_or(now_ms, |changed| changed.first_ms);
-                self.changed = Some(Changed { first_ms, last_ms: now_ms });
+                self.changed = Some(ChangeTimes { first_ms, last_ms: now_ms });
             }
         }
         let changed = self.changed?;

@@ -41,7 +41,7 @@ pub(crate) const WORKS_BETWEEN_FRAMES: bool = false;
 
 /// Whether all files are read in the background. A window reads small files at once, and only
 /// large ones on threads.
-pub(crate) const READS_ELSEWHERE: bool = false;
+pub(crate) const READS_IN_BACKGROUND: bool = false;
 
 /// Does nothing: the frames of a window are regular, so that work can wait for the next one.
 pub(crate) fn between_frames(_work: impl FnMut() -> bool + 'static) {}

@@ -206,7 +206,7 @@ async fn bundled(address: &str, call: &Call, inbox: &Inbox) -> Result<Arc<[u8]>,
 }
 
 /// The kind of file that is expected at an address.
-struct Expected {
+struct ExpectedFile {
     /// The name of the kind, with its article.
     what: &'static str,
     /// The greatest size that is read, bytes.
@@ -215,13 +215,13 @@ struct Expected {
     advice: &'static str,
 }
 
-const MOTION: Expected = Expected {
+const MOTION: ExpectedFile = ExpectedFile {
     what: "a motion file",
     max_bytes: MAX_FILE_BYTES,
     advice: "Download the file and drop it here.",
 };
 
-const LESSON: Expected = Expected {
+const LESSON: ExpectedFile = ExpectedFile {
     what: "a Markdown file",
     max_bytes: MAX_BYTES as u64,
     advice: "Put the lesson on a server that does, such as GitHub.",
@@ -240,7 +240,7 @@ async fn request(address: &str, mode: RequestMode, call: &Call) -> Result<Respon
 /// Fetches a file of another server. Returns its data, or a notice.
 async fn get(
     address: &str,
-    expected: &Expected,
+    expected: &ExpectedFile,
     call: &Call,
     inbox: &Inbox,
 ) -> Result<Pieces, Message> {
@@ -392,7 +392,7 @@ async fn read(
 
 /// Returns the notice about a request that the browser refused without a reason. A second request,
 /// whose answer is not read, tells an unreachable server from one that refuses other pages (CORS).
-async fn refusal(address: &str, expected: &Expected) -> Message {
+async fn refusal(address: &str, expected: &ExpectedFile) -> Message {
     let host = host_of(address).to_owned();
     let Some(window) = window() else {
         return Message::default();

@@ -18,10 +18,10 @@ pub(crate) use folders::watch_folders;
 pub(crate) use frame_pacer::FramePacer;
 pub(crate) use gamepad::gamepad;
 pub(crate) use page::{
-    READS_ELSEWHERE, WORKS_BETWEEN_FRAMES, between_frames, confirm_leaving_while, full_link,
+    READS_IN_BACKGROUND, WORKS_BETWEEN_FRAMES, between_frames, confirm_leaving_while, full_link,
     is_framed, languages, listen, location_query, next_frame, next_turn, now_ms, open_page,
-    prefers_reduced_motion, replace_query, set_page_language, sleep, wanted_backend, watch_hiding,
-    watch_navigation,
+    prefers_reduced_motion, replace_query, requested_backend, set_page_language, sleep,
+    watch_hiding, watch_navigation,
 };
 pub(crate) use reader::{LargeFile, Reader, set_worker_factory, update_memory, wasm_memory_bytes};
 pub(crate) use snapshot::{Area, area_of, inline_picture, snapshot};

@@ -60,7 +60,7 @@ pub(crate) fn set_page_language(tag: &str) {
 }
 
 /// Returns the graphics backend that the page's address selects.
-pub(crate) fn wanted_backend() -> Option<String> {
+pub(crate) fn requested_backend() -> Option<String> {
     backend_of(&search())
 }
 
@@ -250,7 +250,7 @@ pub(crate) const WORKS_BETWEEN_FRAMES: bool = true;
 
 /// Whether all files are read in the background. The page's WebAssembly has no code to read files;
 /// the worker's has.
-pub(crate) const READS_ELSEWHERE: bool = true;
+pub(crate) const READS_IN_BACKGROUND: bool = true;
 
 /// Calls `work` repeatedly between the browser's frames until it returns `false`, even while the
 /// page draws no frames.

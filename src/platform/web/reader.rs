@@ -116,13 +116,13 @@ struct State {
     inbox: Inbox,
     worker: Option<Worker>,
     waiting: VecDeque<(ReadTask, FileBytes)>,
-    current: Option<Current>,
+    current: Option<CurrentTask>,
     /// The memory that is left for reports, bytes.
     room: u64,
 }
 
 /// The task that the worker is at.
-struct Current {
+struct CurrentTask {
     task: u64,
     size: u64,
     /// The report so far; `None` before its head has arrived.
@@ -267,7 +267,7 @@ fn start_next(state: &Rc<RefCell<State>>) {
         let Some((task, bytes)) = state.waiting.pop_front() else {
             return;
         };
-        state.current = Some(Current { task: task.id, size: bytes.len(), unpacker: None });
+        state.current = Some(CurrentTask { task: task.id, size: bytes.len(), unpacker: None });
         (task, bytes)
     };
     if let Err(error) = post(state, &task, &bytes) {

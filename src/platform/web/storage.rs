@@ -208,7 +208,7 @@ impl Storage {
                 Err(failure) => Err(failure),
             };
             if let Err(failure) = put {
-                inbox.push(Incoming::Failed { reason: failure.of_work() });
+                inbox.push(Incoming::Failed { reason: failure.work_notice() });
             }
         });
     }
@@ -292,7 +292,7 @@ impl Storage {
             if let Some(work) = work
                 && let Err(failure) = self.write(&database, &work).await
             {
-                self.inbox.push(Incoming::Failed { reason: failure.of_work() });
+                self.inbox.push(Incoming::Failed { reason: failure.work_notice() });
             }
         }
     }
@@ -435,7 +435,7 @@ impl Storage {
 
 impl Failure {
     /// Returns the notice about work that was not written as a whole.
-    fn of_work(&self) -> Message {
+    fn work_notice(&self) -> Message {
         match self {
             Self::Full => {
                 "This browser's storage is full: the library and the parameters are not stored. Remove clips that you do not need."
