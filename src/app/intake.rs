@@ -221,3 +221,26 @@ impl Segue {
         self.dispatch(Command::Set(vec![(Key::Src, rest.into())]));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::platform::{Inbox, LargeFileStore};
+    use segue_text::Table;
+    use std::sync::Arc;
+
+    #[test]
+    fn notice_of_a_lost_file_is_translated_with_its_reason() {
+        let mut segue = Segue::new(Inbox::default(), None, "lab=view&play=off".to_owned());
+        while segue.poll() || segue.is_busy() {}
+        segue.begin_reading("walk.bvh", LargeFile::new(Arc::from(&b"HIERARCHY"[..])));
+        segue.large_files = LargeFileStore::default();
+        segue.poll();
+        let notice = segue.session.notices().list().last().expect("the file is lost");
+        let table = Table::new([
+            ("{name} could not be read: {reason}.", "無法讀取 {name}：{reason}。"),
+            ("it is no longer available: drop it again", "請再拖入一次"),
+        ]);
+        assert_eq!(table.write(&notice.text), "無法讀取 walk.bvh：請再拖入一次。");
+    }
+}
