@@ -60,8 +60,9 @@
 //!
 //! # What it does not do
 //!
-//! It makes no meshes: limbs are rounded cones. It computes neither light nor shadows: a [`Figure`]
-//! only has the strength of its shadow on the ground.
+//! It generates no meshes: limbs are rounded cones, and the meshes of skins come from
+//! [`segue_motion::skin`]. It computes neither light nor shadows: a [`Figure`] only has the strength
+//! of its shadow on the ground.
 
 mod annotations;
 mod body;
