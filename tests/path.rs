@@ -11,9 +11,9 @@ use segue_motion::clip::{Clip, ContactOptions, Contacts, Motion};
 use segue_motion::math::{Planar, quat};
 use segue_motion::metrics::MotionTrace;
 use segue_motion::path::{
-    ArcLengthPath, Carried, CarryOptions, FitOptions, FittedPath, GroundSpline, MotionOptions,
-    Offset, Orientation, PathEdit, PathEditError, PathEditor, Pins, SplineEnds, Timing, carry,
-    hard_turns,
+    ArcLengthPath, CarriedMotion, CarryOptions, FitOptions, FittedPath, GroundSpline,
+    MotionOptions, Offset, Orientation, PathEdit, PathEditError, PathEditor, Pins, SplineEnds,
+    Timing, carry, hard_turns,
 };
 use segue_motion::skeleton::Roles;
 use segue_motion::synth::{Action, Params, presets, synthesize};
@@ -231,7 +231,7 @@ fn timing_keeps_speed_or_duration() {
         let options = CarryOptions { timing, ..CarryOptions::default() };
         carry(&path, &edited, &options).unwrap()
     };
-    let whole = |out: &Carried| (out.taken_m().end - edited.length_m()).abs() < 1e-6;
+    let whole = |out: &CarriedMotion| (out.taken_m().end - edited.length_m()).abs() < 1e-6;
     let (speed, duration) = (with(Timing::Speed), with(Timing::Duration));
     assert!(whole(&speed) && whole(&duration));
     assert_eq!(duration.clip.frames(), path.source().clip().frames());

@@ -9,7 +9,7 @@ use segue_formats::{ImportOptions, import};
 use segue_motion::clip::{
     Clip, ContactOptions, Contacts, character_frames, ground_speed, mirror, retarget,
 };
-use segue_motion::skeleton::{Found, Joint, Role, Roles, Side, Skeleton};
+use segue_motion::skeleton::{Joint, Role, RoleSource, Roles, Side, Skeleton};
 
 fn clips(names: &[&str]) -> Vec<(Clip, Roles)> {
     let Some(data) = shared_data() else {
@@ -49,7 +49,7 @@ fn roles_by_name_and_by_shape_agree() {
         let by_shape = Roles::detect(&Skeleton::new(nameless.collect()).unwrap());
         for role in Role::ALL {
             assert_eq!(roles.get(role), by_shape.get(role), "{}: {role:?}", clip.name());
-            assert!([None, Some(Found::ByName)].contains(&roles.found(role)));
+            assert!([None, Some(RoleSource::ByName)].contains(&roles.source(role)));
         }
     }
 }

@@ -5,7 +5,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use segue_formats::bvh::{WriteOptions, read, write};
-use segue_formats::{ImportOptions, Imported};
+use segue_formats::{ImportOptions, ImportedFile};
 
 fuzz_target!(|bytes: &[u8]| {
     let found = read("fuzz.bvh", bytes, &ImportOptions::default());
@@ -42,7 +42,7 @@ fn slowed(bytes: &[u8]) -> Option<Vec<u8>> {
     })
 }
 
-fn survives(found: &Imported, bytes: usize) {
+fn survives(found: &ImportedFile, bytes: usize) {
     for imported in &found.clips {
         let clip = &imported.clip;
         let (frames, joints) = (clip.frames(), clip.skeleton().len());

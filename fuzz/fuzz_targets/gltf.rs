@@ -6,7 +6,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use segue_formats::gltf::{GlbOptions, read, write_character_glb, write_glb};
-use segue_formats::{ImportOptions, Imported};
+use segue_formats::{ImportOptions, ImportedFile};
 use segue_motion::clip::Clip;
 use segue_motion::skin::SkinnedMesh;
 use std::sync::Arc;
@@ -23,7 +23,7 @@ fuzz_target!(|bytes: &[u8]| {
     }
 });
 
-fn survives(found: &Imported, most: usize) {
+fn survives(found: &ImportedFile, most: usize) {
     assert!(!found.clips.is_empty());
     let numbers: usize = found
         .clips

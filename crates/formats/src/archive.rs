@@ -52,7 +52,7 @@ pub struct ArchivedFile {
 
 /// The content of an archive.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Unpacked {
+pub struct UnpackedArchive {
     /// The motion files, sorted by path; at least one.
     pub files: Vec<ArchivedFile>,
     /// The files that were left out, and why: one per kind.
@@ -75,8 +75,12 @@ pub(crate) fn is_zip(bytes: &[u8]) -> bool {
 /// # Errors
 /// [`ImportError`] when this is not a zip archive, when it is truncated, when its files unpack to
 /// more than the limit, and when no motion file is unpacked.
-pub fn unpack(name: &str, bytes: &[u8], limits: &ArchiveLimits) -> Result<Unpacked, ImportError> {
-    let mut unpacking = Unpacking {
+pub fn unpack(
+    name: &str,
+    bytes: &[u8],
+    limits: &ArchiveLimits,
+) -> Result<UnpackedArchive, ImportError> {
+    let mut unpacking = Unpacker {
         name,
         left: limits.max_bytes,
         limits: *limits,
@@ -85,7 +89,7 @@ pub fn unpack(name: &str, bytes: &[u8], limits: &ArchiveLimits) -> Result<Unpack
     };
     let archive = open(bytes).map_err(|why| ImportError::whole_file(name, why, "a zip archive"))?;
     unpacking.archive(&archive, "", 0)?;
-    let Unpacking { mut files, tally, .. } = unpacking;
+    let Unpacker { mut files, tally, .. } = unpacking;
     let warnings = tally.into_warnings(b"");
     if files.is_empty() {
         let unreadable = warnings
@@ -104,7 +108,7 @@ pub fn unpack(name: &str, bytes: &[u8], limits: &ArchiveLimits) -> Result<Unpack
     // The sort is stable: of two files with one path, the one that comes first in the archive stays
     // first.
     files.sort_by(|a, b| a.path.cmp(&b.path));
-    Ok(Unpacked { files, warnings })
+    Ok(UnpackedArchive { files, warnings })
 }
 
 fn open(bytes: &[u8]) -> Result<ZipSliceArchive<&[u8]>, Message> {
@@ -122,7 +126,7 @@ fn open(bytes: &[u8]) -> Result<ZipSliceArchive<&[u8]>, Message> {
     if is_inner { Err(cut_off()) } else { Ok(archive) }
 }
 
-struct Unpacking<'a> {
+struct Unpacker<'a> {
     name: &'a str,
     /// The number of bytes that may still be unpacked.
     left: usize,
@@ -150,7 +154,7 @@ impl From<io::Error> for UnpackFailure {
     }
 }
 
-impl Unpacking<'_> {
+impl Unpacker<'_> {
     fn archive(
         &mut self,
         archive: &ZipSliceArchive<&[u8]>,

@@ -1,7 +1,7 @@
 //! Assembly of clips from the motions of a file in its own units.
 
 use super::error::Fault;
-use super::measure::{UpKnown, measure};
+use super::measure::{UpSource, measure};
 use super::raw::RawMotion;
 use super::t_pose::first_frame_is_t_pose;
 use super::warning::{Tally, WarningKind};
@@ -46,7 +46,7 @@ pub(super) fn assemble(
         if measure.unit_unknown {
             tally.add(WarningKind::UnknownUnit, None);
         }
-        if measure.up_known == UpKnown::Uncertain {
+        if measure.up_source == UpSource::Uncertain {
             tally.add(WarningKind::UncertainUp { up: measure.provenance.up }, None);
         }
         let mendable = raw.warn_of_unlikely(&measure, options, tally);

@@ -87,7 +87,7 @@ mod warning;
 
 pub use error::ImportError;
 pub use gzip::unpack_gzip;
-pub use measure::{CMU_METRES_PER_UNIT, Measure, UpKnown};
+pub use measure::{CMU_METRES_PER_UNIT, Measure, UpSource};
 pub use unlikely::Mendable;
 pub use warning::{ImportWarning, WarningKind};
 
@@ -156,7 +156,7 @@ impl ImportedClip {
 
 /// The content of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Imported {
+pub struct ImportedFile {
     /// One clip for each character.
     pub clips: Vec<ImportedClip>,
     /// The oddities of the file, one per kind.
@@ -169,7 +169,11 @@ pub struct Imported {
 ///
 /// # Errors
 /// [`ImportError`] when the file is too large, of unknown format, or broken.
-pub fn import(name: &str, bytes: &[u8], options: &ImportOptions) -> Result<Imported, ImportError> {
+pub fn import(
+    name: &str,
+    bytes: &[u8],
+    options: &ImportOptions,
+) -> Result<ImportedFile, ImportError> {
     Ok(import_with_progress(name, bytes, options, &mut |_| true)?.unwrap_or_default())
 }
 
@@ -183,7 +187,7 @@ pub fn import_with_progress(
     bytes: &[u8],
     options: &ImportOptions,
     progress: &mut dyn FnMut(usize) -> bool,
-) -> Result<Option<Imported>, ImportError> {
+) -> Result<Option<ImportedFile>, ImportError> {
     check_size(name, bytes, options)?;
     match kind_of(name, bytes) {
         FileKind::Bvh => bvh::read_with_progress(name, bytes, options, progress),

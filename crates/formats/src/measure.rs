@@ -42,16 +42,16 @@ pub struct Measure {
     /// Whether the height fits no unit, so that centimetres were assumed.
     pub unit_unknown: bool,
     /// The source of the up axis.
-    pub up_known: UpKnown,
+    pub up_source: UpSource,
 }
 
 /// The source of an up axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum UpKnown {
+pub enum UpSource {
     /// It was given.
     Given,
     /// It was inferred from the stance.
-    Found,
+    Inferred,
     /// The evidence is weak, as for a body that lies in every frame.
     Uncertain,
 }
@@ -126,11 +126,11 @@ pub(super) fn measure(
     let frames =
         skeleton.as_ref().map(|skeleton| sampled_frames(raw, skeleton)).unwrap_or_default();
     let by_shape = || up_axis(&raw.rest_points(), &rest, &frames);
-    let named = skeleton.as_ref().and_then(Named::of);
-    let (found_up, up_known) = match (up, &named) {
-        (Some(up), _) => (up, UpKnown::Given),
+    let named = skeleton.as_ref().and_then(NamedBody::of);
+    let (found_up, up_source) = match (up, &named) {
+        (Some(up), _) => (up, UpSource::Given),
         (None, Some(named)) => named.up_axis(raw, by_shape),
-        (None, None) => (by_shape(), UpKnown::Found),
+        (None, None) => (by_shape(), UpSource::Inferred),
     };
     let height = match &named {
         Some(named) => named.height,
@@ -147,7 +147,7 @@ pub(super) fn measure(
         height_units: height,
         unit_detected: given.is_none(),
         unit_unknown: given.is_none() && detected.is_none(),
-        up_known,
+        up_source,
     }
 }
 
@@ -177,7 +177,7 @@ fn extent_along(axis: usize, raw: &RawMotion, rest: &Body, frames: &[Body]) -> f
 }
 
 /// A body whose legs are known by their joints' names.
-struct Named<'a> {
+struct NamedBody<'a> {
     skeleton: &'a Skeleton,
     roles: Roles,
     /// File units.
@@ -206,7 +206,7 @@ const MIN_EVIDENCE: f32 = 0.6;
 /// The tolerance of a floor's level, as a share of the body's height.
 const FLOOR_SHARE: f32 = 0.15;
 
-impl<'a> Named<'a> {
+impl<'a> NamedBody<'a> {
     fn of(skeleton: &'a Skeleton) -> Option<Self> {
         let roles = Roles::by_name(skeleton);
         roles.leg_length(skeleton)?;
@@ -215,12 +215,12 @@ impl<'a> Named<'a> {
     }
 
     /// Returns the up axis, and how certain it is.
-    fn up_axis(&self, raw: &RawMotion, by_shape: impl FnOnce() -> UpAxis) -> (UpAxis, UpKnown) {
+    fn up_axis(&self, raw: &RawMotion, by_shape: impl FnOnce() -> UpAxis) -> (UpAxis, UpSource) {
         let [y, z] = self.evidence(raw).map(Evidence::sum);
         if (y - z).abs() < MIN_EVIDENCE {
-            return (by_shape(), UpKnown::Uncertain);
+            return (by_shape(), UpSource::Uncertain);
         }
-        (if z > y { UpAxis::Z } else { UpAxis::Y }, UpKnown::Found)
+        (if z > y { UpAxis::Z } else { UpAxis::Y }, UpSource::Inferred)
     }
 
     /// Returns the evidence for Y and for Z.
@@ -459,7 +459,7 @@ mod tests {
     fn measure_with_given_values_keeps_them() {
         let found = measure(&person(|v| v, STANDING), Some(0.5), Some(UpAxis::Z));
         assert_eq!(found.provenance, Provenance { metres_per_unit: 0.5, up: UpAxis::Z });
-        assert!(!found.unit_detected && found.up_known == UpKnown::Given);
+        assert!(!found.unit_detected && found.up_source == UpSource::Given);
         assert!(measure(&person(|v| v, STANDING), Some(f64::NAN), None).unit_detected);
     }
 
@@ -501,7 +501,7 @@ mod tests {
         // The rest pose stands along Y, and the motion is in a world where Z is up.
         let turned = walks.map(|(at, turn)| (quarter * at, quarter * turn));
         let found = measure(&named(turned), None, None);
-        assert_eq!((found.provenance.up, found.up_known), (UpAxis::Z, UpKnown::Found));
+        assert_eq!((found.provenance.up, found.up_source), (UpAxis::Z, UpSource::Inferred));
         // A runner whose trajectory goes along both axes of the ground.
         let runs = turned.map(|(at, turn)| (at + Vec3::new(0.0, 9.0 * at.x, 0.0), turn));
         assert_eq!(measure(&named(runs), None, None).provenance.up, UpAxis::Z);
@@ -511,9 +511,9 @@ mod tests {
     fn measure_of_a_lying_body_is_uncertain() {
         let lies = Quat::from_rotation_x(std::f32::consts::FRAC_PI_2);
         let found = measure(&named([(Vec3::new(0.0, 0.1, 0.0), lies); 3]), None, None);
-        assert_eq!((found.provenance.up, found.up_known), (UpAxis::Y, UpKnown::Uncertain));
+        assert_eq!((found.provenance.up, found.up_source), (UpAxis::Y, UpSource::Uncertain));
         let given = measure(&named([(Vec3::new(0.0, 0.1, 0.0), lies); 3]), None, Some(UpAxis::Z));
-        assert_eq!((given.provenance.up, given.up_known), (UpAxis::Z, UpKnown::Given));
+        assert_eq!((given.provenance.up, given.up_source), (UpAxis::Z, UpSource::Given));
     }
 
     #[test]

@@ -4,7 +4,7 @@ mod common;
 
 use common::{bvh_files, shared_data};
 use glam::{Quat, Vec3};
-use segue_formats::{ImportOptions, Imported, import};
+use segue_formats::{ImportOptions, ImportedFile, import};
 use segue_motion::clip::{Clip, UpAxis};
 use segue_motion::skeleton::Channel;
 
@@ -83,7 +83,7 @@ fn hard_files_are_read_as_expected() {
             assert!(error.hint.is_some());
             continue;
         }
-        let Imported { clips, warnings } = result.unwrap_or_else(|error| panic!("{error}"));
+        let ImportedFile { clips, warnings } = result.unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(clips.len(), 1, "{name}");
         assert!(!clips[0].t_pose_first_row, "{name}");
         let clip = &clips[0].clip;

@@ -1,6 +1,6 @@
 //! Marks on a figure: bones, axes, contacts, the chosen joint and its trail.
 
-use crate::context::{DrawContext, Shown};
+use crate::context::{DrawContext, PosedResult};
 use crate::{Body, Color, Colors, Layer, Lens, Pane, pose_at, with_alpha};
 use glam::Vec3;
 use segue_motion::clip::Motion;
@@ -14,7 +14,11 @@ const SLIDE_MPS: f32 = 0.08;
 const MARK_RADIUS: f32 = 0.011;
 
 /// Marks the chosen joint of a result. Called after the pane has its camera.
-pub(crate) fn add_joint_mark(shown: &Shown<'_>, context: &mut DrawContext<'_>, pane: &mut Pane) {
+pub(crate) fn add_joint_mark(
+    shown: &PosedResult<'_>,
+    context: &mut DrawContext<'_>,
+    pane: &mut Pane,
+) {
     let motion = &shown.outcome.motion;
     let Some(joint) = joint_of(motion, context.params.text(Key::Joint)) else {
         return;
@@ -27,7 +31,7 @@ pub(crate) fn add_joint_mark(shown: &Shown<'_>, context: &mut DrawContext<'_>, p
 
 /// Adds the trajectory of a joint of the figure around the present.
 pub(crate) fn add_joint_trail(
-    shown: &Shown<'_>,
+    shown: &PosedResult<'_>,
     body: &Body,
     joint: usize,
     color: Color,
@@ -108,7 +112,7 @@ pub(crate) fn add_axes(world: &WorldPose, colors: &Colors, pane: &mut Pane) {
 }
 
 /// Adds a ring under each planted foot of the figure, in the colour of an error where it slides.
-pub(crate) fn add_contacts(shown: &Shown<'_>, body: &Body, colors: &Colors, pane: &mut Pane) {
+pub(crate) fn add_contacts(shown: &PosedResult<'_>, body: &Body, colors: &Colors, pane: &mut Pane) {
     let (motion, now) = (&shown.outcome.motion, shown.now);
     let frame = segue_session::frame_at(motion, now);
     let dt = motion.clip().dt_secs();

@@ -21,7 +21,7 @@ pub(crate) struct DrawContext<'a> {
 }
 
 /// A result in its current pose.
-pub(crate) struct Shown<'a> {
+pub(crate) struct PosedResult<'a> {
     pub(crate) outcome: &'a Outcome,
     /// The current time in its motion, seconds.
     pub(crate) now: f64,
@@ -31,7 +31,7 @@ pub(crate) struct Shown<'a> {
     pub(crate) world: WorldPose,
 }
 
-impl<'a> Shown<'a> {
+impl<'a> PosedResult<'a> {
     /// Poses a result; `None` where its motion has no pose.
     pub(crate) fn new(shown: segue_session::PaneContent<'a>) -> Option<Self> {
         let segue_session::PaneContent { outcome, secs: now, place } = shown;

@@ -3,7 +3,7 @@
 mod cameras;
 
 use crate::body_cache::BodyCache;
-use crate::context::{DrawContext, Shown};
+use crate::context::{DrawContext, PosedResult};
 use crate::framing::{figure_height, resting_place, resting_point};
 use crate::{
     Camera, CameraRig, Colors, Highlights, Look, Pane, Skinning, Stage, Viewport, annotations,
@@ -84,7 +84,7 @@ impl Director {
             };
             let shown = source.shown_at(now);
             let (shown, followed, rest) = if let Some(shown) = shown {
-                let Some(shown) = Shown::new(shown) else {
+                let Some(shown) = PosedResult::new(shown) else {
                     continue;
                 };
                 add_contents(index, &shown, &mut context, pane);
@@ -141,7 +141,12 @@ impl Director {
 }
 
 /// Adds everything that a pane shows of a result and around it.
-fn add_contents(index: usize, shown: &Shown<'_>, context: &mut DrawContext<'_>, pane: &mut Pane) {
+fn add_contents(
+    index: usize,
+    shown: &PosedResult<'_>,
+    context: &mut DrawContext<'_>,
+    pane: &mut Pane,
+) {
     let Highlights { pair, jump, .. } = *context.highlights;
     let pair = pair.zip(context.session.distance_map());
     let jump = jump.zip(context.session.graph_built());

@@ -1,6 +1,6 @@
 //! The trajectory of a result over the ground.
 
-use crate::context::Shown;
+use crate::context::PosedResult;
 use crate::{Color, Colors, Layer, Pane};
 use segue_session::Outcome;
 
@@ -24,8 +24,8 @@ pub(crate) fn color_at(outcome: &Outcome, secs: f64, colors: &Colors) -> Color {
 }
 
 /// Adds the trajectory of a result, in the colours of the clips that play.
-pub(crate) fn add_ground_path(shown: &Shown<'_>, colors: &Colors, pane: &mut Pane) {
-    let Shown { outcome, now, place, .. } = shown;
+pub(crate) fn add_ground_path(shown: &PosedResult<'_>, colors: &Colors, pane: &mut Pane) {
+    let PosedResult { outcome, now, place, .. } = shown;
     let now = *now;
     let frames = outcome.motion.ground_frames();
     let fps = outcome.motion.clip().fps();

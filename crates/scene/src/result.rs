@@ -1,7 +1,7 @@
 //! A result: its figure, ghosts of earlier and later frames, and annotations.
 
 use crate::annotations::{add_axes, add_bones, add_contacts, add_joint_trail};
-use crate::context::{DrawContext, Shown};
+use crate::context::{DrawContext, PosedResult};
 use crate::ground_path::{add_ground_path, color_at};
 use crate::posing::twisted;
 use crate::{Pane, labs, sources, with_alpha};
@@ -12,8 +12,8 @@ use segue_session::{Key, joint_of};
 const GLASS_ALPHA: f32 = 0.5;
 
 /// Adds a result in its current pose, with everything that the parameters show of it.
-pub(crate) fn add_result(shown: &Shown<'_>, context: &mut DrawContext<'_>, pane: &mut Pane) {
-    let Shown { outcome, now, .. } = shown;
+pub(crate) fn add_result(shown: &PosedResult<'_>, context: &mut DrawContext<'_>, pane: &mut Pane) {
+    let PosedResult { outcome, now, .. } = shown;
     let (params, look, colors) = (context.params, context.look, context.colors);
     let motion = &outcome.motion;
     let body = context.bodies.body(motion);
@@ -57,8 +57,8 @@ pub(crate) fn add_result(shown: &Shown<'_>, context: &mut DrawContext<'_>, pane:
 }
 
 /// Adds the ghosts of the result at some earlier and later times.
-fn add_onion_skin(shown: &Shown<'_>, context: &mut DrawContext<'_>, pane: &mut Pane) {
-    let Shown { outcome, now, place, .. } = shown;
+fn add_onion_skin(shown: &PosedResult<'_>, context: &mut DrawContext<'_>, pane: &mut Pane) {
+    let PosedResult { outcome, now, place, .. } = shown;
     let (params, colors) = (context.params, context.colors);
     let count = params.number(Key::Ghosts) as i32;
     for step in (-count..=count).filter(|&step| step != 0) {

@@ -1,13 +1,13 @@
 //! The source clips of a result, as ghosts.
 
-use crate::context::{DrawContext, GHOST_FADE_SECS, Shown};
+use crate::context::{DrawContext, GHOST_FADE_SECS, PosedResult};
 use crate::{Pane, labs, with_alpha};
 use segue_session::Slot;
 
 /// Adds both sources around the transition, as far as they differ from the result: A appears as its
 /// weight falls, B vanishes as its weight rises.
-pub(crate) fn add_sources(shown: &Shown<'_>, context: &mut DrawContext<'_>, pane: &mut Pane) {
-    let Shown { outcome, now, place, .. } = shown;
+pub(crate) fn add_sources(shown: &PosedResult<'_>, context: &mut DrawContext<'_>, pane: &mut Pane) {
+    let PosedResult { outcome, now, place, .. } = shown;
     let ghost_alpha = context.colors.ghost_alpha;
     if let Some(walk) = outcome.walk().filter(|walk| !walk.is_jump) {
         labs::graph::add_walk_sources(shown, walk, context, pane);

@@ -92,20 +92,20 @@ impl<'a> TrialSession<'a> {
     }
 
     /// Opens a link in the session, or in a new one if the last was lost in a panic.
-    fn open(&mut self, link: impl Fn(&[String]) -> String) -> Opened {
+    fn open(&mut self, link: impl Fn(&[String]) -> String) -> OpenedLink {
         if self.session.is_none() {
             match guarded(|| self.motions.open(&self.takes)) {
                 Ok(Ok(session)) => self.session = Some(session),
                 Ok(Err(sentence)) => {
-                    return Opened::without(String::new(), Err(TrialResult::Refused(sentence)));
+                    return OpenedLink::without(String::new(), Err(TrialResult::Refused(sentence)));
                 }
                 Err(place) => {
-                    return Opened::without(String::new(), Err(TrialResult::Panicked(place)));
+                    return OpenedLink::without(String::new(), Err(TrialResult::Panicked(place)));
                 }
             }
         }
         let Some((mut session, ids)) = self.session.take() else {
-            return Opened::without(String::new(), Err(TrialResult::Silent));
+            return OpenedLink::without(String::new(), Err(TrialResult::Silent));
         };
         let link = link(&ids);
         let start = Instant::now();
@@ -118,7 +118,7 @@ impl<'a> TrialSession<'a> {
             }
             Err(place) => Err(TrialResult::Panicked(place)),
         };
-        Opened { link, secs, made }
+        OpenedLink { link, secs, made }
     }
 
     fn run(mut self) -> Vec<Trial> {
@@ -232,7 +232,7 @@ impl<'a> TrialSession<'a> {
         method: String,
         locked: bool,
         bound: bool,
-        opened: Opened,
+        opened: OpenedLink,
         numbers: impl FnOnce(&Outcome) -> Numbers,
     ) -> Trial {
         Trial {
@@ -295,13 +295,13 @@ impl<'a> TrialSession<'a> {
 }
 
 /// A link that was opened, with the time that it took, seconds.
-struct Opened {
+struct OpenedLink {
     link: String,
     secs: f64,
     made: Result<Arc<Outcome>, TrialResult>,
 }
 
-impl Opened {
+impl OpenedLink {
     fn without(link: String, made: Result<Arc<Outcome>, TrialResult>) -> Self {
         Self { link, secs: 0.0, made }
     }

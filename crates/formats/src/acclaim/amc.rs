@@ -34,7 +34,7 @@ impl From<Fault> for Stop {
 
 /// The use of a joint's values in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Use {
+enum JointUse {
     /// The file has not named the joint so far.
     Unnamed,
     /// The values are read.
@@ -60,7 +60,7 @@ struct Frames<'r, 'a> {
     /// The values of all joints. Values of the frame before are kept, so that a missing one is
     /// held.
     row: Vec<f64>,
-    uses: Vec<Use>,
+    uses: Vec<JointUse>,
     /// The name of each joint as last spelled in the file, which saves a lookup.
     spelled: Vec<&'a [u8]>,
     /// The joint that followed each joint in the frame before.
@@ -99,7 +99,7 @@ pub(super) fn frames(
         skeleton,
         tally,
         row: vec![0.0; skeleton.width],
-        uses: vec![Use::Unnamed; joints],
+        uses: vec![JointUse::Unnamed; joints],
         spelled: vec![b"".as_slice(); joints],
         next: vec![0; joints],
         named_in: vec![0; joints],
@@ -259,10 +259,10 @@ impl Frames<'_, '_> {
     /// Reads the values of a bone whose name has been read. Returns `false` if the file ends first.
     #[inline]
     fn bone(&mut self, joint: usize, at: usize) -> Result<bool, Fault> {
-        let usage = self.uses.get(joint).copied().unwrap_or(Use::Nothing);
+        let usage = self.uses.get(joint).copied().unwrap_or(JointUse::Nothing);
         let expected = self.skeleton.values(joint);
         let first = self.skeleton.motors.get(joint).map_or(0, |motor| motor.first_value);
-        let slots = (usage != Use::Nothing).then_some(first..first + expected);
+        let slots = (usage != JointUse::Nothing).then_some(first..first + expected);
         let mut run = self.numbers(slots.clone());
         if run.count != expected || run.cut {
             self.give_back_frame_number(&run);
@@ -274,7 +274,7 @@ impl Frames<'_, '_> {
             run.cut = more.cut;
         }
         self.numbers += run.count;
-        if run.count != expected || run.cut || usage != Use::Values {
+        if run.count != expected || run.cut || usage != JointUse::Values {
             return self.odd_bone(joint, at, &run);
         }
         self.name_in_frame(joint);
@@ -294,19 +294,21 @@ impl Frames<'_, '_> {
     /// Handles a bone that is named for the first time, or has an unexpected number of values.
     #[cold]
     fn odd_bone(&mut self, joint: usize, at: usize, run: &Run) -> Result<bool, Fault> {
-        let usage = self.uses.get(joint).copied().unwrap_or(Use::Nothing);
+        let usage = self.uses.get(joint).copied().unwrap_or(JointUse::Nothing);
         let expected = self.skeleton.values(joint);
         let joint_name =
             || self.skeleton.joints.get(joint).map(|joint| joint.name.clone()).unwrap_or_default();
         let after = skip_blank(self.text, self.at);
-        if run.cut || (run.count < expected && usage != Use::Nothing && after >= self.text.len()) {
+        if run.cut
+            || (run.count < expected && usage != JointUse::Nothing && after >= self.text.len())
+        {
             return Ok(false);
         }
         match usage {
-            Use::Nothing => return Ok(true),
-            Use::Unnamed if run.count == expected => {
+            JointUse::Nothing => return Ok(true),
+            JointUse::Unnamed if run.count == expected => {
                 if let Some(usage) = self.uses.get_mut(joint) {
-                    *usage = Use::Values;
+                    *usage = JointUse::Values;
                 }
                 self.used += 1;
                 self.name_in_frame(joint);
@@ -323,11 +325,11 @@ impl Frames<'_, '_> {
                 msg!("a number for {name}", name = quoted(joint_name().as_bytes())),
             ));
         }
-        if usage == Use::Unnamed {
+        if usage == JointUse::Unnamed {
             let name = joint_name();
             self.tally.add(WarningKind::ValueCount { name, found: run.count, expected }, Some(at));
             if let Some(usage) = self.uses.get_mut(joint) {
-                *usage = Use::Nothing;
+                *usage = JointUse::Nothing;
             }
             let first = self.skeleton.motors.get(joint).map_or(0, |motor| motor.first_value);
             self.row.iter_mut().skip(first).take(expected).for_each(|value| *value = 0.0);
@@ -370,13 +372,13 @@ impl Frames<'_, '_> {
                     Some(value)
                 }
                 _ => match self.odd_number() {
-                    Odd::Value(value) => value,
-                    Odd::Cut => {
+                    OddNumber::Value(value) => value,
+                    OddNumber::Cut => {
                         self.at = text.len();
                         run.cut = true;
                         return run;
                     }
-                    Odd::None => return run,
+                    OddNumber::None => return run,
                 },
             };
             self.values += 1;
@@ -393,7 +395,7 @@ impl Frames<'_, '_> {
 
     /// Reads anything but a plain number.
     #[cold]
-    fn odd_number(&mut self) -> Odd {
+    fn odd_number(&mut self) -> OddNumber {
         let start = self.at;
         let (value, end, glued) = match number(self.text, start) {
             Number::Value { value, end, glued } => (Some(value), end, glued),
@@ -405,14 +407,14 @@ impl Frames<'_, '_> {
                 self.tally.add(WarningKind::NotFinite, Some(start));
                 (None, end, glued)
             }
-            Number::Cut => return Odd::Cut,
-            Number::None => return Odd::None,
+            Number::Cut => return OddNumber::Cut,
+            Number::None => return OddNumber::None,
         };
         if glued {
             self.tally.add(WarningKind::MissingSpaces, Some(end));
         }
         self.at = end;
-        Odd::Value(value)
+        OddNumber::Value(value)
     }
 
     /// Returns the last number before a name to the input: where frames do not end with lines, it
@@ -469,7 +471,7 @@ impl Frames<'_, '_> {
             );
         }
         for (index, (joint, usage)) in self.skeleton.joints.iter().zip(&self.uses).enumerate() {
-            if *usage == Use::Unnamed && self.skeleton.values(index) > 0 {
+            if *usage == JointUse::Unnamed && self.skeleton.values(index) > 0 {
                 let name = joint.name.clone();
                 self.tally.add(WarningKind::RestingBones { name }, None);
             }
@@ -479,7 +481,7 @@ impl Frames<'_, '_> {
 }
 
 /// A value that is not a plain number.
-enum Odd {
+enum OddNumber {
     /// A number; `None` where the last good one is held.
     Value(Option<f64>),
     /// The file ends inside a number.

@@ -8,7 +8,7 @@ use crate::error::{Fault, ImportError};
 use crate::raw::RawMotion;
 use crate::text::decode;
 use crate::warning::{Tally, WarningKind};
-use crate::{ImportOptions, Imported, check_size};
+use crate::{ImportOptions, ImportedFile, check_size};
 use segue_motion::clip::Clip;
 use segue_motion::skeleton::{Role, Roles, WorldPose};
 
@@ -32,7 +32,7 @@ pub fn read_motion(
     bytes: &[u8],
     skeleton: &AcclaimSkeleton,
     options: &ImportOptions,
-) -> Result<Imported, ImportError> {
+) -> Result<ImportedFile, ImportError> {
     // It is never cancelled, and therefore never `None`.
     Ok(read_motion_with_progress(name, bytes, skeleton, options, &mut |_| true)?
         .unwrap_or_default())
@@ -49,7 +49,7 @@ pub fn read_motion_with_progress(
     skeleton: &AcclaimSkeleton,
     options: &ImportOptions,
     progress: &mut dyn FnMut(usize) -> bool,
-) -> Result<Option<Imported>, ImportError> {
+) -> Result<Option<ImportedFile>, ImportError> {
     check_size(name, bytes, options)?;
     let text = decode(bytes);
     let mut tally = Tally::default();
@@ -74,7 +74,7 @@ pub fn read_motion_with_progress(
 pub fn skeleton_clip(
     skeleton: &AcclaimSkeleton,
     options: &ImportOptions,
-) -> Result<Imported, ImportError> {
+) -> Result<ImportedFile, ImportError> {
     let raw = Converter::new(skeleton, 0).finish();
     let mut tally = Tally::default();
     tally.add(WarningKind::NoFrames, None);
@@ -94,7 +94,7 @@ fn finish(
     mut tally: Tally,
     first_row_at: usize,
     text: &[u8],
-) -> Result<Imported, Fault> {
+) -> Result<ImportedFile, Fault> {
     let fps = given_fps(options).unwrap_or(DEFAULT_FPS);
     let clips =
         assemble(name, vec![raw], fps, options, skeleton.unit_of_file, &mut tally, first_row_at)?;
@@ -103,7 +103,7 @@ fn finish(
     }
     let mut warnings = skeleton.warnings.clone();
     warnings.extend(tally.into_warnings(text));
-    Ok(Imported { clips, warnings })
+    Ok(ImportedFile { clips, warnings })
 }
 
 /// Returns the height of the lowest feet of a motion over the ground (y = 0), metres, if it is

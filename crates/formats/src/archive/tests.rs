@@ -25,11 +25,11 @@ fn zip(files: &[(&str, &[u8])]) -> Vec<u8> {
     archive.finish().unwrap()
 }
 
-fn paths(unpacked: &Unpacked) -> Vec<&str> {
+fn paths(unpacked: &UnpackedArchive) -> Vec<&str> {
     unpacked.files.iter().map(|file| file.path.as_str()).collect()
 }
 
-fn sentences(unpacked: &Unpacked) -> Vec<String> {
+fn sentences(unpacked: &UnpackedArchive) -> Vec<String> {
     unpacked.warnings.iter().map(ToString::to_string).collect()
 }
 
@@ -195,7 +195,7 @@ proptest! {
 
 #[test]
 fn unpack_without_memory_is_refused() {
-    let mut unpacking = Unpacking {
+    let mut unpacking = Unpacker {
         name: "all.zip",
         left: 1,
         limits: ArchiveLimits::default(),

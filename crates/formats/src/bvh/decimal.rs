@@ -127,14 +127,14 @@ fn short_number(text: &[u8], start: usize, end: usize) -> Option<Parts> {
 /// The number of decimals that most numbers of a file share. With it, the end of a number follows
 /// from its point, and everything counted from the end is the same for all numbers.
 #[derive(Clone, Copy, Debug)]
-struct Usual {
+struct UsualDecimals {
     decimals: usize,
     point: Point,
     /// Mask of the byte of the point among the last eight.
     at: u64,
 }
 
-impl Usual {
+impl UsualDecimals {
     fn new(decimals: usize) -> Option<Self> {
         Some(Self { decimals, point: *POINTS.get(decimals)?, at: 0xff_u64 << 56 >> (8 * decimals) })
     }
@@ -183,7 +183,7 @@ impl Lines {
     /// to that point, and unchanged after it.
     pub(super) fn line(&mut self, text: &[u8], at: usize, row: &mut [f64]) -> Option<usize> {
         self.divisors.resize(row.len(), 1.0);
-        let usual = Usual::new(self.decimals)?;
+        let usual = UsualDecimals::new(self.decimals)?;
         let mut unusual = (0, self.decimals);
         let mut at = at;
         for (digits, divisor) in row.iter_mut().zip(&mut self.divisors) {
@@ -298,7 +298,7 @@ mod tests {
         ) {
             let all = format!("{before}{text}{after}");
             let (start, end) = (before.len(), before.len() + text.len());
-            let usual = Usual::new(decimals).unwrap();
+            let usual = UsualDecimals::new(decimals).unwrap();
             if let Some((digits, divisor, found)) = usual.number(all.as_bytes(), start) {
                 prop_assert_eq!((found, Some((digits / divisor).to_bits())), (end, slow(&text)));
             }
@@ -313,7 +313,7 @@ mod tests {
         ) {
             let text = format!("{whole}.{decimals}");
             let all = format!("{before}{text}{blank}2.345678901");
-            let found = Usual::new(decimals.len()).unwrap().number(all.as_bytes(), before.len());
+            let found = UsualDecimals::new(decimals.len()).unwrap().number(all.as_bytes(), before.len());
             let expected = slow(&text).map(|value| (value, all.len() - 12));
             prop_assert_eq!(
                 found.map(|(digits, divisor, end)| ((digits / divisor).to_bits(), end)),

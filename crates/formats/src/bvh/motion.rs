@@ -225,12 +225,12 @@ impl Rows<'_, '_> {
                         _ => {
                             self.lexer.at = at;
                             match self.odd_number(*column)? {
-                                Odd::Number(end) => at = end,
-                                Odd::Comment(end) => {
+                                OddNumber::Number(end) => at = end,
+                                OddNumber::Comment(end) => {
                                     at = end;
                                     continue;
                                 }
-                                Odd::Cut => {
+                                OddNumber::Cut => {
                                     self.lexer.at = text.len();
                                     return Ok(End::Cut);
                                 }
@@ -252,9 +252,9 @@ impl Rows<'_, '_> {
 
     /// Reads anything but a plain number.
     #[cold]
-    fn odd_number(&mut self, column: usize) -> Result<Odd, Stop> {
+    fn odd_number(&mut self, column: usize) -> Result<OddNumber, Stop> {
         if self.lexer.at_comment() {
-            return Ok(Odd::Comment(self.lexer.line_end()));
+            return Ok(OddNumber::Comment(self.lexer.line_end()));
         }
         let start = self.lexer.at;
         let (end, glued) = match scan(self.lexer.text, start, self.lexer.commas) {
@@ -273,13 +273,13 @@ impl Rows<'_, '_> {
                 (end, glued)
             }
             Scan::OtherDecimalSign => return Err(self.lexer.other_decimal_sign()),
-            Scan::Cut => return Ok(Odd::Cut),
+            Scan::Cut => return Ok(OddNumber::Cut),
             Scan::Bad => return Err(self.lexer.unexpected("a number").into()),
         };
         if glued {
             self.lexer.tally.add(WarningKind::MissingSpaces, Some(end));
         }
-        Ok(Odd::Number(end))
+        Ok(OddNumber::Number(end))
     }
 
     /// Refuses a file in which more than 1 % of the values are not numbers.
@@ -300,7 +300,7 @@ impl Rows<'_, '_> {
 }
 
 /// The result of reading an odd number.
-enum Odd {
+enum OddNumber {
     /// A number up to this offset.
     Number(usize),
     /// A comment up to this offset.

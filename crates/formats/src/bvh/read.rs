@@ -9,7 +9,7 @@ use crate::assemble::assemble;
 use crate::error::ImportError;
 use crate::text::decode;
 use crate::warning::WarningKind;
-use crate::{ImportOptions, Imported, check_size};
+use crate::{ImportOptions, ImportedFile, check_size};
 
 /// Reads a BVH file: one clip for each ROOT, in metres and Y up.
 ///
@@ -18,7 +18,11 @@ use crate::{ImportOptions, Imported, check_size};
 ///
 /// # Errors
 /// [`ImportError`] with the place that cannot be read.
-pub fn read(name: &str, bytes: &[u8], options: &ImportOptions) -> Result<Imported, ImportError> {
+pub fn read(
+    name: &str,
+    bytes: &[u8],
+    options: &ImportOptions,
+) -> Result<ImportedFile, ImportError> {
     // It is never cancelled, and therefore never `None`.
     Ok(read_with_progress(name, bytes, options, &mut |_| true)?.unwrap_or_default())
 }
@@ -33,7 +37,7 @@ pub fn read_with_progress(
     bytes: &[u8],
     options: &ImportOptions,
     progress: &mut dyn FnMut(usize) -> bool,
-) -> Result<Option<Imported>, ImportError> {
+) -> Result<Option<ImportedFile>, ImportError> {
     check_size(name, bytes, options)?;
     let text = decode(bytes);
     let result = match parse(name, &text, options, false, progress) {
@@ -59,7 +63,7 @@ fn parse(
     options: &ImportOptions,
     commas: bool,
     progress: Progress<'_>,
-) -> Result<Imported, Stop> {
+) -> Result<ImportedFile, Stop> {
     let mut lexer = Lexer::new(text, commas);
     if commas {
         lexer.tally.add(WarningKind::DecimalCommas, None);
@@ -89,7 +93,7 @@ fn parse(
         lexer.tally.add(WarningKind::NoFrames, None);
     }
     assemble(name, converter.finish(), fps, options, None, &mut lexer.tally, first_row_at)
-        .map(|clips| Imported {
+        .map(|clips| ImportedFile {
             clips,
             warnings: std::mem::take(&mut lexer.tally).into_warnings(text),
         })

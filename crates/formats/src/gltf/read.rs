@@ -11,7 +11,7 @@ use crate::measure::measure;
 use crate::raw::{RawMotion, Y_UP_FROM_Z_UP};
 use crate::t_pose::first_frame_is_t_pose;
 use crate::warning::{Tally, WarningKind};
-use crate::{ImportError, ImportOptions, Imported, ImportedClip, check_size, stem};
+use crate::{ImportError, ImportOptions, ImportedClip, ImportedFile, check_size, stem};
 use glam::{DMat3, DVec3, Quat, Vec3};
 use gltf::json::Index;
 use gltf::json::accessor::{Accessor, Type};
@@ -43,7 +43,7 @@ pub fn read(
     bytes: &[u8],
     resolve: &dyn Fn(&str) -> Option<Arc<[u8]>>,
     options: &ImportOptions,
-) -> Result<Imported, ImportError> {
+) -> Result<ImportedFile, ImportError> {
     check_size(name, bytes, options)?;
     let document = Document::open(name, bytes, resolve, options.max_bytes)?;
     let nodes = Nodes::of(&document)?;
@@ -70,7 +70,7 @@ pub fn read(
             .error("a file without skeleton and without animation", "a character or an animation")
             .with_hint("export the skeleton and its animations, too"));
     }
-    let mut imported = Imported::default();
+    let mut imported = ImportedFile::default();
     for character in &characters {
         let context =
             Context { document: &document, nodes: &nodes, options, several: characters.len() > 1 };

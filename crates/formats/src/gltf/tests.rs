@@ -2,7 +2,7 @@
 //! matrices multiplied node by node.
 
 use super::*;
-use crate::{ImportError, ImportOptions, Imported};
+use crate::{ImportError, ImportOptions, ImportedFile};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use glam::{Quat, Vec3};
@@ -107,12 +107,12 @@ impl GltfBuilder {
         root.to_string().into_bytes()
     }
 
-    fn read(&self) -> Imported {
+    fn read(&self) -> ImportedFile {
         open(&self.text()).unwrap_or_else(|error| panic!("{error}"))
     }
 }
 
-fn open(bytes: &[u8]) -> Result<Imported, ImportError> {
+fn open(bytes: &[u8]) -> Result<ImportedFile, ImportError> {
     let options = ImportOptions {
         drop_t_pose: false,
         metres_per_unit: Some(1.0),
@@ -121,12 +121,12 @@ fn open(bytes: &[u8]) -> Result<Imported, ImportError> {
     read("dir/builder.gltf", bytes, &|_| None, &options)
 }
 
-fn only(imported: &Imported) -> &Clip {
+fn only(imported: &ImportedFile) -> &Clip {
     assert_eq!(imported.clips.len(), 1);
     &imported.clips[0].clip
 }
 
-fn sentences(imported: &Imported) -> Vec<String> {
+fn sentences(imported: &ImportedFile) -> Vec<String> {
     imported.warnings.iter().map(ToString::to_string).collect()
 }
 

@@ -11,7 +11,7 @@ mod real;
 mod table;
 
 use segue_formats::acclaim::{AcclaimSkeleton, read_motion, read_skeleton};
-use segue_formats::{ImportError, ImportOptions, Imported};
+use segue_formats::{ImportError, ImportOptions, ImportedFile};
 use segue_motion::clip::Clip;
 
 /// The warning of every motion.
@@ -102,7 +102,7 @@ fn read_with(
     asf: impl AsRef<[u8]>,
     amc: impl AsRef<[u8]>,
     options: &ImportOptions,
-) -> Result<Imported, ImportError> {
+) -> Result<ImportedFile, ImportError> {
     read_motion("take.amc", amc.as_ref(), &skeleton_of(asf)?, options)
 }
 

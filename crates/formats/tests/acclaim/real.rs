@@ -4,8 +4,8 @@
 use super::common::{points, shared_data};
 use super::{NO_RATE, skeleton_of};
 use segue_formats::acclaim::{AcclaimSkeleton, best_skeleton, read_motion, read_skeleton};
-use segue_formats::{CMU_METRES_PER_UNIT, ImportOptions, Imported, WarningKind, import};
-use segue_motion::skeleton::{Found, Role, Roles};
+use segue_formats::{CMU_METRES_PER_UNIT, ImportOptions, ImportedFile, WarningKind, import};
+use segue_motion::skeleton::{Role, RoleSource, Roles};
 use std::path::Path;
 
 fn real_skeleton(path: &Path) -> AcclaimSkeleton {
@@ -14,7 +14,7 @@ fn real_skeleton(path: &Path) -> AcclaimSkeleton {
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn real_motion(path: &Path, skeleton: &AcclaimSkeleton) -> Imported {
+fn real_motion(path: &Path, skeleton: &AcclaimSkeleton) -> ImportedFile {
     let bytes = std::fs::read(path).unwrap();
     read_motion(&path.to_string_lossy(), &bytes, skeleton, &ImportOptions::default())
         .unwrap_or_else(|error| panic!("{error}"))
@@ -108,7 +108,10 @@ fn captured_people_have_plausible_height_ground_contact_and_roles() {
             heights[heights.len() / 2]
         );
         let roles = Roles::detect(clip.skeleton());
-        assert!(Role::ALL.iter().all(|&role| roles.found(role) == Some(Found::ByName)), "{name}");
+        assert!(
+            Role::ALL.iter().all(|&role| roles.source(role) == Some(RoleSource::ByName)),
+            "{name}"
+        );
     }
 }
 

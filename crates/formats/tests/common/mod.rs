@@ -6,7 +6,7 @@
 
 use glam::Vec3;
 use segue_formats::acclaim::{read_motion, read_skeleton};
-use segue_formats::{ImportError, ImportOptions, Imported, ImportedClip, import};
+use segue_formats::{ImportError, ImportOptions, ImportedClip, ImportedFile, import};
 use segue_motion::clip::Clip;
 use segue_motion::skeleton::WorldPose;
 use std::path::{Path, PathBuf};
@@ -61,7 +61,7 @@ pub fn bvh_files(folder: &std::path::Path) -> Vec<(String, Vec<u8>)> {
     paths.iter().map(|path| (name(path), std::fs::read(path).unwrap())).collect()
 }
 
-pub fn read(text: impl AsRef<[u8]>) -> Result<Imported, ImportError> {
+pub fn read(text: impl AsRef<[u8]>) -> Result<ImportedFile, ImportError> {
     import("test.bvh", text.as_ref(), &ImportOptions::default())
 }
 

@@ -115,9 +115,9 @@ pub fn dissolve(
         (vec![aligned_b; window], aligned_b)
     };
     let placing = if by_velocity {
-        Placing::Character(&frames_during)
+        PosePlacement::Character(&frames_during)
     } else {
-        Placing::World(aligned_b, &turns)
+        PosePlacement::World(aligned_b, &turns)
     };
     let clip = blend.clip(&placing, &world_from_b)?;
     let mut frames = a.ground_frames()[..leave].to_vec();
@@ -211,7 +211,7 @@ struct Blend<'a> {
 }
 
 /// The placement of the window's poses.
-enum Placing<'a> {
+enum PosePlacement<'a> {
     /// Blended in the character's frame, then placed in these ground frames.
     Character(&'a [Planar]),
     /// Blended in the world, with B transformed, and the yaw from A to B in each frame.
@@ -279,7 +279,7 @@ impl Blend<'_> {
     /// Returns for every frame of the window and every joint whether the sign of A's rotation
     /// changes, so that each joint turns by the shorter way in the middle of the window and the
     /// same way round in all other frames.
-    fn sides(&self, placing: &Placing<'_>) -> Vec<bool> {
+    fn sides(&self, placing: &PosePlacement<'_>) -> Vec<bool> {
         let joints = self.a.clip().skeleton().len();
         let mut flips = vec![false; self.window * joints];
         let mut known: Vec<Quat> = vec![Quat::IDENTITY; self.window * joints];
@@ -303,7 +303,7 @@ impl Blend<'_> {
     }
 
     /// Returns the roots' rotations in frame `p`, B's and A's, each relative to its placement.
-    fn root_rotations(&self, p: usize, placing: &Placing<'_>) -> (Quat, Quat) {
+    fn root_rotations(&self, p: usize, placing: &PosePlacement<'_>) -> (Quat, Quat) {
         let (fa, fb) = (self.leave + p, self.enter + p);
         let (a_from, b_from) = self.blend_frames(p, placing);
         (
@@ -313,13 +313,13 @@ impl Blend<'_> {
     }
 
     /// Returns the transforms of A and B to the frame in which they are blended in frame `p`.
-    fn blend_frames(&self, p: usize, placing: &Placing<'_>) -> (Planar, Planar) {
+    fn blend_frames(&self, p: usize, placing: &PosePlacement<'_>) -> (Planar, Planar) {
         match placing {
-            Placing::Character(_) => (
+            PosePlacement::Character(_) => (
                 self.a.ground_frames()[self.leave + p].inverse(),
                 self.b.ground_frames()[self.enter + p].inverse(),
             ),
-            Placing::World(world_from_b, _) => (Planar::IDENTITY, *world_from_b),
+            PosePlacement::World(world_from_b, _) => (Planar::IDENTITY, *world_from_b),
         }
     }
 
@@ -337,7 +337,7 @@ impl Blend<'_> {
 
     /// Returns A's weight in frame `p`, and the translation and rotation of the blended root.
     /// `flip` changes the sign of A's rotation ([`Self::sides`]).
-    fn root(&self, p: usize, placing: &Placing<'_>, flip: bool) -> (f32, Vec3, Quat) {
+    fn root(&self, p: usize, placing: &PosePlacement<'_>, flip: bool) -> (f32, Vec3, Quat) {
         let weight = self.weight(p as f64) as f32;
         let (a_from, b_from) = self.blend_frames(p, placing);
         let a = a_from.apply(self.a.clip().root_translations()[self.leave + p]);
@@ -345,25 +345,25 @@ impl Blend<'_> {
         let translation = b.lerp(a, weight);
         let (b_rotation, a_rotation) = self.root_rotations(p, placing);
         let a_rotation = match placing {
-            Placing::Character(_) => signed(a_rotation, flip),
+            PosePlacement::Character(_) => signed(a_rotation, flip),
             // The body turns the same way round as the ground frames.
-            Placing::World(_, turns) => {
+            PosePlacement::World(_, turns) => {
                 let turn = Quat::from_rotation_y(-turns[p] as f32);
                 quat::in_hemisphere_of(a_rotation, turn * b_rotation)
             }
         };
         let rotation = quat::slerp_as_given(b_rotation, a_rotation, weight);
         match placing {
-            Placing::Character(frames) => (
+            PosePlacement::Character(frames) => (
                 weight,
                 frames[p].apply(translation),
                 quat::renormalize(frames[p].rotation() * rotation),
             ),
-            Placing::World(..) => (weight, translation, rotation),
+            PosePlacement::World(..) => (weight, translation, rotation),
         }
     }
 
-    fn clip(&self, placing: &Placing<'_>, world_from_b: &Planar) -> Result<Clip, BlendError> {
+    fn clip(&self, placing: &PosePlacement<'_>, world_from_b: &Planar) -> Result<Clip, BlendError> {
         let (a, b) = (self.a.clip(), self.b.clip());
         let after = self.enter + self.window;
         let mut made = Assembly::new(a, b, self.leave + self.window + (b.frames() - after));

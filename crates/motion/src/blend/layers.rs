@@ -170,7 +170,7 @@ pub fn layer_timed(
             vec![Planar::IDENTITY; clip.frames()]
         }
     };
-    let layering = Layering {
+    let layering = LayerBlend {
         base_frames: stands(base),
         over_frames: stands(over),
         moving: moving_joints(base, over),
@@ -208,7 +208,7 @@ fn check(base: &Clip, over: &Clip, options: &LayerOptions) -> Result<(), LayerEr
     }
 }
 
-struct Layering<'a> {
+struct LayerBlend<'a> {
     base: &'a Clip,
     over: &'a Clip,
     base_frames: Vec<Planar>,
@@ -220,7 +220,7 @@ struct Layering<'a> {
     turned: bool,
 }
 
-impl Layering<'_> {
+impl LayerBlend<'_> {
     fn clip(&self) -> Result<Clip, ClipError> {
         let mut made = Assembly::new(self.base, self.over, self.base.frames());
         let reference = self.reference();

@@ -71,7 +71,7 @@ const MAX_SECS: f64 = 600.0;
 /// Two gaits prepared for blending to any speed; a pose takes microseconds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpeedBlend {
-    gaits: [Sampled; 2],
+    gaits: [SampledCycle; 2],
     parts: Vec<Part>,
     moving: Vec<usize>,
     options: SpeedOptions,
@@ -81,7 +81,7 @@ pub struct SpeedBlend {
 
 /// A cycle as poses in the character's frame, and its trajectory.
 #[derive(Clone, Debug, PartialEq)]
-struct Sampled {
+struct SampledCycle {
     clip: Clip,
     rotations: Vec<Quat>,
     translations: Vec<Vec3>,
@@ -120,7 +120,7 @@ impl SpeedBlend {
         }
         checked("half-life (s)", options.half_life_secs, 60.0)?;
         let moving = moving_joints(first, second);
-        let mut gaits = [a, b].map(|cycle| Sampled::new(cycle, &moving));
+        let mut gaits = [a, b].map(|cycle| SampledCycle::new(cycle, &moving));
         let [a_sampled, b_sampled] = &mut gaits;
         b_sampled.match_signs_to(a_sampled);
         let skeleton = first.skeleton();
@@ -177,7 +177,7 @@ impl SpeedBlend {
         &self.options
     }
 
-    fn mixed(&self, weight: f64, of: impl Fn(&Sampled) -> f64) -> f64 {
+    fn mixed(&self, weight: f64, of: impl Fn(&SampledCycle) -> f64) -> f64 {
         of(&self.gaits[0]) * (1.0 - weight) + of(&self.gaits[1]) * weight
     }
 
@@ -204,13 +204,13 @@ impl SpeedBlend {
 
     /// Returns the events of the feet at a weight.
     fn events(&self, weight: f64) -> Events {
-        let stride = |gait: &Sampled| gait.speed_mps * gait.secs;
+        let stride = |gait: &SampledCycle| gait.speed_mps * gait.secs;
         let share = weight * stride(&self.gaits[1]) / self.mixed(weight, stride);
         self.gaits[0].events.between(&self.gaits[1].events, share)
     }
 
     /// Returns the phases of a gait, in cycles, when the blend is at `phase`.
-    fn phases(&self, gait: &Sampled, events: &Events, phase: f64) -> [f64; 3] {
+    fn phases(&self, gait: &SampledCycle, events: &Events, phase: f64) -> [f64; 3] {
         let alignment = self.options.alignment;
         let begin = if alignment == PhaseAlignment::None { gait.first_phase } else { 0.0 };
         Part::ALL.map(|part| begin + gait.events.warped(events, phase, part, alignment))
@@ -220,7 +220,7 @@ impl SpeedBlend {
     /// the first.
     pub(super) fn step(&self, weight: f64, from: f64, to: f64) -> Planar {
         let events = self.events(weight);
-        let made = |gait: &Sampled| {
+        let made = |gait: &SampledCycle| {
             let at =
                 |phase| gait.step_sum_at(self.phases(gait, &events, phase)[Part::Body.index()]);
             at(to) - at(from)
@@ -378,7 +378,7 @@ fn checked(what: &'static str, value: f64, most: f64) -> Result<(), GaitError> {
 /// A frame of a cycle, the next, and the share between them.
 type FramePosition = (usize, usize, f32);
 
-impl Sampled {
+impl SampledCycle {
     fn new(cycle: &GaitCycle, moving: &[usize]) -> Self {
         let (clip, frames) = (&cycle.looped.clip, &cycle.looped.frames);
         let mut rotations = Vec::with_capacity(clip.frames() * clip.skeleton().len());

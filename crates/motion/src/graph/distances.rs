@@ -245,11 +245,11 @@ pub struct AllSweep<'a> {
     all: &'a AllPairs,
     window: usize,
     blocks: Vec<BlockDistances>,
-    now: Option<Now<'a>>,
+    now: Option<BlockSweep<'a>>,
 }
 
 #[derive(Clone, Debug)]
-enum Now<'a> {
+enum BlockSweep<'a> {
     Itself(SelfSweep<'a>),
     Pair(Sweep<'a>),
 }
@@ -259,11 +259,11 @@ enum Now<'a> {
 pub struct PausedAllSweep {
     window: usize,
     blocks: Vec<BlockDistances>,
-    now: Option<PausedNow>,
+    now: Option<PausedBlockSweep>,
 }
 
 #[derive(Clone, Debug)]
-enum PausedNow {
+enum PausedBlockSweep {
     Itself(PausedSelfSweep),
     Pair(PausedSweep),
 }
@@ -273,11 +273,11 @@ impl PausedAllSweep {
     #[must_use]
     pub fn resume(self, all: &AllPairs) -> AllSweep<'_> {
         let now = match (self.now, all.blocks.get(self.blocks.len())) {
-            (Some(PausedNow::Itself(sweep)), Some(Block::Itself(terms, _))) => {
-                Some(Now::Itself(sweep.resume(terms)))
+            (Some(PausedBlockSweep::Itself(sweep)), Some(Block::Itself(terms, _))) => {
+                Some(BlockSweep::Itself(sweep.resume(terms)))
             }
-            (Some(PausedNow::Pair(sweep)), Some(Block::Pair(terms, _))) => {
-                Some(Now::Pair(sweep.resume(terms)))
+            (Some(PausedBlockSweep::Pair(sweep)), Some(Block::Pair(terms, _))) => {
+                Some(BlockSweep::Pair(sweep.resume(terms)))
             }
             _ => None,
         };
@@ -305,8 +305,8 @@ impl AllSweep<'_> {
             window: self.window,
             blocks: self.blocks,
             now: self.now.map(|now| match now {
-                Now::Itself(sweep) => PausedNow::Itself(sweep.pause()),
-                Now::Pair(sweep) => PausedNow::Pair(sweep.pause()),
+                BlockSweep::Itself(sweep) => PausedBlockSweep::Itself(sweep.pause()),
+                BlockSweep::Pair(sweep) => PausedBlockSweep::Pair(sweep.pause()),
             }),
         }
     }
@@ -322,19 +322,19 @@ impl AllSweep<'_> {
             let everything = 0..usize::MAX;
             let mut now = match (self.now.take(), block) {
                 (Some(now), _) => now,
-                (None, Block::Itself(terms, _)) => Now::Itself(terms.sweep(self.window)?),
+                (None, Block::Itself(terms, _)) => BlockSweep::Itself(terms.sweep(self.window)?),
                 (None, Block::Pair(terms, _)) => {
-                    Now::Pair(terms.sweep(self.window, &everything, &everything)?)
+                    BlockSweep::Pair(terms.sweep(self.window, &everything, &everything)?)
                 }
             };
             let complete = match &mut now {
-                Now::Itself(sweep) => sweep.advance(rows).is_complete(),
-                Now::Pair(sweep) => sweep.advance(rows).is_complete(),
+                BlockSweep::Itself(sweep) => sweep.advance(rows).is_complete(),
+                BlockSweep::Pair(sweep) => sweep.advance(rows).is_complete(),
             };
             if complete {
                 self.blocks.push(match now {
-                    Now::Itself(sweep) => BlockDistances::Itself(sweep.finish()),
-                    Now::Pair(sweep) => BlockDistances::Pair(sweep.finish()),
+                    BlockSweep::Itself(sweep) => BlockDistances::Itself(sweep.finish()),
+                    BlockSweep::Pair(sweep) => BlockDistances::Pair(sweep.finish()),
                 });
             } else {
                 self.now = Some(now);

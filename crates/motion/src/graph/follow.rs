@@ -78,7 +78,7 @@ impl GroundPath {
 
 /// A walk through a graph along a path.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Followed {
+pub struct FollowedWalk {
     /// Its edges, from the start node on, for [`Walker::take`](super::Walker::take).
     pub edges: Vec<EdgeIndex>,
     /// The transform of the first clip: `world_from_clip`.
@@ -116,7 +116,7 @@ pub fn follow(
     path: &GroundPath,
     budget: usize,
     options: &StitchOptions,
-) -> Followed {
+) -> FollowedWalk {
     let mut search = FollowSearch::new(graph, start, path, budget, options);
     while !search.advance(graph, path, usize::MAX) {}
     search.so_far(graph, path)
@@ -135,7 +135,7 @@ pub struct FollowSearch {
     looked_at: usize,
     budget: usize,
     /// The search ahead of `here`.
-    ahead: Option<Ahead>,
+    ahead: Option<SearchAhead>,
     is_over: bool,
 }
 
@@ -188,7 +188,7 @@ impl FollowSearch {
                 none => {
                     // Enough for every second of the path at a slow walk.
                     let stages = (path.length() / COMMITTED_SECS / 0.7).ceil().max(1.0) as usize;
-                    none.insert(Ahead::new(Limits {
+                    none.insert(SearchAhead::new(Limits {
                         stop_at: (self.looked_at + (self.budget / stages).max(64)).min(self.budget),
                         until: self.here.frames as f64 + HORIZON_SECS * graph.set().fps(),
                     }))
@@ -220,7 +220,7 @@ impl FollowSearch {
 
     /// Returns the best walk so far: the kept part, and the best walk ahead.
     #[must_use]
-    pub fn so_far(&self, graph: &MotionGraph, path: &GroundPath) -> Followed {
+    pub fn so_far(&self, graph: &MotionGraph, path: &GroundPath) -> FollowedWalk {
         let ground = Ground { graph, path, stitcher: &self.stitcher, placings: &self.placings };
         let (mut here, mut edges) = (self.here, self.edges.clone());
         let best = self.ahead.as_ref().and_then(|ahead| ahead.best.as_ref());
@@ -228,7 +228,7 @@ impl FollowSearch {
             here = ground.behind(&here, edge);
             edges.push(edge);
         }
-        Followed {
+        FollowedWalk {
             edges,
             world_from_first: self.world_from_first,
             rms_m: (here.square / (here.frames as f64).max(1.0)).sqrt(),
@@ -275,7 +275,7 @@ struct Limits {
 
 /// Branch and bound over the walks of a few seconds, depth first.
 #[derive(Clone, Debug)]
-struct Ahead {
+struct SearchAhead {
     limits: Limits,
     is_begun: bool,
     /// The edges to the deepest level.
@@ -285,7 +285,7 @@ struct Ahead {
     best: Option<(u64, Vec<EdgeIndex>)>,
 }
 
-impl Ahead {
+impl SearchAhead {
     fn new(limits: Limits) -> Self {
         Self { limits, is_begun: false, trail: Vec::new(), levels: Vec::new(), best: None }
     }

@@ -145,7 +145,7 @@ pub struct WalkMetrics {
 
 /// The quantities of a walk that are read frame by frame.
 #[derive(Clone, Debug, Default)]
-struct Walked {
+struct WalkQuantities {
     steps: Vec<Planar>,
     turns: Vec<f32>,
     changes: Vec<f32>,
@@ -200,7 +200,7 @@ fn turn(from: Quat, to: Quat) -> Vec3 {
 /// The measurement of a walk, piece by piece as it is made.
 #[derive(Clone, Debug)]
 pub struct WalkMeter {
-    walked: Walked,
+    walked: WalkQuantities,
     /// The first measured frame of the walk.
     first: Option<usize>,
     /// The transitions, and the frames at which they begin.
@@ -223,7 +223,7 @@ impl WalkMeter {
     #[must_use]
     pub fn new(set: &FrameSet) -> Self {
         Self {
-            walked: Walked::default(),
+            walked: WalkQuantities::default(),
             first: None,
             seams: Vec::new(),
             within: 0,
@@ -373,7 +373,7 @@ impl WalkMeter {
     }
 }
 
-impl Walked {
+impl WalkQuantities {
     /// Measures the step into a frame.
     fn step(
         &mut self,
@@ -468,7 +468,7 @@ impl<'a> Sources<'a> {
 fn seam(
     at: usize,
     of: &PieceSeam,
-    walked: &Walked,
+    walked: &WalkQuantities,
     stances: &[(usize, usize, f32)],
     profile: &WalkProfile,
 ) -> Seam {

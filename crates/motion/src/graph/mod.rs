@@ -120,12 +120,12 @@ pub use build::{Construction, GraphOptions, Jump, MotionGraph, Stretch, Way};
 pub use candidates::{Candidate, CandidateSearch, Candidates};
 pub use distances::{AllPairs, AllSweep, CountedTo, FrameDistances, PausedAllSweep};
 pub use error::GraphError;
-pub use follow::{FollowSearch, Followed, GroundPath, follow};
+pub use follow::{FollowSearch, FollowedWalk, GroundPath, follow};
 pub use frames::{FrameSet, JoltSearch, Place};
 pub use measure::{Seam, WalkMeter, WalkMetrics, WalkProfile};
 pub use overview::{DistanceDetail, DistanceOverview};
 pub use stitch::{
-    Assembling, PieceSeam, StitchOptions, Stitcher, WalkMistake, WalkPiece, assembled,
+    PieceSeam, StitchOptions, Stitcher, WalkAssembly, WalkMistake, WalkPiece, assembled,
 };
 pub use stream::CandidateStream;
 pub use walk::{Stay, Walker};

@@ -226,7 +226,12 @@ impl Stitcher {
         self.playing.as_ref().map(|tail| tail.place)
     }
 
-    fn joined(&self, tail: &Tail, incoming: &Motion, enter: usize) -> Result<Joined, GraphError> {
+    fn joined(
+        &self,
+        tail: &Tail,
+        incoming: &Motion,
+        enter: usize,
+    ) -> Result<JoinedMotions, GraphError> {
         let (a, leave) = (&tail.source, tail.leave);
         let options = TransitionOptions {
             align_by: self.options.align_by,
@@ -266,7 +271,7 @@ impl Stitcher {
         let tail_from_piece = made.world_from_b.after(&moved);
         let back = tail_from_piece.inverse();
         let frames = made.frames.iter().map(|frame| back.after(frame)).collect();
-        Ok(Joined {
+        Ok(JoinedMotions {
             source: incoming.same_body(made.clip.transformed(&back), frames),
             tail_from_piece,
             frames: made.transition.len(),
@@ -275,7 +280,7 @@ impl Stitcher {
     }
 }
 
-struct Joined {
+struct JoinedMotions {
     /// The tail and the incoming clip, as recorded.
     source: Motion,
     tail_from_piece: Planar,
@@ -327,7 +332,7 @@ fn part(source: &Motion, frames: Range<usize>) -> Result<Motion, GraphError> {
 /// # Errors
 /// [`GraphError::Clip`]; not for pieces of one walk.
 pub fn assembled(pieces: &[WalkPiece]) -> Result<Option<(Clip, Vec<Planar>)>, GraphError> {
-    let Some(mut assembling) = Assembling::new(pieces, usize::MAX) else {
+    let Some(mut assembling) = WalkAssembly::new(pieces, usize::MAX) else {
         return Ok(None);
     };
     while !assembling.advance(pieces, usize::MAX) {}
@@ -337,7 +342,7 @@ pub fn assembled(pieces: &[WalkPiece]) -> Result<Option<(Clip, Vec<Planar>)>, Gr
 /// The computation of [`assembled`] in slices. It does not hold the pieces: every call must be
 /// given the same ones.
 #[derive(Debug)]
-pub struct Assembling {
+pub struct WalkAssembly {
     made: Assembly,
     frames: Vec<Planar>,
     /// Number of frames.
@@ -346,7 +351,7 @@ pub struct Assembling {
     next: (usize, usize),
 }
 
-impl Assembling {
+impl WalkAssembly {
     /// Begins the assembly of the first `most` frames of the pieces; `None` without pieces.
     #[must_use]
     pub fn new(pieces: &[WalkPiece], most: usize) -> Option<Self> {

@@ -57,7 +57,7 @@ enum Stage {
     MeasureMirrored(PreparedClip),
     Gather(GatheredFeatures),
     Normalise(GatheredFeatures),
-    Sort(Sorting),
+    Sort(BoxSorting),
 }
 
 /// A clip at the database's rate; for a cycle one repetition, and its transform.
@@ -115,7 +115,7 @@ impl GatheredFeatures {
 }
 
 #[derive(Clone, Debug)]
-struct Sorting {
+struct BoxSorting {
     starts: Vec<usize>,
     features: Arc<Features>,
     valid: Arc<Vec<u32>>,
@@ -366,7 +366,7 @@ impl DatabaseBuilder {
         suggest_tags(motion.roots(), RATE as f64, scale)
     }
 
-    fn normalised(&self, gathering: GatheredFeatures) -> Result<Sorting, MatchError> {
+    fn normalised(&self, gathering: GatheredFeatures) -> Result<BoxSorting, MatchError> {
         let GatheredFeatures { starts, valid, rows } = gathering;
         let frames = starts.last().copied().unwrap_or(0);
         if valid.is_empty() {
@@ -384,7 +384,7 @@ impl DatabaseBuilder {
         let features =
             Features::normalise(self.layout.clone(), normalisation, rows, |row| counts[row]);
         let boxes = BoxBuilder::new(&valid, &Weights::default().spread(&self.layout));
-        Ok(Sorting {
+        Ok(BoxSorting {
             starts,
             features: Arc::new(features),
             valid: Arc::new(valid),

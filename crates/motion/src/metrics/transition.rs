@@ -109,7 +109,7 @@ impl TransitionMetrics {
             return Self::default();
         }
         let steps = subject.start.max(1)..=subject.end.max(subject.start).min(last);
-        let around = Around::new(subject, &steps);
+        let around = SeamPoses::new(subject, &steps);
         let (seam_deg, seam_joint) = seam(subject, &steps);
         Self {
             seam_deg,
@@ -176,7 +176,7 @@ impl Subject<'_> {
 }
 
 /// Forward kinematics of the frames around a transition, computed once.
-struct Around {
+struct SeamPoses {
     frames: Range<usize>,
     /// Ground frames of the character.
     character: Vec<Planar>,
@@ -186,7 +186,7 @@ struct Around {
     lowest: Option<f32>,
 }
 
-impl Around {
+impl SeamPoses {
     fn new(subject: &Subject<'_>, steps: &RangeInclusive<usize>) -> Self {
         let clip = subject.result;
         let margin = (MARGIN_SECS * clip.fps()).round() as usize;
@@ -286,7 +286,7 @@ fn velocity_seam(subject: &Subject<'_>, steps: &RangeInclusive<usize>) -> Option
     worst.map(|change| f64::from(change).to_degrees() * subject.result.fps())
 }
 
-fn jump(subject: &Subject<'_>, steps: &RangeInclusive<usize>, around: &Around) -> Option<f64> {
+fn jump(subject: &Subject<'_>, steps: &RangeInclusive<usize>, around: &SeamPoses) -> Option<f64> {
     let usual = f64::from(subject.a.usual().step.max(subject.b.usual().step));
     let excess = |frame| {
         let own = subject.source_steps(frame).into_iter().flatten().map(|step| step.shift.length());
@@ -295,7 +295,7 @@ fn jump(subject: &Subject<'_>, steps: &RangeInclusive<usize>, around: &Around) -
     steps.clone().filter_map(excess).reduce(f64::max).map(|metres| metres * 100.0)
 }
 
-fn spin(subject: &Subject<'_>, steps: &RangeInclusive<usize>, around: &Around) -> Option<f64> {
+fn spin(subject: &Subject<'_>, steps: &RangeInclusive<usize>, around: &SeamPoses) -> Option<f64> {
     // The largest sum of a run of steps (Kadane), for left and right turns.
     let (mut left, mut right, mut worst) = (0.0_f64, 0.0_f64, None);
     for frame in steps.clone() {
@@ -312,7 +312,7 @@ fn spin(subject: &Subject<'_>, steps: &RangeInclusive<usize>, around: &Around) -
     worst.map(f64::to_degrees)
 }
 
-fn skate(subject: &Subject<'_>, steps: &RangeInclusive<usize>, around: &Around) -> Option<f64> {
+fn skate(subject: &Subject<'_>, steps: &RangeInclusive<usize>, around: &SeamPoses) -> Option<f64> {
     let touches = subject.start.saturating_sub(1)..=*steps.end();
     let mut worst: Option<f32> = None;
     for side in Side::BOTH {
@@ -349,7 +349,7 @@ fn skate(subject: &Subject<'_>, steps: &RangeInclusive<usize>, around: &Around) 
     worst.map(|metres| f64::from(metres) * 100.0)
 }
 
-fn lag(subject: &Subject<'_>, steps: &RangeInclusive<usize>, around: &Around) -> Option<f64> {
+fn lag(subject: &Subject<'_>, steps: &RangeInclusive<usize>, around: &SeamPoses) -> Option<f64> {
     let fps = subject.result.fps();
     let (mut squares, mut count, mut distances): (f64, usize, Vec<(usize, f64)>) = (0.0, 0, vec![]);
     for frame in steps.clone() {

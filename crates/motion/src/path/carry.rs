@@ -58,7 +58,7 @@ pub struct CarryOptions {
 
 /// A motion on another path.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Carried {
+pub struct CarriedMotion {
     /// The motion, at the frame rate of the original.
     pub clip: Clip,
     /// For every frame, the frame of the original; integers except for [`Timing::Speed`].
@@ -92,7 +92,7 @@ pub fn carry(
     path: &FittedPath,
     edited: &ArcLengthPath,
     options: &CarryOptions,
-) -> Result<Carried, PathEditError> {
+) -> Result<CarriedMotion, PathEditError> {
     let clip = path.source().clip();
     let frames = match options.timing {
         Timing::Metres | Timing::Duration => (0..clip.frames()).map(|frame| frame as f64).collect(),
@@ -126,7 +126,7 @@ pub fn carry(
         places.push(place);
     }
     let clip = moved(clip, &frames, &moves)?;
-    Ok(Carried {
+    Ok(CarriedMotion {
         clip,
         frames,
         places,
@@ -150,7 +150,7 @@ fn behind(path: &FittedPath, edited: &ArcLengthPath, old: &Waypoint) -> Waypoint
     Waypoint { frame: end.frame.after(&left.frame.inverse()).after(&old.frame), ..*old }
 }
 
-impl Carried {
+impl CarriedMotion {
     /// Returns the contacts of the result, from those of the original.
     #[must_use]
     pub fn contacts(&self, original: &Contacts) -> Contacts {

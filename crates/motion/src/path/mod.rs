@@ -84,7 +84,7 @@ mod spline;
 mod turning;
 
 pub use arc_length::{ArcLengthPath, Waypoint};
-pub use carry::{Carried, CarryOptions, Offset, Orientation, Timing, carry};
+pub use carry::{CarriedMotion, CarryOptions, Offset, Orientation, Timing, carry};
 pub use edit::{PathEdit, Pins};
 pub use fit::{FitOptions, MAX_SMOOTHING, drawn_path, fit_spline};
 pub use fitted::{FitError, FittedPath};

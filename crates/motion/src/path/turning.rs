@@ -1,6 +1,6 @@
 //! Turns that are sharper than those of a motion.
 
-use super::{Carried, FittedPath, Waypoint};
+use super::{CarriedMotion, FittedPath, Waypoint};
 use crate::math::{stats, wrap_angle};
 use glam::DVec2;
 use std::fmt;
@@ -56,7 +56,7 @@ pub fn turn_rates(places: &[Waypoint], fps: f64) -> Vec<f64> {
 /// beyond the 99th percentile of its curvature × speed, and beyond 20°/s. In order of time; parts
 /// with less than a quarter of a second between them are merged.
 #[must_use]
-pub fn hard_turns(path: &FittedPath, carried: &Carried) -> Vec<HardTurn> {
+pub fn hard_turns(path: &FittedPath, carried: &CarriedMotion) -> Vec<HardTurn> {
     let fps = path.source().clip().fps();
     let own: Vec<f32> =
         turn_rates(path.places(), fps).iter().map(|rate| rate.abs() as f32).collect();

@@ -111,14 +111,14 @@ impl Registration {
 /// A polyline that is smoothed by a moving average: continuously differentiable, and never steeper
 /// than the polyline.
 #[derive(Clone, Debug, PartialEq)]
-struct Smoothed {
+struct SmoothedPolyline {
     x: Vec<f64>,
     y: Vec<f64>,
     /// The integral up to each point.
     integral: Vec<f64>,
 }
 
-impl Smoothed {
+impl SmoothedPolyline {
     /// Returns the smoothed polyline; `x` is strictly increasing, not empty, as long as `y`.
     fn new(x: Vec<f64>, y: Vec<f64>) -> Self {
         let mut sum = 0.0;
@@ -169,7 +169,7 @@ const MIN_RATE: f64 = 0.05;
 /// every width of smoothing.
 fn time_warp(path: &[(f64, f64)], fixed: &[(f64, f64)], smoothing: f64) -> Option<MonotoneCurve> {
     let (mean, lead) = path.iter().map(|&(i, j)| (0.5 * (i + j), j - i)).unzip();
-    let lead = Smoothed::new(mean, lead);
+    let lead = SmoothedPolyline::new(mean, lead);
     let mut knots: Vec<(f64, f64)> = Vec::new();
     let mut from = *fixed.first()?;
     knots.push(from);
@@ -217,9 +217,9 @@ fn time_warp(path: &[(f64, f64)], fixed: &[(f64, f64)], smoothing: f64) -> Optio
 /// couple them to the yaw by the distance from the origin.
 #[derive(Clone, Debug, PartialEq)]
 struct AlignmentCurve {
-    yaw: Smoothed,
-    source: [Smoothed; 2],
-    target: [Smoothed; 2],
+    yaw: SmoothedPolyline,
+    source: [SmoothedPolyline; 2],
+    target: [SmoothedPolyline; 2],
     smoothing: f64,
 }
 
@@ -244,7 +244,7 @@ impl AlignmentCurve {
             sources.push(turned(found.transform.yaw, centre) + found.transform.shift);
             targets.push(centre);
         }
-        let over = |values: Vec<f64>| Smoothed::new(mean.clone(), values);
+        let over = |values: Vec<f64>| SmoothedPolyline::new(mean.clone(), values);
         let both = |points: &[DVec2]| {
             [over(points.iter().map(|p| p.x).collect()), over(points.iter().map(|p| p.y).collect())]
         };

@@ -222,7 +222,7 @@ impl Sums {
             for k in 0..samples {
                 let centre = terms.source.centre(first + k);
                 let entering =
-                    Entering::new(terms, terms.row(first + k), self.columns.start + k, columns);
+                    TermSlice::new(terms, terms.row(first + k), self.columns.start + k, columns);
                 let sums = self.dot[shift..]
                     .iter_mut()
                     .zip(&mut self.cross[shift..])
@@ -244,13 +244,13 @@ impl Sums {
         let from = first_column(terms, row).max(1);
         let n = columns - from;
         let (p, q) = (terms.source.centre(first + samples - 1), terms.source.centre(first - 1));
-        let new = Entering::new(
+        let new = TermSlice::new(
             terms,
             terms.row(first + samples - 1),
             self.columns.start + from + samples - 1,
             n,
         );
-        let old = Entering::new(terms, terms.row(first - 1), self.columns.start + from - 1, n);
+        let old = TermSlice::new(terms, terms.row(first - 1), self.columns.start + from - 1, n);
         let dot = &mut self.dot[shift + from..][..n];
         let cross = &mut self.cross[shift + from..][..n];
         let height = &mut self.height[shift + from..][..n];
@@ -273,7 +273,7 @@ impl Sums {
     ) {
         let (mut dot, mut cross, mut height) = (0.0, 0.0, 0.0);
         for k in 0..samples {
-            let entering = Entering::new(terms, terms.row(first + k), self.columns.start + k, 1);
+            let entering = TermSlice::new(terms, terms.row(first + k), self.columns.start + k, 1);
             let (d, x) = centre_product(
                 terms.source.centre(first + k),
                 DVec2::new(entering.x[0], entering.z[0]),
@@ -320,13 +320,13 @@ pub(super) fn packed_start(rows: usize, row: usize) -> usize {
 }
 
 /// A part of a row of terms, with the centres of its columns.
-struct Entering<'a> {
+struct TermSlice<'a> {
     terms: TermRow<'a>,
     x: &'a [f64],
     z: &'a [f64],
 }
 
-impl<'a> Entering<'a> {
+impl<'a> TermSlice<'a> {
     fn new(terms: &'a PairTerms, row: TermRow<'a>, from: usize, n: usize) -> Self {
         let part = |of: &'a [f32]| &of[from - row.first..][..n];
         Self {

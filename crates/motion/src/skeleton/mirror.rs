@@ -89,7 +89,7 @@ impl Mirror {
     ) -> Result<Self, NoCounterparts> {
         let rest = skeleton.rest_positions();
         let normal = left_right_axis(skeleton, roles, &rest).ok_or(NoCounterparts)?;
-        let pairing = Pairing::new(skeleton, roles, &rest, normal);
+        let pairing = CounterpartSearch::new(skeleton, roles, &rest, normal);
         let counterparts = pairing.counterparts();
         if !counterparts
             .iter()
@@ -302,7 +302,7 @@ fn left_right_axis(skeleton: &Skeleton, roles: &Roles, rest: &[Vec3]) -> Option<
 }
 
 /// The data for finding counterparts.
-struct Pairing<'a> {
+struct CounterpartSearch<'a> {
     skeleton: &'a Skeleton,
     names: Vec<Tokens>,
     children: Vec<Vec<usize>>,
@@ -314,7 +314,7 @@ struct Pairing<'a> {
     normal: Vec3,
 }
 
-impl<'a> Pairing<'a> {
+impl<'a> CounterpartSearch<'a> {
     fn new(skeleton: &'a Skeleton, roles: &Roles, rest: &[Vec3], normal: Vec3) -> Self {
         let joints = skeleton.joints();
         let mut children = vec![Vec::new(); joints.len()];

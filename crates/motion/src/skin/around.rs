@@ -5,7 +5,7 @@ use super::capsules::capsules;
 use super::contour::{Contour, Contouring};
 use super::field::{Cone, Field};
 use super::shapes::{PlacedShape, Shape, limb_shapes};
-use super::weights::{Neighbours, Sharing, drawn_together, fair, normals};
+use super::weights::{Neighbours, WeightDiffusion, drawn_together, fair, normals};
 use super::{SkinnedMesh, bind};
 use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose, canonical_stance};
 use glam::Vec3;
@@ -71,7 +71,7 @@ struct Shell {
 enum Stage {
     Contouring(Box<Contouring>),
     Smoothing(Contour, Neighbours, usize),
-    Sharing(Contour, Neighbours, Sharing),
+    WeightDiffusion(Contour, Neighbours, WeightDiffusion),
 }
 
 impl SkinBuilder {
@@ -168,15 +168,15 @@ impl SkinBuilder {
                 if *rounds >= FAIRING_ROUNDS {
                     let first = (surface.owners.iter())
                         .map(|&(shape, share)| joint_at(&self.paths[members[shape]], share) as u16);
-                    let sharing = Sharing::new(first);
-                    *stage = Stage::Sharing(
+                    let sharing = WeightDiffusion::new(first);
+                    *stage = Stage::WeightDiffusion(
                         std::mem::take(surface),
                         std::mem::take(neighbours),
                         sharing,
                     );
                 }
             }
-            Stage::Sharing(surface, neighbours, sharing) => {
+            Stage::WeightDiffusion(surface, neighbours, sharing) => {
                 if sharing.advance(neighbours) {
                     self.done.add(surface, neighbours, sharing, cones, &self.powers);
                     self.shells.pop();
@@ -205,7 +205,7 @@ impl ProceduralSkin {
         &mut self,
         surface: &Contour,
         neighbours: &Neighbours,
-        sharing: &Sharing,
+        sharing: &WeightDiffusion,
         cones: &[Cone],
         powers: &[f32],
     ) {

@@ -6,7 +6,7 @@
 //! edge form one face. An edge is processed in its smallest cell, so that cells of different sizes
 //! meet without a crack.
 
-use super::field::{Field, Measured};
+use super::field::{Field, ShapeDistance};
 use glam::{IVec3, Vec3};
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
@@ -150,7 +150,7 @@ struct Octree {
     near: Vec<u16>,
     /// Values at corners.
     corners: Map<f32>,
-    scratch: Vec<(usize, Measured)>,
+    scratch: Vec<(usize, ShapeDistance)>,
 }
 
 #[derive(Clone, Debug)]

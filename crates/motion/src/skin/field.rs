@@ -35,7 +35,7 @@ pub(super) struct Cone {
 
 /// The distance of a point from a shape.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Measured {
+pub(super) struct ShapeDistance {
     /// Metres, negative inside; accurate to first order.
     pub(super) distance: f32,
     /// Unit vector away from the shape.
@@ -107,7 +107,7 @@ impl Cone {
         self.a + self.along * (self.length * share)
     }
 
-    pub(super) fn measure(&self, point: Vec3) -> Measured {
+    pub(super) fn measure(&self, point: Vec3) -> ShapeDistance {
         let offset = point - self.a;
         // In a space in which the shape is round.
         let stretch = self.flatness.recip() - 1.0;
@@ -122,7 +122,7 @@ impl Cone {
         let distance = outwards.length() - radius;
         let gradient = away + self.flat * (away.dot(self.flat) * stretch);
         let steepness = gradient.length().max(1e-6);
-        Measured {
+        ShapeDistance {
             distance: distance / steepness,
             normal: gradient / steepness,
             radius,
@@ -142,7 +142,7 @@ pub(super) struct Field {
 
 /// Bounds of the field around a point.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Around {
+pub(super) struct FieldBounds {
     /// A lower bound of the field at the point, metres.
     pub(super) least: f32,
     /// The smallest of the sizes of shapes with a surface near the point; infinite where there is
@@ -197,7 +197,7 @@ impl Field {
         &self,
         point: Vec3,
         near: &[u16],
-        scratch: &mut Vec<(usize, Measured)>,
+        scratch: &mut Vec<(usize, ShapeDistance)>,
     ) -> Sample {
         scratch.clear();
         scratch.extend(
@@ -232,9 +232,9 @@ impl Field {
         near: &[u16],
         sizes: &[f32],
         out: &mut Vec<u16>,
-        scratch: &mut Vec<(usize, Measured)>,
-    ) -> Around {
-        let mut around = Around { least: f32::INFINITY, size: f32::INFINITY };
+        scratch: &mut Vec<(usize, ShapeDistance)>,
+    ) -> FieldBounds {
+        let mut around = FieldBounds { least: f32::INFINITY, size: f32::INFINITY };
         let mut nearest = f32::INFINITY;
         scratch.clear();
         for &index in near {
@@ -268,7 +268,7 @@ impl Field {
     }
 }
 
-fn smooth_min(a: Sample, b: Measured, width: f32) -> Sample {
+fn smooth_min(a: Sample, b: ShapeDistance, width: f32) -> Sample {
     let overlap =
         if width > 1e-9 { (width - (a.value - b.distance).abs()).max(0.0) / width } else { 0.0 };
     // The share of `b`: 1 where it is nearer by the width, a half where both are equally near.

@@ -50,13 +50,13 @@ type Shares = [(u16, f32); KEPT];
 
 /// The diffusion of weights from the joint of each vertex to its neighbours, round by round.
 #[derive(Clone, Debug)]
-pub(super) struct Sharing {
+pub(super) struct WeightDiffusion {
     now: Vec<Shares>,
     next: Vec<Shares>,
     rounds: usize,
 }
 
-impl Sharing {
+impl WeightDiffusion {
     pub(super) fn new(first: impl Iterator<Item = u16>) -> Self {
         let now: Vec<Shares> = first
             .map(|joint| std::array::from_fn(|i| (joint, f32::from(u8::from(i == 0)))))

@@ -288,12 +288,12 @@ impl Inertializer {
         let Some(old) = self.travel.filter(|_| dt_secs > 0.0) else {
             return *step;
         };
-        let middle = Now::new(self.how, self.elapsed_secs - 0.5 * dt_secs);
+        let middle = DecayState::new(self.how, self.elapsed_secs - 0.5 * dt_secs);
         with_travel(step, middle.travelled(&old, travel(step, dt_secs.recip())), dt_secs)
     }
 
-    fn now(&self) -> Now {
-        Now::new(self.how, self.elapsed_secs)
+    fn now(&self) -> DecayState {
+        DecayState::new(self.how, self.elapsed_secs)
     }
 
     /// Applies the remaining offsets to a pose and its velocities.
@@ -325,7 +325,7 @@ impl Inertializer {
 
 /// The part of the decay that is the same for all joints at one moment.
 #[derive(Clone, Copy)]
-enum Now {
+enum DecayState {
     /// A decay whose response does not depend on the offset.
     Linear(crate::math::Response),
     /// A decay whose response depends on the offset.
@@ -340,7 +340,7 @@ enum Now {
     },
 }
 
-impl Now {
+impl DecayState {
     fn new(how: Inertialization, secs: f64) -> Self {
         match how {
             Inertialization::Offset(decay @ Decay::Quintic { .. }) => Self::Quintic(decay, secs),

@@ -178,7 +178,7 @@ pub fn close_loop(
     };
     let mut seam = LoopSeam::default();
     let mut before = LoopSeam::default();
-    let closings: Vec<Closing> = (0..first.rotations.len())
+    let closings: Vec<JointOffsets> = (0..first.rotations.len())
         .map(|joint| {
             let [start, end] =
                 [&first, &last].map(|pose| (pose.rotations[joint], pose.angular_velocities[joint]));
@@ -234,7 +234,7 @@ pub fn close_loop(
 
 /// The offsets that close one joint: differences of rotation and velocity, one pair for every
 /// solution.
-struct Closing {
+struct JointOffsets {
     solved: [(Vec3, Vec3); MAX_SOLUTIONS],
     count: usize,
 }
@@ -245,7 +245,7 @@ const MAX_SOLUTIONS: usize = 4;
 /// Errors below these, radians and radians per second, are within the rounding of `f32`.
 const TOLERANCES: [f32; 2] = [1e-6, 1e-4];
 
-impl Closing {
+impl JointOffsets {
     fn apply(&self, now: &Response, rotation: Quat) -> Quat {
         let closed = self.solved.iter().take(self.count).fold(rotation, |rotation, &(d, v)| {
             let (offset, _) = now.of_vec3(d, v);
@@ -269,8 +269,9 @@ impl Ends {
         &self,
         mut start: (Quat, Vec3),
         mut end: (Quat, Vec3),
-    ) -> (Closing, (Quat, Vec3), (Quat, Vec3)) {
-        let mut closing = Closing { solved: [(Vec3::ZERO, Vec3::ZERO); MAX_SOLUTIONS], count: 0 };
+    ) -> (JointOffsets, (Quat, Vec3), (Quat, Vec3)) {
+        let mut closing =
+            JointOffsets { solved: [(Vec3::ZERO, Vec3::ZERO); MAX_SOLUTIONS], count: 0 };
         for slot in &mut closing.solved {
             let difference = quat::with_positive_scalar(end.0 * start.0.conjugate());
             let d = quat::log(difference);

@@ -94,11 +94,11 @@ pub fn concatenate_mistaken(
     if !mistake.concerns(&options.method) {
         return right(options);
     }
-    let mixed = |mix| Mixing::new(a, leave, b, enter, options, mix).mixed(right(options)?);
+    let mixed = |mix| RotationMixing::new(a, leave, b, enter, options, mix).mixed(right(options)?);
     match mistake {
-        Mistake::NoHemisphereCheck => mixed(Mix::AsSigned),
-        Mistake::EulerLerp => mixed(Mix::Euler),
-        Mistake::DegreesForRadians => mixed(Mix::Degrees),
+        Mistake::NoHemisphereCheck => mixed(RotationMix::AsSigned),
+        Mistake::EulerLerp => mixed(RotationMix::Euler),
+        Mistake::DegreesForRadians => mixed(RotationMix::Degrees),
         Mistake::AtanForAtan2 | Mistake::DegreesInTransform | Mistake::WrongFacingAxis => {
             with_wrong_alignment(a, leave, b, enter, options, mistake)
         }
@@ -119,7 +119,7 @@ pub fn concatenate_mistaken(
 
 /// The representation of the difference of two rotations.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Mix {
+enum RotationMix {
     AsSigned,
     Euler,
     Degrees,
@@ -128,7 +128,7 @@ enum Mix {
     Right,
 }
 
-impl Mix {
+impl RotationMix {
     /// Returns the difference between a joint's rotation in B and in A.
     fn difference(self, joint: usize, a: Quat, b: Quat) -> Vec3 {
         match self {
@@ -182,25 +182,25 @@ fn angles(q: Quat) -> Vec3 {
 }
 
 /// A transition whose joints are mixed in another way.
-struct Mixing<'a> {
+struct RotationMixing<'a> {
     a: &'a Motion,
     leave: usize,
     b: &'a Motion,
     enter: usize,
     options: &'a TransitionOptions,
-    mix: Mix,
+    mix: RotationMix,
     /// Whether poses are mixed in the character's frame, not in the world.
     in_character: bool,
 }
 
-impl<'a> Mixing<'a> {
+impl<'a> RotationMixing<'a> {
     fn new(
         a: &'a Motion,
         leave: usize,
         b: &'a Motion,
         enter: usize,
         options: &'a TransitionOptions,
-        mix: Mix,
+        mix: RotationMix,
     ) -> Self {
         Self {
             a,

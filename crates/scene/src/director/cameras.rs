@@ -1,6 +1,6 @@
 //! The positions of the panes' cameras.
 
-use crate::context::{DrawContext, Shown};
+use crate::context::{DrawContext, PosedResult};
 use crate::framing::{camera_of, middle_height};
 use crate::{Camera, CameraRig, Pane, pose_at};
 use glam::Vec3;
@@ -70,7 +70,10 @@ pub(super) fn aim(
 }
 
 /// Returns the point of the figure that the camera follows; `None` where it follows none.
-pub(super) fn followed_point(shown: &Shown<'_>, context: &mut DrawContext<'_>) -> Option<Vec3> {
+pub(super) fn followed_point(
+    shown: &PosedResult<'_>,
+    context: &mut DrawContext<'_>,
+) -> Option<Vec3> {
     let (session, params, outcome) = (context.session, context.params, shown.outcome);
     let wanted = match params.choice::<Follow>() {
         Follow::Off => return None,

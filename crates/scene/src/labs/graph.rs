@@ -1,7 +1,7 @@
 //! The Graph lab: the windows of a transition, the clips of a walk, and the line that it is to
 //! follow.
 
-use crate::context::{DrawContext, GHOST_FADE_SECS, Shown};
+use crate::context::{DrawContext, GHOST_FADE_SECS, PosedResult};
 use crate::{Layer, Pane, with_alpha};
 use glam::Vec3;
 use segue_motion::graph::Place;
@@ -10,7 +10,7 @@ use segue_session::{BuiltGraph, Walk};
 /// Adds both windows of a transition at the position of the result: their first, middle and last
 /// frame.
 pub(crate) fn add_jump(
-    shown: &Shown<'_>,
+    shown: &PosedResult<'_>,
     [leave, enter]: [Place; 2],
     built: &BuiltGraph,
     context: &mut DrawContext<'_>,
@@ -43,7 +43,7 @@ pub(crate) fn add_jump(
 
 /// Adds the clips of a walk around a transition.
 pub(crate) fn add_walk_sources(
-    shown: &Shown<'_>,
+    shown: &PosedResult<'_>,
     walk: &Walk,
     context: &mut DrawContext<'_>,
     pane: &mut Pane,

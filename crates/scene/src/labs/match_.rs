@@ -1,7 +1,7 @@
 //! The Match lab: the recorded and the desired trajectory, the trajectory of the frame that plays,
 //! and the crowd.
 
-use crate::context::{DrawContext, Shown};
+use crate::context::{DrawContext, PosedResult};
 use crate::extra_characters::add_character;
 use crate::{Body, Color, Colors, Layer, Pane, Ring, with_alpha};
 use segue_motion::math::Planar;
@@ -46,7 +46,7 @@ pub(crate) fn add_driven(
 }
 
 /// Adds the characters of the crowd around the driven one.
-pub(crate) fn add_crowd(shown: &Shown<'_>, context: &mut DrawContext<'_>, pane: &mut Pane) {
+pub(crate) fn add_crowd(shown: &PosedResult<'_>, context: &mut DrawContext<'_>, pane: &mut Pane) {
     let Some((database, poses)) = context.session.crowd() else {
         return;
     };

@@ -1,6 +1,6 @@
 //! The Register lab: a pair of frames, and both sources beside the result.
 
-use crate::context::{DrawContext, GHOST_FADE_SECS, Shown};
+use crate::context::{DrawContext, GHOST_FADE_SECS, PosedResult};
 use crate::ground_path::add_ground_path;
 use crate::{Pane, with_alpha};
 use segue_motion::math::Planar;
@@ -11,7 +11,7 @@ const BESIDE_METRES: f64 = 0.8;
 
 /// Adds a frame of A and a frame of B aligned with it, at the position of the result.
 pub(crate) fn add_pair(
-    shown: &Shown<'_>,
+    shown: &PosedResult<'_>,
     frames: [f64; 2],
     map: &DistanceMap,
     context: &mut DrawContext<'_>,
@@ -35,11 +35,11 @@ pub(crate) fn add_pair(
 
 /// Adds both sources beside a registered result near the transition, in the frames that it mixes.
 pub(crate) fn add_sources_beside(
-    shown: &Shown<'_>,
+    shown: &PosedResult<'_>,
     context: &mut DrawContext<'_>,
     pane: &mut Pane,
 ) {
-    let Shown { outcome, now, place, .. } = shown;
+    let PosedResult { outcome, now, place, .. } = shown;
     let away = outcome.transition.map_or(0.0, |transition| {
         (transition.start_secs - now).max(now - transition.end_secs).max(0.0) / GHOST_FADE_SECS
     });

@@ -9,7 +9,7 @@ use super::outside;
 use segue_formats::acclaim::{self, AcclaimSkeleton};
 use segue_formats::archive::{self, ArchiveLimits};
 use segue_formats::{
-    FileKind, ImportError, ImportOptions, Imported, ImportedClip, gltf, import_with_progress,
+    FileKind, ImportError, ImportOptions, ImportedClip, ImportedFile, gltf, import_with_progress,
     kind_of, unpack_gzip,
 };
 use segue_motion::clip::Motion;
@@ -355,7 +355,7 @@ fn mismatch(
 }
 
 impl ReadClips {
-    fn of(imported: Imported, setup: &ReadSetup) -> Self {
+    fn of(imported: ImportedFile, setup: &ReadSetup) -> Self {
         Self {
             warnings: imported.warnings.iter().map(ToMessage::to_message).collect(),
             clips: (imported.clips.into_iter().enumerate())

@@ -70,7 +70,7 @@ fn square() -> GltfBuilder {
     builder
 }
 
-fn mesh_of(imported: &Imported) -> &SkinnedMesh {
+fn mesh_of(imported: &ImportedFile) -> &SkinnedMesh {
     let found = &imported.clips[0];
     let mesh = found.mesh.as_ref().unwrap();
     check(mesh, found.clip.skeleton().len());
@@ -196,7 +196,7 @@ fn invalid_meshes_are_left_out_and_the_motion_is_kept() {
             builder.root["accessors"][at]["count"] = json!(count);
         })
     };
-    let left_out: [(&str, Imported); 7] = [
+    let left_out: [(&str, ImportedFile); 7] = [
         ("4 billion vertices", count("POSITION", 4_000_000_000)),
         ("4 billion joints", count("JOINTS_0", u64::MAX)),
         ("too few weights", count("WEIGHTS_0", 2)),

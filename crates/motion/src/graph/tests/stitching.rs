@@ -44,7 +44,7 @@ fn pieces_of_a_walk_join_without_a_jump() {
         }
         let (clip, frames) = assembled(&pieces).unwrap().unwrap();
         let most = clip.frames() - 7;
-        let mut assembling = Assembling::new(&pieces, most).unwrap();
+        let mut assembling = WalkAssembly::new(&pieces, most).unwrap();
         while !assembling.advance(&pieces, 23) {}
         assert_eq!(
             assembling.finish().unwrap(),

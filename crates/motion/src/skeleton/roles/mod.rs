@@ -11,9 +11,9 @@ use glam::Vec3;
 use std::collections::BTreeMap;
 pub(crate) use tokens::{Tokens, are_counterparts, read};
 
-/// The evidence by which the joint of a role was found; the most trustworthy first.
+/// The evidence for the joint of a role; the most trustworthy first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub enum Found {
+pub enum RoleSource {
     /// Chosen by the user.
     ByHand,
     /// By the joint's name.
@@ -23,9 +23,9 @@ pub enum Found {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-struct Assigned {
+struct RoleJoint {
     joint: usize,
-    found: Found,
+    found: RoleSource,
 }
 
 /// At most one joint per [`Role`].
@@ -53,13 +53,13 @@ struct Assigned {
 /// # Ok::<(), segue_motion::skeleton::SkeletonError>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[serde(from = "BTreeMap<Role, Assigned>", into = "BTreeMap<Role, Assigned>")]
+#[serde(from = "BTreeMap<Role, RoleJoint>", into = "BTreeMap<Role, RoleJoint>")]
 pub struct Roles {
-    assigned: [Option<Assigned>; Role::COUNT],
+    assigned: [Option<RoleJoint>; Role::COUNT],
 }
 
-impl From<BTreeMap<Role, Assigned>> for Roles {
-    fn from(map: BTreeMap<Role, Assigned>) -> Self {
+impl From<BTreeMap<Role, RoleJoint>> for Roles {
+    fn from(map: BTreeMap<Role, RoleJoint>) -> Self {
         let mut roles = Self::default();
         for (role, assigned) in map {
             roles.assigned[role.index()] = Some(assigned);
@@ -68,7 +68,7 @@ impl From<BTreeMap<Role, Assigned>> for Roles {
     }
 }
 
-impl From<Roles> for BTreeMap<Role, Assigned> {
+impl From<Roles> for BTreeMap<Role, RoleJoint> {
     fn from(roles: Roles) -> Self {
         Role::ALL
             .into_iter()
@@ -142,9 +142,9 @@ impl Roles {
         self.get(role).filter(|&joint| joint < joints)
     }
 
-    /// Returns how the joint of a role was found; `None` for a role without a joint.
+    /// Returns the evidence for the joint of a role; `None` for a role without a joint.
     #[must_use]
-    pub fn found(&self, role: Role) -> Option<Found> {
+    pub fn source(&self, role: Role) -> Option<RoleSource> {
         self.assigned[role.index()].map(|a| a.found)
     }
 
@@ -154,11 +154,12 @@ impl Roles {
         if let Some(previous) = joint.and_then(|joint| self.role_of(joint)) {
             self.assigned[previous.index()] = None;
         }
-        self.assigned[role.index()] = joint.map(|joint| Assigned { joint, found: Found::ByHand });
+        self.assigned[role.index()] =
+            joint.map(|joint| RoleJoint { joint, found: RoleSource::ByHand });
     }
 
-    fn assign(&mut self, role: Role, joint: Option<usize>, found: Found) {
-        self.assigned[role.index()] = joint.map(|joint| Assigned { joint, found });
+    fn assign(&mut self, role: Role, joint: Option<usize>, found: RoleSource) {
+        self.assigned[role.index()] = joint.map(|joint| RoleJoint { joint, found });
     }
 
     /// Returns the role of a joint.
@@ -176,26 +177,6 @@ impl Roles {
     /// Returns the roles that have no joint.
     pub fn missing(&self) -> impl Iterator<Item = Role> + '_ {
         Role::ALL.into_iter().filter(|&role| self.get(role).is_none())
-    }
-
-    /// Returns a sentence for the user: which joint has the role, and why.
-    #[must_use]
-    pub fn explain(&self, role: Role, skeleton: &Skeleton) -> String {
-        let Some(Assigned { joint, found }) = self.assigned[role.index()] else {
-            return format!("no joint was found for the {}: choose one by hand", role.name());
-        };
-        let name = skeleton
-            .joints()
-            .get(joint)
-            .map_or("a joint that this skeleton does not have", |j| j.name.as_str());
-        match found {
-            Found::ByHand => format!("`{name}` is the {}: chosen by hand", role.name()),
-            Found::ByName => format!("`{name}` is the {}: by its name", role.name()),
-            Found::ByShape => format!(
-                "`{name}` is the {}: by where it lies in the body, its name does not tell",
-                role.name()
-            ),
-        }
     }
 
     /// Returns the points of a foot that can touch the ground: ankle, ball and tip, as far as the

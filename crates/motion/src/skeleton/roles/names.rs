@@ -1,7 +1,7 @@
 //! Roles by the names of joints.
 
 use super::tokens::{self, Tokens};
-use super::{Found, Roles, is_below};
+use super::{RoleSource, Roles, is_below};
 use crate::skeleton::{Role, Side, Skeleton};
 
 /// The words for a part of the body, in groups: a word of an earlier group takes precedence over
@@ -48,10 +48,10 @@ pub(super) fn detect(skeleton: &Skeleton) -> Roles {
     let search = Search { skeleton, names: &names, depths: depths(skeleton) };
     let mut roles = Roles::default();
     let hips = search.best(HIPS, None, None);
-    roles.assign(Role::Hips, hips, Found::ByName);
+    roles.assign(Role::Hips, hips, RoleSource::ByName);
     let spine = search.best(SPINE, None, hips).or_else(|| search.lumbar(hips));
-    roles.assign(Role::Spine, spine, Found::ByName);
-    roles.assign(Role::Head, search.best(HEAD, None, spine.or(hips)), Found::ByName);
+    roles.assign(Role::Spine, spine, RoleSource::ByName);
+    roles.assign(Role::Head, search.best(HEAD, None, spine.or(hips)), RoleSource::ByName);
     for side in Side::BOTH {
         let leg = Role::leg(side).into_iter().zip([THIGH, SHIN, FOOT, TOE]);
         let arm = Role::arm(side).into_iter().zip([UPPER_ARM, FOREARM, HAND]);
@@ -59,7 +59,7 @@ pub(super) fn detect(skeleton: &Skeleton) -> Roles {
             let mut above = None;
             for (role, words) in limb {
                 let joint = search.best(words, Some(side), above);
-                roles.assign(role, joint, Found::ByName);
+                roles.assign(role, joint, RoleSource::ByName);
                 above = joint.or(above);
             }
         }

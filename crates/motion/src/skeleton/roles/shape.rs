@@ -1,6 +1,6 @@
 //! Roles by the shape of a skeleton at rest.
 
-use super::{Found, Roles, is_below};
+use super::{RoleSource, Roles, is_below};
 use crate::skeleton::{Role, Side, Skeleton};
 use glam::Vec3;
 
@@ -21,7 +21,7 @@ pub(super) fn detect(skeleton: &Skeleton) -> Roles {
     let Some((hips, legs)) = shape.legs() else {
         return roles;
     };
-    roles.assign(Role::Hips, Some(hips), Found::ByShape);
+    roles.assign(Role::Hips, Some(hips), RoleSource::ByShape);
     let legs: Vec<Leg> = legs.into_iter().map(|tip| shape.leg(hips, tip)).collect();
     let [Some(a), Some(b)] = [legs[0].thigh, legs[1].thigh] else {
         return roles;
@@ -38,7 +38,7 @@ pub(super) fn detect(skeleton: &Skeleton) -> Roles {
         for (role, joint) in
             Role::leg(side).into_iter().zip([leg.thigh, leg.shin, leg.foot, leg.toe])
         {
-            roles.assign(role, joint, Found::ByShape);
+            roles.assign(role, joint, RoleSource::ByShape);
         }
     }
     let body: Vec<usize> = legs.iter().filter_map(|leg| leg.thigh).collect();
@@ -192,7 +192,7 @@ impl<'a> Shape<'a> {
         for (side, leaf) in [(Side::Left, left), (Side::Right, right)] {
             let (upper, fore, hand) = self.limb(chest, leaf)?;
             for (role, joint) in Role::arm(side).into_iter().zip([Some(upper), Some(fore), hand]) {
-                roles.assign(role, joint, Found::ByShape);
+                roles.assign(role, joint, RoleSource::ByShape);
             }
         }
         Some(chest)
@@ -232,8 +232,8 @@ impl<'a> Shape<'a> {
         let head = head
             .filter(|&head| Some(head) != chest && is_below(self.skeleton, head, hips))
             .unwrap_or(highest);
-        roles.assign(Role::Head, Some(head), Found::ByShape);
+        roles.assign(Role::Head, Some(head), RoleSource::ByShape);
         let spine = self.path(hips, chest.unwrap_or(head)).first().copied();
-        roles.assign(Role::Spine, spine.filter(|&spine| spine != head), Found::ByShape);
+        roles.assign(Role::Spine, spine.filter(|&spine| spine != head), RoleSource::ByShape);
     }
 }

@@ -182,9 +182,10 @@ fn mixing_with_correct_differences_equals_concatenate() {
             let right = pair.made(method, place, None);
             let (align, root) = place;
             let options = TransitionOptions { align, root, ..TransitionOptions::new(method) };
-            let again = Mixing::new(&pair.a, LEAVE, &pair.b, ENTER, &options, Mix::Right)
-                .mixed(right.clone())
-                .unwrap();
+            let again =
+                RotationMixing::new(&pair.a, LEAVE, &pair.b, ENTER, &options, RotationMix::Right)
+                    .mixed(right.clone())
+                    .unwrap();
             let apart = rotations_of(&right.clip)
                 .iter()
                 .zip(rotations_of(&again.clip))

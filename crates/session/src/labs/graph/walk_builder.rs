@@ -10,8 +10,8 @@ use crate::metrics::{Metric, MetricId};
 use petgraph::graph::NodeIndex;
 use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::graph::{
-    Assembling, Choices, FollowSearch, Followed, GraphError, GroundPath, Place, RunLength, Stay,
-    Stitcher, WalkMeter, WalkPiece,
+    Choices, FollowSearch, FollowedWalk, GraphError, GroundPath, Place, RunLength, Stay, Stitcher,
+    WalkAssembly, WalkMeter, WalkPiece,
 };
 use segue_motion::metrics::{MotionTrace, SlideMeter, TraceMeter};
 use segue_motion::skeleton::Side;
@@ -51,7 +51,7 @@ const METERED_FRAMES: usize = 500;
 /// bends, which is a mean over the whole walk and matters only for nearly straight legs.
 #[derive(Debug)]
 enum Publishing {
-    Assembling(Box<Assembling>),
+    Assembling(Box<WalkAssembly>),
     Locking(Box<FootLocking>, Box<Motion>),
     Measuring(Box<Measuring>),
 }
@@ -177,7 +177,7 @@ impl WalkBuilder {
     }
 
     /// Begins a walk along the path as far as it has been found.
-    fn preview(&self, found: Followed, length_m: f64) -> Result<Self, LabError> {
+    fn preview(&self, found: FollowedWalk, length_m: f64) -> Result<Self, LabError> {
         let mut builder = Self::with_known_run(self, &self.wanted)?;
         builder.follow(found, length_m, true);
         Ok(builder)
@@ -284,7 +284,7 @@ impl WalkBuilder {
         let found = if let Some(publishing) = self.publishing.take() {
             publishing
         } else {
-            let assembling = Assembling::new(&self.pieces, self.goal.min(self.frames));
+            let assembling = WalkAssembly::new(&self.pieces, self.goal.min(self.frames));
             Publishing::Assembling(Box::new(assembling.ok_or(GraphError::NoClips)?))
         };
         match self.published(found)? {
@@ -418,7 +418,7 @@ impl WalkBuilder {
     }
 
     /// Makes the walk follow a path that was found.
-    fn follow(&mut self, found: Followed, length_m: f64, is_searching: bool) {
+    fn follow(&mut self, found: FollowedWalk, length_m: f64, is_searching: bool) {
         self.trace = Some(FollowedPath {
             points: self.wanted.path.clone(),
             rms_m: found.rms_m,
@@ -478,7 +478,7 @@ impl WalkBuilder {
     }
 
     /// Returns the assembled frames as a motion.
-    fn motion(&self, assembling: Assembling) -> Result<Motion, GraphError> {
+    fn motion(&self, assembling: WalkAssembly) -> Result<Motion, GraphError> {
         let (clip, ground_frames) = assembling.finish()?;
         let planted = self.planted.clone().map(|mut flags| {
             flags.truncate(clip.frames());
@@ -553,7 +553,7 @@ impl WalkBuilder {
             self.take(piece);
         }
         while self.meter() {}
-        let assembling = Assembling::new(&self.pieces, self.frames).ok_or(GraphError::NoClips)?;
+        let assembling = WalkAssembly::new(&self.pieces, self.frames).ok_or(GraphError::NoClips)?;
         let mut publishing = Publishing::Assembling(Box::new(assembling));
         // A few seconds of motion.
         let motion = loop {
