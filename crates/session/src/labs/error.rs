@@ -166,7 +166,7 @@ pub enum LabError {
     },
     /// Seams of the clips that leave no room for a join.
     #[error(
-        "Behind the last seam of A, at {last_secs:.2} s, and before the first one of B, at {first_secs:.2} s of A, there is no room to go over: set by hand where the join begins and ends."
+        "Between the last seam of A, at {last_secs:.2} s, and the first one of B, at {first_secs:.2} s of A, there is no room for a join: set its beginning and end by hand."
     )]
     NoRoomToJoin {
         /// The last seam of A, seconds.
@@ -176,7 +176,7 @@ pub enum LabError {
     },
     /// A join that ends before it begins.
     #[error(
-        "The join begins at {begin_secs:.2} s and ends at {end_secs:.2} s of A, of which {from_secs:.2} to {to_secs:.2} s are registered: move its end behind its beginning."
+        "The join begins at {begin_secs:.2} s and ends at {end_secs:.2} s of A, of which {from_secs:.2} to {to_secs:.2} s are registered: move its end after its beginning."
     )]
     JoinBackwards {
         /// The beginning of the join, seconds of A.

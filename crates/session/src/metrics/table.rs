@@ -45,7 +45,7 @@ metrics! {
     SeamsPerMinute "seams_per_min" "Seams", Some("seams / min"), PerMinute, Neutral,
         "How many transitions a minute of the walk has.";
     Lag "lag_s" "Lag", Some("lag s"), Secs, Lower,
-        "How long it takes until the velocity over the ground has come 90 % of the way to the incoming clip's; of several transitions the median.";
+        "The time until the velocity over the ground has changed by 90 % to that of the incoming clip; the median of several transitions.";
     Variety "variety" "Variety", Some("variety %"), Percent, Higher,
         "How much of the clips the walk has shown.";
     Speed "speed_mps" "Speed", Some("m/s"), MetresPerSec, Neutral,
@@ -55,7 +55,7 @@ metrics! {
     Cadence "cadence_spm" "Cadence", Some("steps/min"), StepsPerMinute, Neutral,
         "Steps per minute.";
     WeightOfB "weight_percent" "Weight of B", Some("B %"), Percent, Neutral,
-        "How much of B is in the pose: 0 at the speed of A, 100 at that of B, beyond it outside of both.";
+        "The share of B in the pose: 0 at the speed of A, 100 at that of B. Other values extrapolate both clips.";
     PositionError "match_error" "position error", Some("error cm"), Centimetres, Lower,
         "Mean distance of the character from where the player steers it: the simulation object.";
     JumpsPerMinute "match_seams" "seams per minute", Some("jumps/min"), PerMinute, Lower,
@@ -63,7 +63,7 @@ metrics! {
     FramesVisited "match_visited" "frames visited", Some("visited"), Frames, Neutral,
         "How many frames a search looked at, on average.";
     TickTime "match_tick_ms" "time per tick", Some("ms/tick"), Millisecs, Neutral,
-        "How long a sixtieth of a second of all characters takes to compute, searches included.";
+        "The time to compute a sixtieth of a second of all characters, searches included.";
     TurnTime "match_turn" "time to turn", Some("turn s"), Secs, Lower,
         "The longest time from asking for a turn until the body faces within 20° of it and stays there.";
     LargestPositionError "match_worst_error" "largest position error", Some("largest error cm"), Centimetres, Lower,
@@ -71,13 +71,13 @@ metrics! {
     LoopSeam "loop_seam_deg" "Seam", Some("seam"), Degrees, Lower,
         "The largest angle of a joint between the end of the cycle and its beginning.";
     LoopVelocitySeam "loop_seam_dps" "Velocity seam", Some("seam °/s"), DegreesPerSec, Lower,
-        "The largest difference of a joint's angular velocities there.";
+        "The largest difference of a joint's angular velocity between the end of the cycle and its beginning.";
     FrameDistance "apart_cm" "Distance", Some("distance cm"), Centimetres, Lower,
-        "How far apart the frames that are mixed are, in the mean: root mean square per joint, after the best alignment.";
+        "The mean distance of the frames that are blended: root mean square per joint, after the best alignment.";
     FitError "fit_rms_cm" "Fit error", Some("fit error cm"), Centimetres, Neutral,
-        "How far the hips are from the fitted path: the root of the mean squared distance. It is carried along, not lost.";
+        "The root mean square distance of the hips from the fitted path. The edited motion keeps it.";
     LargestFitError "fit_most_cm" "Largest fit error", Some("largest fit error cm"), Centimetres, Neutral,
-        "The same where it is largest.";
+        "The largest distance of the hips from the fitted path.";
     PathLength "path_m" "Length of the path", Some("length m"), Metres, Neutral,
         "The edited path from its start to its end.";
     OriginalPathLength "path_original_m" "Length of the original path", Some("original m"), Metres, Neutral,
@@ -103,9 +103,9 @@ metrics! {
     CycleTime "cycle_s" "Cycle", Some("cycle s"), Secs, Neutral,
         "How long one cycle takes.";
     CycleFrames "cycle_frames" "Cycle", Some("frames"), Frames, Neutral,
-        "The same in frames of A.";
+        "The length of one cycle in frames of A.";
     CycleLength "cycle_m" "Distance per cycle", Some("travelled m"), Metres, Neutral,
-        "The distance that one cycle travels.";
+        "The distance travelled in one cycle.";
     CycleTurn "cycle_turn_deg" "Turn per cycle", Some("turn"), Degrees, Neutral,
         "The turn of one cycle, to the left: the loop follows this curve.";
     Distance "root_way_m" "Distance travelled", Some("travelled m"), Metres, Neutral,

@@ -119,7 +119,7 @@ fn join_slides_less_than_a_dissolve() {
     assert_eq!(registered(&by_hand).part_secs, [1.0, 2.0]);
     let back = opened("lab=register&warp_mode=join&warp_from=2&warp_to=1");
     let problem = back.panes()[0].problem.clone().unwrap();
-    assert!(problem.to_string().contains("move its end behind its beginning"), "{problem}");
+    assert!(problem.to_string().contains("move its end after its beginning"), "{problem}");
 }
 
 #[test]
