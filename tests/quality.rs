@@ -20,9 +20,9 @@ fn assert_invariants(trials: &[Trial]) -> usize {
     for trial in trials {
         let faults = trial.faults();
         let asked: &[&str] = if SMOOTH.contains(&trial.lab) {
-            &["panic", "not finite", "refused without a word", "spin", "flash", "root jump"]
+            &["panic", "not finite", "refused without a message", "spin", "flash", "root jump"]
         } else {
-            &["panic", "not finite", "refused without a word"]
+            &["panic", "not finite", "refused without a message"]
         };
         assert!(!faults.iter().any(|fault| asked.contains(fault)), "{faults:?}: {trial:#?}");
         made += usize::from(matches!(trial.result, TrialResult::Made(_)));

@@ -1,8 +1,8 @@
 //! Zip archives of motion files.
 //!
-//! Only motion files are unpacked, in the order of paths, whatever the order in the archive is.
-//! Nothing is allocated because a header says so. An archive inside the archive is opened, one
-//! inside that is not. Paths are only names and never lead out of the archive.
+//! Only motion files are unpacked, in the order of their paths. Sizes in headers are not trusted
+//! for allocation. Archives inside the archive are opened, to a depth of one. Paths are only names
+//! and never lead out of the archive.
 
 use super::gzip::{no_memory, read_at_most};
 use super::text::name as decoded;

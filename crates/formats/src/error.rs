@@ -23,7 +23,7 @@ pub struct ImportError {
     pub column: usize,
     /// The text at that place.
     pub found: Message,
-    /// The text that would have been read.
+    /// The text that was expected there.
     pub expected: Message,
     /// Advice to the user, where there is better advice than `expected`.
     pub hint: Option<Message>,

@@ -96,7 +96,7 @@ use segue_motion::skin::SkinnedMesh;
 use segue_text::msg;
 use std::sync::Arc;
 
-/// Options of an import, which override the file or what is inferred.
+/// Options of an import. They override the file, and values that would be inferred.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ImportOptions {
     /// Metres per unit of length; inferred from the height of the character where `None` or out of

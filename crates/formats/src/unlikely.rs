@@ -28,7 +28,7 @@ pub struct Mendable {
 }
 
 impl RawMotion {
-    /// Adds warnings about what is implausible in a measured motion, and evens out single rows in
+    /// Adds warnings about implausible values of a measured motion, and evens out single rows in
     /// which the root is far off if the options say so.
     pub(super) fn warn_of_unlikely(
         &mut self,

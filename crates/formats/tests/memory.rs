@@ -13,7 +13,7 @@ static ALLOCATOR: PeakAlloc = PeakAlloc;
 /// A description of the number of frames in the header, and the text made from the true number.
 type Header = (&'static str, fn(usize) -> String);
 
-/// 100 MB in optimised builds; the ratio is what is tested.
+/// 100 MB in optimised builds; the ratio is tested.
 const BYTES: usize = if cfg!(debug_assertions) { 12_000_000 } else { 100_000_000 };
 
 /// Returns a file that repeats a walk, with `header` as the number of frames.

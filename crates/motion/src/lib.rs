@@ -24,11 +24,10 @@
 //! let walk = Motion::analyze(synthesize(&Params::new(Action::Walk))?.clip);
 //! let run = Motion::analyze(synthesize(&Params::new(Action::Run))?.clip);
 //!
-//! // Align: where is half a second of the one most like half a second of the other?
-//! let weights = limb_weights(walk.clip().skeleton());
-//! let height = f64::from(walk.body_height());
-//! let options = SearchOptions::new(30);
-//! let found = best_transition(walk.clip(), run.clip(), &weights, height, &options)?;
+//! // Align: find the half second of each clip that is most like one of the other. let weights =
+//! limb_weights(walk.clip().skeleton()); let height = f64::from(walk.body_height()); let options =
+//! SearchOptions::new(30); let found = best_transition(walk.clip(), run.clip(), &weights, height,
+//! &options)?;
 //!
 //! // Blend, and for comparison cut.
 //! let blended = |window| {
@@ -36,11 +35,10 @@
 //!     dissolve(&walk, found.leave, &run, found.enter, &options)
 //! };
 //!
-//! // Measure: how far do joints and character jump in a frame, beyond what is usual?
-//! let blend = TransitionMetrics::measure(&walk, &run, &blended(30)?);
-//! let cut = TransitionMetrics::measure(&walk, &run, &blended(0)?);
-//! assert!(cut.seam_deg.is_some_and(|jump| jump > 60.0));
-//! assert!(blend.seam_deg.is_some_and(|jump| jump < 5.0));
+//! // Measure: jumps of joints and character in a frame, beyond the usual. let blend =
+//! TransitionMetrics::measure(&walk, &run, &blended(30)?); let cut =
+//! TransitionMetrics::measure(&walk, &run, &blended(0)?); assert!(cut.seam_deg.is_some_and(|jump|
+//! jump > 60.0)); assert!(blend.seam_deg.is_some_and(|jump| jump < 5.0));
 //! assert!(blend.jump_cm.is_some_and(|jump| jump < 0.1));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -98,8 +96,8 @@
 //! - *Numbers* of clips are stored in `f32`; long sums and ground frames are `f64`.
 //! - *Long work* comes in slices: each call of `advance` does a part of it, so that the caller can
 //!   return to its event loop in between.
-//! - *Errors* are values that say what was found and what to do. Nothing in a file or a link can
-//!   make the library panic.
+//! - *Errors* are values that state the fault and the remedy. Nothing in a file or a link can make
+//!   the library panic.
 
 pub mod blend;
 pub mod clip;

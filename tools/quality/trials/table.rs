@@ -116,7 +116,7 @@ fn numbers(trial: &Trial) -> Option<&Numbers> {
     }
 }
 
-/// Returns a sentence without what varies: names of takes and numbers.
+/// Returns a sentence without its variable parts: names of takes and numbers.
 fn general(sentence: &str, names: &[String]) -> String {
     let mut general = sentence.to_owned();
     for name in names {

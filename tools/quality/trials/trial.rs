@@ -102,7 +102,7 @@ impl Trial {
         };
         match &self.result {
             TrialResult::Refused(_) => {}
-            TrialResult::Silent => note(true, "refused without a word"),
+            TrialResult::Silent => note(true, "refused without a message"),
             TrialResult::Panicked(_) => note(true, "panic"),
             TrialResult::Made(numbers) => {
                 note(numbers.not_finite, "not finite");

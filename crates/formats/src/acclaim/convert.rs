@@ -24,7 +24,7 @@ pub(super) struct Converter<'s> {
 }
 
 impl<'s> Converter<'s> {
-    /// Returns a converter. `bytes` is the length of the file and bounds what is allocated.
+    /// Returns a converter. `bytes` is the length of the file and bounds the allocation.
     pub(super) fn new(skeleton: &'s AcclaimSkeleton, bytes: usize) -> Self {
         let stretches = |joint: usize| {
             skeleton.motors.get(joint).is_some_and(|motor| motor.dofs.contains(&Dof::Stretch))

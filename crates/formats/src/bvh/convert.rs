@@ -65,7 +65,7 @@ pub(super) struct Converter {
 
 impl Converter {
     /// Returns a converter. `declared` is the number of rows according to the header, `bytes` the
-    /// range of the rows in the file; both bound what is allocated.
+    /// range of the rows in the file; both bound the allocation.
     pub(super) fn new(tree: &Hierarchy, declared: f64, bytes: Range<usize>) -> Self {
         let mut positions: Vec<[Source; 3]> =
             tree.joints.iter().map(|joint| joint.offset.map(Source::Offset)).collect();

@@ -340,7 +340,7 @@ mod tests {
             let text = format!("{indent}{}\n{}", words.join(&gap), "\n".repeat(16));
             let mut row = vec![0.0; words.len()];
             let mut lines = Lines::default();
-            // The second pass knows the usual number of decimals.
+            // In the second pass the usual number of decimals is known.
             for _ in 0..2 {
                 let end = lines.line(text.as_bytes(), 0, &mut row);
                 prop_assert_eq!(end, text.find('\n'));

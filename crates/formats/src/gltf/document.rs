@@ -31,8 +31,8 @@ enum Buffer<'a> {
 }
 
 impl<'a> Document<'a> {
-    /// Opens a file. `most` bounds the bytes that are allocated for it: a few bytes of JSON may ask
-    /// for any number of values.
+    /// Opens a file. `most` bounds the bytes that are allocated for it: a few bytes of JSON may
+    /// declare any number of values.
     pub(super) fn open(
         name: &'a str,
         bytes: &'a [u8],
@@ -175,8 +175,8 @@ fn parse(name: &str, json: &[u8]) -> Result<Root, ImportError> {
         Some(found) if !found.starts_with("2.") => return Err(version(name, found)),
         _ => {}
     }
-    // Channels that animate something other than a node (KHR_animation_pointer) are valid, but the
-    // library does not know them.
+    // Channels that animate something other than a node (KHR_animation_pointer) are valid, but not
+    // supported by the library.
     let animations = value.get_mut("animations").and_then(Value::as_array_mut);
     for channels in animations
         .into_iter()

@@ -37,7 +37,7 @@ use std::sync::Arc;
 ///
 /// # Errors
 /// [`ImportError`] when the file is not glTF 2.0, is truncated, contains neither a skeleton nor an
-/// animation, or asks for more memory than `options.max_bytes`.
+/// animation, or needs more memory than `options.max_bytes`.
 pub fn read(
     name: &str,
     bytes: &[u8],

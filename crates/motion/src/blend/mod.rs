@@ -76,8 +76,8 @@
 //!
 //! It does not plant feet: a foot that stands in A and swings in B slides, and
 //! [`crate::transition::foot_lock`] repairs that. Two very different poses have a mean that occurs
-//! in neither clip: search for a better transition first. Nothing is retargeted or resampled:
-//! [`BlendError`] asks for it.
+//! in neither clip: search for a better transition first. Nothing is retargeted or resampled: clips
+//! that need it are refused with a [`BlendError`].
 //!
 //! # Sources
 //!

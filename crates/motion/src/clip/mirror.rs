@@ -25,7 +25,7 @@ pub enum MirrorError {
 /// original back to within 3e-5. [`Mirror`] describes the method.
 ///
 /// # Errors
-/// [`MirrorError::NoCounterparts`] when neither roles nor names tell left from right.
+/// [`MirrorError::NoCounterparts`] when neither roles nor names distinguish left from right.
 pub fn mirror(clip: &Clip, roles: &Roles) -> Result<Clip, MirrorError> {
     let mirror = mirror_of(clip, roles)?;
     let poses = (0..clip.frames()).map(|frame| mirror.pose(&clip.pose(frame)));

@@ -1,4 +1,4 @@
-//! Clips with what is derived from them once and used everywhere.
+//! Clips with the quantities that are derived from them once and used everywhere.
 
 use super::{Clip, ContactOptions, Contacts, UsualMotion, character_frames, estimate_ground};
 use crate::math::{Planar, wrap_angle};

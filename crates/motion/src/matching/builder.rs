@@ -129,7 +129,7 @@ const CLIPS_SHARE: usize = 700;
 const GATHER_SHARE: usize = 100;
 
 impl DatabaseBuilder {
-    /// Begins the construction, and checks what can be checked beforehand.
+    /// Begins the construction, and checks the clips and options as far as possible beforehand.
     ///
     /// # Errors
     /// [`MatchError::NoClips`], [`MatchError::Times`], [`MatchError::TooManyFrames`],

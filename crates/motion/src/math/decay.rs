@@ -33,7 +33,7 @@ pub enum Decay {
 }
 
 impl Decay {
-    /// Returns what is left of the offset `x` with velocity `v` after `secs`: the offset and its
+    /// Returns the rest of the offset `x` with velocity `v` after `secs`: the offset and its
     /// velocity.
     #[must_use]
     pub fn of_vec3(self, x: Vec3, v: Vec3, secs: f64) -> (Vec3, Vec3) {

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-/// The linear map from an offset `x` and its velocity `v` to what is left of both after some time.
+/// The linear map from an offset `x` and its velocity `v` to the rest of both after some time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Response {
     /// Offset from offset.
