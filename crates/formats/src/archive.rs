@@ -14,13 +14,13 @@ use segue_text::{Message, ToMessage, msg};
 use std::io;
 
 /// The endings of files that hold motion, or a part of it.
-const MOTION: [&str; 6] = ["bvh", "asf", "amc", "glb", "gltf", "bin"];
+const MOTION_ENDINGS: [&str; 6] = ["bvh", "asf", "amc", "glb", "gltf", "bin"];
 
 /// The greatest number of motion files by default; see [`ArchiveLimits::default`].
 pub const MAX_FILES: usize = 2000;
 
 /// The depth to which archives inside archives are opened.
-const DEPTH: usize = 1;
+const MAX_DEPTH: usize = 1;
 
 /// Limits of an archive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -209,7 +209,7 @@ impl Unpacker<'_> {
         if leads_out {
             self.tally.add(WarningKind::PathsOutside, None);
         }
-        if is_zip && depth >= DEPTH {
+        if is_zip && depth >= MAX_DEPTH {
             self.unreadable(&path, "an archive inside an archive inside this one".into());
             return Ok(());
         }
@@ -299,7 +299,7 @@ impl Unpacker<'_> {
 }
 
 fn is_motion(path: &str) -> bool {
-    MOTION.iter().any(|extension| has_extension(path, extension))
+    MOTION_ENDINGS.iter().any(|extension| has_extension(path, extension))
 }
 
 /// Returns a path inside the archive with `/` only, and without drives, roots, `.` and `..`, and

@@ -15,7 +15,7 @@ const MAX_SKINS: usize = 16;
 
 /// The smallest and largest size of a character relative to its motion; outside of this range
 /// nothing would be visible.
-const SIZES: (f32, f32) = (0.02, 50.0);
+const SIZE_RANGE: (f32, f32) = (0.02, 50.0);
 
 /// The bodies in the current style.
 #[derive(Debug, Default)]
@@ -70,7 +70,7 @@ pub(crate) fn shown_character(session: &Session) -> Option<Character> {
 /// move it.
 pub(crate) fn size_beside(character: &Character, motion: &Motion) -> Option<f32> {
     let size = character.size_beside(motion.clip().skeleton(), motion.roles())?;
-    Some(size.clamp(SIZES.0, SIZES.1))
+    Some(size.clamp(SIZE_RANGE.0, SIZE_RANGE.1))
 }
 
 impl BodyCache {

@@ -14,7 +14,7 @@ use std::time::Instant;
 
 /// The greatest distance of the windows of a close pair, centimetres: a transition between them
 /// should be smooth.
-const CLOSE_CM: f32 = 12.0;
+const MAX_CLOSE_CM: f32 = 12.0;
 /// The time limit of a trial, seconds.
 const MAX_SECS: f64 = 120.0;
 /// The sideways displacement of an edited path, as a share of its length, and at most this many
@@ -22,7 +22,7 @@ const MAX_SECS: f64 = 120.0;
 const BULGE: f64 = 0.05;
 const MAX_BULGE_M: f64 = 1.0;
 /// The number of takes in a set.
-const SET: usize = 4;
+const TAKES_IN_SET: usize = 4;
 
 /// Runs all labs on `pairs` pairs of one rig and as many of two, and on half as many sets of four
 /// takes, drawn by `seed`.
@@ -45,7 +45,7 @@ fn draw(motions: &Motions, pairs: usize, seed: u64) -> Vec<(Draw, Vec<usize>)> {
     let wanted = [
         (Draw::SameRig, 2, pairs),
         (Draw::OtherRigs, 2, pairs),
-        (Draw::Set, SET, pairs.div_ceil(2)),
+        (Draw::Set, TAKES_IN_SET, pairs.div_ceil(2)),
     ];
     for (what, size, count) in wanted {
         let first = draw.len();
@@ -151,8 +151,9 @@ impl<'a> TrialSession<'a> {
             let pair =
                 self.open(|ids| format!("lab=blend&a={}&b={}", encoded(&ids[0]), encoded(&ids[1])));
             if let Ok(outcome) = &pair.made {
-                is_close =
-                    outcome.transition.is_some_and(|transition| transition.distance_cm < CLOSE_CM);
+                is_close = outcome
+                    .transition
+                    .is_some_and(|transition| transition.distance_cm < MAX_CLOSE_CM);
                 // B as it is mixed: on the skeleton of A.
                 sources.extend(outcome.sources.get(1).map(|source| traced(&source.motion)));
             }
@@ -200,7 +201,7 @@ impl<'a> TrialSession<'a> {
                 // An additive layer adds its own speed by design.
                 let adds = lab_use.lab == "layers" && lab_use.method == "additive";
                 let is_far = opened.made.as_ref().is_ok_and(|outcome| {
-                    own_distance_cm(outcome).is_some_and(|cm| cm >= f64::from(CLOSE_CM))
+                    own_distance_cm(outcome).is_some_and(|cm| cm >= f64::from(MAX_CLOSE_CM))
                 });
                 let asks_much =
                     lab_use.jumps || adds || is_far || opened.made.as_ref().is_ok_and(is_hard);

@@ -5,7 +5,7 @@ use crate::math::quat;
 use crate::skeleton::{Mirror, NoCounterparts, Roles, rest_is_plausible};
 
 /// The greatest number of frames from which a joint's usual rotation is computed.
-const SAMPLES: usize = 240;
+const MAX_SAMPLES: usize = 240;
 
 /// Error mirroring a clip.
 #[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
@@ -40,7 +40,7 @@ fn mirror_of(clip: &Clip, roles: &Roles) -> Result<Mirror, NoCounterparts> {
     if rest_is_plausible(skeleton, roles) != Some(false) {
         return Mirror::of(skeleton, roles);
     }
-    let step = clip.frames().div_ceil(SAMPLES).max(1);
+    let step = clip.frames().div_ceil(MAX_SAMPLES).max(1);
     let usual = (0..skeleton.len()).map(|joint| {
         let frames = (0..clip.frames()).step_by(step);
         quat::mean(frames.filter_map(|frame| clip.rotations(frame).get(joint).copied()))

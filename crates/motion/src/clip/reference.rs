@@ -8,7 +8,7 @@ use crate::skeleton::{
 use glam::{Quat, Vec3};
 
 /// The greatest number of frames of a clip that are examined.
-const SAMPLES: usize = 120;
+const MAX_SAMPLES: usize = 120;
 /// Frames that are less upright than the most upright one by up to this count as upright, too.
 const UPRIGHT_TOLERANCE: f32 = 0.06;
 /// A rest pose from which a clip's joints are rotated by more than this in the mean is implausible,
@@ -26,7 +26,7 @@ const MAX_MEAN_ANGLE: f32 = 0.7;
 pub fn reference_pose(clip: &Clip, roles: &Roles) -> WorldPose {
     let skeleton = clip.skeleton();
     let rest = skeleton.rest_pose();
-    let step = clip.frames().div_ceil(SAMPLES).max(1);
+    let step = clip.frames().div_ceil(MAX_SAMPLES).max(1);
     let frames = || (0..clip.frames()).step_by(step).map(|frame| clip.world_pose(frame));
     match rest_is_plausible(skeleton, roles) {
         Some(true) => rest,

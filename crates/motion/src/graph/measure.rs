@@ -10,7 +10,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// The least excess of yaw within [`SPIN_SECS`] that counts as a spin, degrees.
-const SPIN_DEG: f64 = 30.0;
+const MIN_SPIN_DEG: f64 = 30.0;
 /// The time within which spins are measured, seconds.
 const SPIN_SECS: f64 = 0.2;
 /// The factor over the 99.9th percentile of the clips' own steps from which on a step counts as a
@@ -18,9 +18,9 @@ const SPIN_SECS: f64 = 0.2;
 const FLASH: f32 = 2.0;
 /// The least rotation per frame that counts as a movement of a joint, radians: less is rounding in
 /// single precision, or noise of a capture at rest.
-const STILL_RADIANS: f32 = 2e-3;
+const MIN_TURN_RADIANS: f32 = 2e-3;
 /// The least step that counts as a movement of a root, metres.
-const STILL_M: f32 = 5e-4;
+const MIN_STEP_M: f32 = 5e-4;
 /// The least difference of velocities for which a lag is measured, metres per second.
 const MIN_CHANGE_MPS: f64 = 0.1;
 
@@ -168,7 +168,7 @@ impl WalkMetrics {
     /// Returns the number of transitions with more than 30° of yaw within 0.2 s beyond both clips.
     #[must_use]
     pub fn spins(&self) -> usize {
-        self.seams.iter().filter(|seam| seam.spin_deg > SPIN_DEG).count()
+        self.seams.iter().filter(|seam| seam.spin_deg > MIN_SPIN_DEG).count()
     }
 
     /// Returns the number of transitions with a step of the root or turn of a joint above twice the
@@ -387,7 +387,7 @@ impl WalkQuantities {
         let mut step = Planar::IDENTITY;
         if let Some((stood, were, root_was)) = before {
             step = stood.inverse().after(standing);
-            flash.0 = root.distance(*root_was) / profile.step.max(STILL_M).max(sources.step());
+            flash.0 = root.distance(*root_was) / profile.step.max(MIN_STEP_M).max(sources.step());
             let turns: Vec<Vec3> =
                 were.iter().zip(rotations).map(|(&from, &to)| turn(from, to)).collect();
             for (joint, turn) in turns.iter().enumerate() {
@@ -399,8 +399,8 @@ impl WalkQuantities {
                 let (length, changed) =
                     (turn.length(), turned.get(joint).map_or(0.0, |before| before.distance(*turn)));
                 // The clips' own values are evaluated only where they matter.
-                if length / p999.max(STILL_RADIANS) > flash.0 {
-                    let unusual = length / p999.max(STILL_RADIANS).max(sources.turn(joint));
+                if length / p999.max(MIN_TURN_RADIANS) > flash.0 {
+                    let unusual = length / p999.max(MIN_TURN_RADIANS).max(sources.turn(joint));
                     if unusual > flash.0 {
                         flash = (unusual, Some(joint));
                     }

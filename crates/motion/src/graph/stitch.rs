@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// which the steady velocity is averaged.
 const PAST_SECS: f64 = 1.0;
 /// The least time for which the clip that is left continues after a transition, seconds.
-const AHEAD_SECS: f64 = 0.5;
+const MIN_AHEAD_SECS: f64 = 0.5;
 
 /// A classic mistake in aligning one clip with the other, for experiments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
@@ -151,7 +151,7 @@ impl Stitcher {
         let frames = source.clip().frames();
         // This also checks the stay.
         source.clip().crop(stay.from..stay.to)?;
-        let ahead = (AHEAD_SECS * self.set.fps()).round() as usize;
+        let ahead = (MIN_AHEAD_SECS * self.set.fps()).round() as usize;
         let until = stay.to + ahead.max(graph.options().blend_window).min(frames - stay.to);
         let jump = stay.jump.and_then(|index| graph.jumps().get(index));
         let (made, entered, world_from_piece, seam) = match (self.playing.take(), jump) {
@@ -210,7 +210,7 @@ impl Stitcher {
         let around = |place: Place, past: usize| -> Result<(Motion, usize), GraphError> {
             let source = source(place)?;
             let from = place.frame.saturating_sub(past);
-            let until = (place.frame + secs(AHEAD_SECS)).min(source.clip().frames());
+            let until = (place.frame + secs(MIN_AHEAD_SECS)).min(source.clip().frames());
             Ok((part(source, from..until)?, place.frame - from))
         };
         let (outgoing, leave) = around(jump.leave, secs(PAST_SECS).max(1))?;

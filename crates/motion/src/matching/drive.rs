@@ -44,7 +44,7 @@ pub struct Jump {
 }
 
 /// The least change of the desired facing that counts as a turn, radians.
-const TURN_RADIANS: f64 = 0.6;
+const MIN_TURN_RADIANS: f64 = 0.6;
 /// A turn is complete when the body faces within this of the desired yaw, and stays there, radians:
 /// 20°. Walking sways it by up to 10°.
 const FACING_TOLERANCE_RADIANS: f64 = 0.35;
@@ -144,7 +144,7 @@ impl Drive {
         let faces = character_frames(&self.clip, database.roles());
         let asked: Vec<usize> = (1..self.goals.len())
             .filter(|&frame| {
-                wrap_angle(self.goals[frame] - self.goals[frame - 1]).abs() > TURN_RADIANS
+                wrap_angle(self.goals[frame] - self.goals[frame - 1]).abs() > MIN_TURN_RADIANS
             })
             .collect();
         let turn = |(index, &from): (usize, &usize)| {

@@ -29,10 +29,10 @@ const SPIN_SECS: f64 = 0.2;
 const MIN_SPIN_DEG: f32 = 30.0;
 /// A foot is low within this height of the 5th percentile of its heights, metres.
 const LOW_M: f32 = 0.04;
-/// The least duration of a stance, seconds: a low foot at a median speed below [`STANDING_MPS`].
+/// The least duration of a stance, seconds: a low foot at a median speed below [`MAX_STANCE_MPS`].
 const MIN_STANCE_SECS: f64 = 0.1;
 /// The greatest median speed of a stance, metres per second.
-const STANDING_MPS: f32 = 0.6;
+const MAX_STANCE_MPS: f32 = 0.6;
 /// Skating is measured below this height above the 2nd percentile of the foot's heights, metres.
 const SKATING_M: f32 = 0.025;
 /// A speed exceeds another one if it is higher by more than this factor: less is rounding.
@@ -332,7 +332,7 @@ impl<'a> Foot<'a> {
         let stands = |run: &Range<usize>| {
             let median = stats::percentile(&self.speeds[run.clone()], 0.5);
             run.len() as f64 / self.fps >= MIN_STANCE_SECS
-                && median.is_some_and(|speed| speed < STANDING_MPS)
+                && median.is_some_and(|speed| speed < MAX_STANCE_MPS)
         };
         let moved_cm = |run: Range<usize>| {
             let edge = run.len() / 5;

@@ -6,7 +6,7 @@ use crate::math::Planar;
 use glam::DVec2;
 
 /// The least number of parts into which each polynomial piece is divided.
-const PARTS: usize = 8;
+const MIN_PARTS: usize = 8;
 /// The tolerance of a part's length against the sum of its halves, metres.
 const QUADRATURE_TOLERANCE_M: f64 = 1e-6;
 /// The greatest number of bisections of a part. Near the tip of a hairpin the error falls to a
@@ -64,8 +64,8 @@ impl ArcLengthPath {
         let (mut parameters, mut lengths, mut speeds) = (vec![0.0], vec![0.0], vec![speed(0.0)]);
         let mut total = 0.0;
         for piece in spline.breaks().windows(2) {
-            for part in 0..PARTS {
-                let at = |k: usize| piece[0] + (piece[1] - piece[0]) * k as f64 / PARTS as f64;
+            for part in 0..MIN_PARTS {
+                let at = |k: usize| piece[0] + (piece[1] - piece[0]) * k as f64 / MIN_PARTS as f64;
                 measure(&spline, at(part), at(part + 1), MAX_HALVINGS, &mut |end, length| {
                     total += length;
                     parameters.push(end);

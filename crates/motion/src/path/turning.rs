@@ -10,7 +10,7 @@ use std::ops::Range;
 /// fast, even if its motion is straight.
 const ALWAYS_RADIANS_PER_SEC: f64 = 0.35;
 /// The least excess over the original's turn rate that is reported, as a share.
-const MARGIN: f64 = 1.05;
+const MIN_EXCESS: f64 = 1.05;
 /// The share of the original's frames from which its usual turn rate is computed: the tip of a
 /// hairpin does not belong to them.
 const USUAL: f32 = 0.99;
@@ -68,7 +68,7 @@ pub fn hard_turns(path: &FittedPath, carried: &CarriedMotion) -> Vec<HardTurn> {
     // The turn rate of the original in the same frame is possible here, too.
     let held = |frame: f64| own.get(frame.round() as usize).map_or(0.0, |&own| f64::from(own));
     for (frame, (&rate, &at)) in rates.iter().zip(&carried.frames).enumerate() {
-        if rate.abs() <= limit.max(held(at)) * MARGIN {
+        if rate.abs() <= limit.max(held(at)) * MIN_EXCESS {
             continue;
         }
         let (turn_dps, place) = (rate.abs().to_degrees(), carried.places[frame].frame.shift);

@@ -57,13 +57,13 @@ pub struct PoseMatch {
 /// The number of lowest minima of the coarse grid that are refined.
 const CANDIDATES: usize = 8;
 /// The greatest number of frames of a clip in the coarse comparison.
-const COARSE_FRAMES: usize = 1_000;
+const MAX_COARSE_FRAMES: usize = 1_000;
 /// The greatest jolt ([`jolts`]) of a calm frame: a transition adds the motion of its two frames,
 /// including any trembling, to its own.
-const CALM_JOLT: f32 = 0.7;
+const MAX_CALM_JOLT: f32 = 0.7;
 /// Calm frames may cost this much more than the lowest cost, 1 being that of an average pair, and
 /// at most twice the lowest cost: identical frames need no replacement.
-const CALM_COST: f64 = 0.03;
+const MAX_CALM_COST: f64 = 0.03;
 /// The range around each candidate in which calm frames are searched, seconds.
 const CALM_REACH_SECS: f64 = 0.05;
 
@@ -191,7 +191,7 @@ impl PoseSearch {
         }
         let longest = outgoing.frames.max(incoming.frames);
         let stride =
-            ((source_fps / 60.0).ceil() as usize).max(longest.div_ceil(COARSE_FRAMES)).max(1);
+            ((source_fps / 60.0).ceil() as usize).max(longest.div_ceil(MAX_COARSE_FRAMES)).max(1);
         let columns = incoming.frames.div_ceil(stride);
         let pairs = outgoing.frames.div_ceil(stride) * columns;
         Ok(Self {
@@ -290,9 +290,9 @@ impl PoseSearch {
         // found.
         pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
         let lowest = pairs.first().map_or(f64::INFINITY, |pair| pair.0);
-        let alike = pairs.iter().take_while(|pair| pair.0 <= lowest + lowest.min(CALM_COST));
+        let alike = pairs.iter().take_while(|pair| pair.0 <= lowest + lowest.min(MAX_CALM_COST));
         let jolt = |&&(_, i, j): &&(f64, usize, usize)| self.jolt(i, j);
-        let calm = alike.clone().find(|pair| jolt(pair) <= CALM_JOLT);
+        let calm = alike.clone().find(|pair| jolt(pair) <= MAX_CALM_JOLT);
         let best = calm.or_else(|| alike.min_by(|a, b| jolt(a).total_cmp(&jolt(b))));
         let (cost, leave, enter) =
             best.copied().unwrap_or((f64::INFINITY, leave.start, enter.start));
@@ -434,7 +434,7 @@ mod tests {
                     .map(|(i, j)| cost(&factors, &search.compare(i, j)))
                     .fold(f64::INFINITY, f64::min);
                 assert!(
-                    found.cost >= best && found.cost <= best + 0.02 + CALM_COST,
+                    found.cost >= best && found.cost <= best + 0.02 + MAX_CALM_COST,
                     "{frames} {fps} {weights:?} {found:?} {best}"
                 );
                 assert!(
@@ -485,7 +485,7 @@ mod tests {
         let found = search.best(weights, &options).unwrap();
         let jolt = |found: PoseMatch| search.jolt(found.leave, found.enter);
         assert!(jolt(smooth) > 3.0 && jolt(found) < 1.1, "{} {}", jolt(smooth), jolt(found));
-        assert!(found.cost <= smooth.cost + CALM_COST, "{found:?} {smooth:?}");
+        assert!(found.cost <= smooth.cost + MAX_CALM_COST, "{found:?} {smooth:?}");
         // A frame that the user chose is kept.
         let named = options.leaving_at(smooth.leave, a.frames());
         assert_eq!(search.best(weights, &named).unwrap().leave, smooth.leave);

@@ -8,15 +8,15 @@ use glam::{Mat3, Quat, Vec3};
 
 /// Rest directions that differ by less are considered equal, radians (2°): local rotations are then
 /// copied unchanged.
-const SAME_DIRECTION_RADIANS: f32 = 0.035;
+const MIN_CORRECTION_RADIANS: f32 = 0.035;
 /// The limit for back, neck and head, radians (15°): rigs place these joints differently in one and
 /// the same body.
-const SAME_BACK_RADIANS: f32 = 0.26;
+const MIN_BACK_CORRECTION_RADIANS: f32 = 0.26;
 /// The limit for collar bones, radians (45°): they start anywhere between breast bone and spine.
-const SAME_COLLAR_RADIANS: f32 = 0.79;
+const MIN_COLLAR_CORRECTION_RADIANS: f32 = 0.79;
 /// The limit for feet, radians (35°): ankles lie higher or lower above one and the same sole. Below
 /// it the foot counts as flat in both rigs, and only its heading is corrected.
-const SAME_FOOT_RADIANS: f32 = 0.61;
+const MIN_FOOT_CORRECTION_RADIANS: f32 = 0.61;
 
 /// Returns for every driven joint of the target the rotation from its bone at rest to that of its
 /// driving joint; the identity for other joints.
@@ -53,15 +53,17 @@ pub(super) fn corrections(
             Bone::Direction { target, source } => {
                 let target = whole_body * target;
                 let turn = match quat::log(quat::between_directions(target, source)).length() {
-                    a if a < SAME_DIRECTION_RADIANS => Quat::IDENTITY,
-                    a if a < SAME_BACK_RADIANS && back.contains(&joint) => Quat::IDENTITY,
-                    a if a < SAME_COLLAR_RADIANS && landmarks.collars.contains(&Some(joint)) => {
+                    a if a < MIN_CORRECTION_RADIANS => Quat::IDENTITY,
+                    a if a < MIN_BACK_CORRECTION_RADIANS && back.contains(&joint) => Quat::IDENTITY,
+                    a if a < MIN_COLLAR_CORRECTION_RADIANS
+                        && landmarks.collars.contains(&Some(joint)) =>
+                    {
                         Quat::IDENTITY
                     }
-                    a if a < SAME_FOOT_RADIANS && is_any(joint, Role::foot) => {
+                    a if a < MIN_FOOT_CORRECTION_RADIANS && is_any(joint, Role::foot) => {
                         heading_turn(target, source, up)
                     }
-                    a if a < SAME_FOOT_RADIANS && is_any(joint, Role::toe) => {
+                    a if a < MIN_FOOT_CORRECTION_RADIANS && is_any(joint, Role::toe) => {
                         inherited * whole_body.conjugate()
                     }
                     _ => turn_about(target, source, left),
@@ -166,7 +168,7 @@ enum Bone {
 /// `left`, as legs and spines bend.
 fn turn_about(from: Vec3, to: Vec3, left: Vec3) -> Quat {
     let turn = quat::between_directions(from, to);
-    let opposite = quat::log(turn).length() > std::f32::consts::PI - SAME_DIRECTION_RADIANS;
+    let opposite = quat::log(turn).length() > std::f32::consts::PI - MIN_CORRECTION_RADIANS;
     if opposite && from.try_normalize().is_some_and(|from| from.dot(left).abs() < 0.5) {
         let half_turn = Quat::from_axis_angle(left, std::f32::consts::PI);
         return quat::between_directions(half_turn * from, to) * half_turn;
@@ -179,7 +181,7 @@ fn turn_about(from: Vec3, to: Vec3, left: Vec3) -> Quat {
 fn heading_turn(from: Vec3, to: Vec3, up: Vec3) -> Quat {
     let level = |v: Vec3| v - up * up.dot(v);
     let turn = quat::between_directions(level(from), level(to));
-    if quat::log(turn).length() < SAME_DIRECTION_RADIANS { Quat::IDENTITY } else { turn }
+    if quat::log(turn).length() < MIN_CORRECTION_RADIANS { Quat::IDENTITY } else { turn }
 }
 
 /// The axes of a body at rest.

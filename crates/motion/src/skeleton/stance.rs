@@ -9,19 +9,19 @@ use std::f32::consts::PI;
 
 /// Angle of the arms below level, radians (40°): between their usual position and their limits, so
 /// that shoulders bend least.
-const ARMS_DOWN: f32 = 0.70;
+const ARMS_DOWN_RADIANS: f32 = 0.70;
 /// Angle of the bone from the ankle to the ball of the foot below level where the sole is level,
 /// radians (27°).
-const FOOT_DOWN: f32 = 0.47;
+const FOOT_DOWN_RADIANS: f32 = 0.47;
 /// Greatest natural angle of the bones up the back and of the head from the vertical, radians
 /// (25°).
-const LEAN: f32 = 0.44;
+const MAX_LEAN_RADIANS: f32 = 0.44;
 /// Limbs of a rest pose are moved to the stance when they are farther from it than this, radians
 /// (57°): arms may be level or hang.
-const MAX_LIMB_DEVIATION: f32 = 1.0;
+const MAX_LIMB_DEVIATION_RADIANS: f32 = 1.0;
 /// A body whose own axes are nearer to those of the world than this keeps its orientation, radians
 /// (15°).
-const UPRIGHT: f32 = 0.26;
+const MAX_UPRIGHT_RADIANS: f32 = 0.26;
 
 impl Skeleton {
     /// Returns the skeleton whose rest pose is `stance`: at rest its joints have the positions of
@@ -82,7 +82,7 @@ pub fn canonical_stance(skeleton: &Skeleton, roles: &Roles, reference: &WorldPos
     let Some(body) = body else {
         return stance.world_pose();
     };
-    if quat::log(body.world_from_body.conjugate()).length() > UPRIGHT {
+    if quat::log(body.world_from_body.conjugate()).length() > MAX_UPRIGHT_RADIANS {
         stance.turn(0, body.world_from_body.conjugate());
     }
     // A rest pose that stands is intended; in a frame of a clip all accidental deviation is
@@ -93,7 +93,7 @@ pub fn canonical_stance(skeleton: &Skeleton, roles: &Roles, reference: &WorldPos
         .all(|rotation| quat::angle_between(*rotation, reference.rotations[0]) < 1e-3);
     match is_rest {
         true if body.stands_on_two() => {}
-        true => stance.straighten(roles, MAX_LIMB_DEVIATION),
+        true => stance.straighten(roles, MAX_LIMB_DEVIATION_RADIANS),
         false => stance.straighten(roles, 0.0),
     }
     stance.world_pose()
@@ -319,14 +319,14 @@ impl<'a> Stance<'a> {
                     between(Some(neck), Some(head)),
                     Vec3::Y,
                     Vec3::X,
-                    LEAN.max(least),
+                    MAX_LEAN_RADIANS.max(least),
                 );
             }
-            self.swing(head, self.end_of(head), Vec3::Y, Vec3::X, LEAN.max(least));
+            self.swing(head, self.end_of(head), Vec3::Y, Vec3::X, MAX_LEAN_RADIANS.max(least));
         }
         for (side, sign) in [(Side::Left, 1.0), (Side::Right, -1.0)] {
-            let arm = Vec3::new(sign * ARMS_DOWN.cos(), -ARMS_DOWN.sin(), 0.0);
-            let foot = Vec3::new(0.0, -FOOT_DOWN.sin(), FOOT_DOWN.cos());
+            let arm = Vec3::new(sign * ARMS_DOWN_RADIANS.cos(), -ARMS_DOWN_RADIANS.sin(), 0.0);
+            let foot = Vec3::new(0.0, -FOOT_DOWN_RADIANS.sin(), FOOT_DOWN_RADIANS.cos());
             let [thigh, shin, ankle, toe] = Role::leg(side).map(joint);
             let [upper, fore, hand] = Role::arm(side).map(joint);
             let bones = [

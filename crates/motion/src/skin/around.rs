@@ -12,7 +12,7 @@ use glam::Vec3;
 use std::collections::BTreeMap;
 
 /// The greatest size of a cell of the surface, as a share of the thinnest part there.
-const CELL_SHARE: f32 = 0.5;
+const MAX_CELL_SHARE: f32 = 0.5;
 /// The greatest size of a cell, as a share of the body's height: 1.9 cm on an adult.
 const MAX_CELL: f32 = 0.0108;
 /// The approximate greatest number of vertices of the whole mesh; cells become larger where there
@@ -24,7 +24,7 @@ const MAX_BLENDED: usize = 400;
 const MAX_SHAPES: usize = 4000;
 /// The greatest number of steps between a joint and its ancestor whose shapes may blend with each
 /// other.
-const NEAR_STEPS: usize = 2;
+const MAX_NEAR_STEPS: usize = 2;
 /// Number of cells of a contour that are processed in one slice.
 const CELLS_AT_ONCE: usize = 400;
 /// Number of smoothing passes over the surface.
@@ -123,7 +123,8 @@ impl SkinBuilder {
         let largest = MAX_CELL * roles.body_height(skeleton);
         // Cells are halved repeatedly, so sizes are rounded accordingly.
         let size = |cone: &Cone| {
-            largest * (CELL_SHARE * cone.thinness() / largest).clamp(0.2, 1.0).log2().round().exp2()
+            largest
+                * (MAX_CELL_SHARE * cone.thinness() / largest).clamp(0.2, 1.0).log2().round().exp2()
         };
         let sizes: Vec<f32> = cones.iter().map(size).collect();
         // A surface passes through about 1.5 cells for each square of the size of a cell.
@@ -324,7 +325,7 @@ fn joint_at(path: &[(f32, usize)], share: f32) -> usize {
 fn are_near(skeleton: &Skeleton, one: &[(f32, usize)], other: &[(f32, usize)]) -> bool {
     let is_above = |above: usize, below: usize| {
         std::iter::successors(Some(below), |&joint| skeleton.parent(joint))
-            .take(NEAR_STEPS + 1)
+            .take(MAX_NEAR_STEPS + 1)
             .any(|joint| joint == above)
     };
     one.iter().any(|&(_, i)| other.iter().any(|&(_, j)| is_above(i, j) || is_above(j, i)))

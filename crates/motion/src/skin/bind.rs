@@ -7,9 +7,9 @@ use glam::{Quat, Vec3};
 
 /// The angle of the arms below level, radians (40°): between their most frequent position and the
 /// extreme ones, so that the shoulders deform least.
-const ARMS_DOWN: f32 = 0.70;
+const ARMS_DOWN_RADIANS: f32 = 0.70;
 /// The angle of the legs from the vertical, radians (7°): the thighs separate below the crotch.
-const LEGS_OUT: f32 = 0.12;
+const LEGS_OUT_RADIANS: f32 = 0.12;
 
 /// Returns the bind pose of a skeleton that rests in `stance`, with its joints' own axes: limbs
 /// with known roles are spread, and everything else is as in the stance. The root is at the origin.
@@ -22,8 +22,8 @@ pub(super) fn bind_pose(skeleton: &Skeleton, roles: &Roles, stance: &WorldPose) 
     if let Some((left, up)) = axes(&rest, roles) {
         for (side, sign) in [(Side::Left, 1.0), (Side::Right, -1.0)] {
             let out = left * sign;
-            let arm = out * ARMS_DOWN.cos() - up * ARMS_DOWN.sin();
-            let leg = out * LEGS_OUT.sin() - up * LEGS_OUT.cos();
+            let arm = out * ARMS_DOWN_RADIANS.cos() - up * ARMS_DOWN_RADIANS.sin();
+            let leg = out * LEGS_OUT_RADIANS.sin() - up * LEGS_OUT_RADIANS.cos();
             let bones = [
                 (Role::upper_arm(side), Role::forearm(side), arm),
                 (Role::forearm(side), Role::hand(side), arm),

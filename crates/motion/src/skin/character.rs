@@ -18,7 +18,7 @@ const MIN_LIMBS: usize = 2;
 const SOLE_VERTICES: usize = 32;
 /// The greatest distance of a clip's lowest foot points from the ground on which it stands, as a
 /// share of the leg's length.
-const NEAR_GROUND: f32 = 0.2;
+const MAX_GROUND_DISTANCE: f32 = 0.2;
 /// The percentage of frames in which a foot may be below its ground: outliers in single frames.
 const GROUND_PERCENTILE: f32 = 5.0;
 
@@ -245,7 +245,7 @@ impl Drive {
         ) else {
             return 0.0;
         };
-        let reach = NEAR_GROUND * roles.leg_length(&self.source).unwrap_or(0.0);
+        let reach = MAX_GROUND_DISTANCE * roles.leg_length(&self.source).unwrap_or(0.0);
         let ground = if theirs.abs() < reach { 0.0 } else { theirs * scale };
         let lift = ground - ours;
         if lift.is_finite() { lift } else { 0.0 }

@@ -49,10 +49,11 @@ const MIN_CHANGE_SHARE: f64 = 0.15;
 /// The greatest distance between the ends of a cycle, as a share of the greatest distance of any of
 /// its poses to the first.
 const MAX_GAP_SHARE: f64 = 0.5;
-/// The greatest difference of the speeds over the ground at both ends, as a share of the mean
-/// speed, and in metres per second.
-const SPEED_SHARE: f64 = 0.5;
-const SPEED_MPS: f64 = 0.2;
+/// The greatest difference of the velocities over the ground at both ends is this share of the mean
+/// speed, plus [`MAX_SPEED_DIFFERENCE_MPS`].
+const MAX_SPEED_DIFFERENCE_SHARE: f64 = 0.5;
+/// The constant part of the greatest difference of the velocities at both ends, metres per second.
+const MAX_SPEED_DIFFERENCE_MPS: f64 = 0.2;
 
 impl WholeCycle {
     /// Analyses a clip as a cycle. `None` for a clip that is not one: of fewer than eight frames;
@@ -156,7 +157,8 @@ fn keeps_its_speed(source: &Motion, reach: usize) -> bool {
     };
     let way: f64 = stands.windows(2).map(|pair| pair[0].shift.distance(pair[1].shift)).sum();
     let mean = way * fps / last as f64;
-    velocity(0, reach).distance(velocity(last - reach, last)) <= SPEED_SHARE * mean + SPEED_MPS
+    velocity(0, reach).distance(velocity(last - reach, last))
+        <= MAX_SPEED_DIFFERENCE_SHARE * mean + MAX_SPEED_DIFFERENCE_MPS
 }
 
 /// Extrapolates a clip after its end until it moves as at its beginning: `added_frames`, and one

@@ -26,7 +26,7 @@ use std::sync::Arc;
 const TICK_SECS: f64 = 1.0 / RATE as f64;
 /// The greatest speed at which a character is pulled along, as a share of the greatest speed of its
 /// clips.
-const PULL_SHARE: f64 = 1.1;
+const MAX_PULL_SHARE: f64 = 1.1;
 /// The least values of that greatest speed, for clips that stay in place or walk straight on alone,
 /// metres and radians per second: 0.5 m/s and 80° per second.
 const MIN_PULL_MPS: f64 = 0.5;
@@ -314,9 +314,9 @@ impl Controller {
         let pace = self.database.pace();
         let room = |fastest: f64, own: f64| (fastest * TICK_SECS - own).max(0.0);
         let most_pull =
-            room(PULL_SHARE * pace.travel_mps.max(MIN_PULL_MPS), travelled.shift.length());
+            room(MAX_PULL_SHARE * pace.travel_mps.max(MIN_PULL_MPS), travelled.shift.length());
         let most_twist =
-            room(PULL_SHARE * pace.turn_radps.max(MIN_TWIST_RADPS), travelled.yaw.abs());
+            room(MAX_PULL_SHARE * pace.turn_radps.max(MIN_TWIST_RADPS), travelled.yaw.abs());
         let pulled = (off - left).clamp_length_max(most_pull);
         let twisted = (turn - left_turn).clamp(-most_twist, most_twist);
         self.root =
