@@ -174,9 +174,11 @@ fn the_stage_has_its_own_colours_and_rows() {
         let page = page("lab=view&a=walk&play=off&stage=paper&theme=dark");
         let mut harness = harness(size, Theme::default(), page);
         if name == "stage-desk" {
-            harness.get_by_role_and_label(Role::Button, text::STAGE.english()).scroll_to_me();
+            harness
+                .get_by_role_and_label(Role::DisclosureTriangle, text::STAGE.english())
+                .scroll_to_me();
             harness.run();
-            harness.get_by_role_and_label(Role::Button, text::STAGE.english()).click();
+            harness.get_by_role_and_label(Role::DisclosureTriangle, text::STAGE.english()).click();
             harness.run();
             harness.get_by_label("Hand twist").scroll_to_me();
             harness.run();
