@@ -4,18 +4,18 @@ use crate::ui::language::Word;
 use segue_session::{BuiltGraph, FollowedPath, GraphClips};
 use segue_text::{Message, msg};
 
-/// What the Graph lab does.
+/// The description of the Graph lab.
 pub(crate) const GRAPH_ABOUT: Word = Word::new(
     "A motion graph: the transitions between clips, and an endless random walk through them, set by the seed.",
 );
-/// Over the stage.
+/// The hint over the stage in the Graph lab.
 pub(crate) const GRAPH_HINT: Word = Word::new(
     "Point at a ring or an arc to see both poses. Click it to play that transition alone.",
 );
-/// Of the seed, in place of what it does for a made motion.
+/// The help of the seed in this lab, in place of that for a made motion.
 pub(crate) const GRAPH_SEED_HELP: Word =
     Word::new("Each seed gives another walk; the same seed gives the same walk on every machine.");
-/// Why a visit came to nothing.
+/// Says why a visit was not possible.
 pub(crate) fn no_way(name: Message, secs: f64) -> Message {
     msg!(
         "{name} cannot be reached from the walk at {secs:.1} s: a higher threshold may connect them.",
@@ -28,52 +28,51 @@ pub(crate) const GRAPH_LACKS_SOME: Word =
     Word::new("There are too many transitions below the threshold: the closest are kept.");
 /// The label of a menu that adds a clip.
 pub(crate) const ADD_CLIP: Word = Word::new("Add a clip");
-/// While it is computed.
+/// The task of building graph and walk.
 pub(crate) const GRAPHING: Word = Word::new("Building graph and walk");
-/// After it was given up.
+/// The button that continues a task after it was stopped.
 pub(crate) const GO_ON: Word = Word::new("Continue");
-/// Of the parameters that say where the walk goes.
+/// The heading of the parameters of the walk.
 pub(crate) const WALK: Word = Word::new("The walk");
-/// The picture of the distances.
+/// The accessible name of the picture of distances.
 pub(crate) const ALL_DISTANCES: Word = Word::new("Distances of all windows");
-/// Below it.
+/// The help below the picture of distances.
 pub(crate) const MATRIX_HELP: Word = Word::new(
     "Rows: the frame left. Columns: the frame entered. Rings: transitions. Scroll to zoom, drag to pan.",
 );
-/// The histogram's name.
+/// The accessible name of the histogram.
 pub(crate) const ALL_HISTOGRAM: Word = Word::new("Histogram of window distances");
-/// The strip's name.
+/// The accessible name of the graph as bars and arcs.
 pub(crate) const GRAPH_STRIP: Word = Word::new("The graph: clips and transitions");
-/// Of the links to what is worth a look.
+/// The heading of the experiments.
 pub(crate) const EXPERIMENTS: Word = Word::new("Experiments");
-/// Chooses a clip to go to.
+/// The label of the menu that sends the walk to a clip.
 pub(crate) const GO_TO_CLIP: Word = Word::new("Go to a clip from here");
-/// Takes that back.
+/// The button that forgets the visits.
 pub(crate) const FORGET_VISITS: Word = Word::new("Resume random walk");
-/// Draws a line to follow.
+/// The button that lets a path be drawn for the walk.
 pub(crate) const DRAW_PATH: Word = Word::new("Draw a path on the ground");
-/// While it is drawn.
+/// The note while a path is drawn.
 pub(crate) const DRAWING: Word =
     Word::new("Draw on the ground. The walk starts where the path starts.");
-/// Takes it away.
+/// The button that removes the path.
 pub(crate) const REMOVE_PATH: Word = Word::new("Remove the path");
-/// Back from one transition.
+/// The button that goes back from one transition to the walk.
 pub(crate) const BACK_TO_WALK: Word = Word::new("Back to the walk");
-/// Of the files.
+/// The label of the buttons that save the graph as a file.
 pub(crate) const GRAPH_FILES: Word = Word::new("The graph as a file");
-/// Of the table of numbers.
+/// The title of the table of numbers.
 pub(crate) const NUMBERS: Word = Word::new("Numbers");
-/// Copies it.
+/// The button that copies the table as Markdown.
 pub(crate) const COPY_MARKDOWN: Word = Word::new("Copy as Markdown");
-/// Copies it.
+/// The button that copies the table as CSV.
 pub(crate) const COPY_CSV: Word = Word::new("Copy as CSV");
-/// What is said then.
+/// The notice after a table was copied.
 pub(crate) const TABLE_COPIED: Word = Word::new("Table copied.");
-/// A row of it.
-/// A mark of the walk.
+/// The mark on the timeline where the walk changes clips.
 pub(crate) const SEAM: Word = Word::new("Transition to another clip");
 
-/// What is opened by a click: its name, what it does, and the values that it sets.
+/// An experiment that a button opens: its name, its help, and the values that it sets.
 pub(crate) struct Experiment {
     pub(crate) name: Word,
     pub(crate) help: Word,
@@ -129,7 +128,7 @@ pub(crate) const GRAPH_EXPERIMENTS: &[Experiment] = &[
     },
 ];
 
-/// What the limit of ways out has left out; `None` where that is nothing.
+/// Says how many transitions the limit for each segment has left out; `None` without any.
 pub(crate) fn ways_left_out(built: &BuiltGraph) -> Option<Message> {
     let count = built.whole().left_out();
     (count > 0).then(|| {
@@ -141,7 +140,8 @@ pub(crate) fn ways_left_out(built: &BuiltGraph) -> Option<Message> {
     })
 }
 
-/// What there is of a graph.
+/// Returns the size of a graph: transitions, dead ends, components, and the time between
+/// transitions.
 pub(crate) fn graph_in_words(built: &BuiltGraph, run_secs: Option<f64>) -> Message {
     const NAMED: usize = 4;
     let first = msg!(
@@ -175,7 +175,7 @@ pub(crate) fn graph_in_words(built: &BuiltGraph, run_secs: Option<f64>) -> Messa
     Message::joined(sentences, " ")
 }
 
-/// A transition: from where to where, how far apart, how probable.
+/// Returns the ends, distance and probability of a transition.
 pub(crate) fn jump_in_words(ends: [Message; 2], cm: f64, probability: Option<f64>) -> Message {
     let [leave, enter] = ends;
     if let Some(p) = probability {
@@ -190,7 +190,7 @@ pub(crate) fn frame_in_words(name: Message, frame: usize) -> Message {
     msg!("{name} {frame}", name, frame)
 }
 
-/// A pair of windows that is no transition.
+/// Returns the frames and the distance of two windows that are no transition.
 pub(crate) fn windows_apart([leave, enter]: [Message; 2], cm: Option<f64>) -> Message {
     if let Some(cm) = cm {
         msg!("{leave} | {enter}: {cm:.1} cm apart", leave, enter, cm)
@@ -199,7 +199,7 @@ pub(crate) fn windows_apart([leave, enter]: [Message; 2], cm: Option<f64>) -> Me
     }
 }
 
-/// Which clips were moved onto the skeleton of the first; `None` where all are on it.
+/// Says which clips were retargeted to the skeleton of the first; `None` without any.
 pub(crate) fn moved_onto_first(
     clips: &GraphClips,
     title: impl Fn(&str) -> Message,
@@ -216,7 +216,7 @@ pub(crate) fn moved_onto_first(
     ))
 }
 
-/// How a walk follows its line.
+/// Returns how closely a walk follows its path.
 pub(crate) fn followed(trace: &FollowedPath) -> Message {
     let &FollowedPath { along_m, length_m, rms_m, looked_at, .. } = trace;
     if trace.is_searching {
@@ -238,7 +238,7 @@ pub(crate) fn followed(trace: &FollowedPath) -> Message {
     }
 }
 
-/// That a walk has an end.
+/// Warns that a walk comes to an end.
 pub(crate) fn dead_end(secs: f64) -> Message {
     msg!(
         "The walk reaches a dead end after {secs:.1} s. Switch on Largest component only to avoid it.",

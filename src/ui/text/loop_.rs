@@ -4,19 +4,19 @@ use crate::ui::language::Word;
 use segue_session::choices::LoopMethod;
 use segue_text::{Message, msg};
 
-/// What the Loop lab does.
+/// The description of the Loop lab.
 pub(crate) const LOOP_ABOUT: Word = Word::new(
     "Makes a seamless loop from a part of A: the difference between its ends is spread over it.",
 );
-/// What the half-life does to a loop.
+/// The help of the half-life in this lab.
 pub(crate) const LOOP_HALF_LIFE: Word =
     Word::new("How far into the cycle the correction reaches from its ends.");
-/// Several methods on the same cycle.
+/// The button that compares methods on the same cycle.
 pub(crate) const LOOP_SHOOT_OUT: Word = Word::new("Compare methods");
-/// What the button opens.
+/// The comparison that [`LOOP_SHOOT_OUT`] opens.
 pub(crate) const LOOP_SHOOT_OUT_QUERY: &str = "loop_method:exact,both,end";
 
-/// What a way to close a loop does.
+/// Returns the description of a method that closes a loop.
 pub(crate) fn loop_method(method: LoopMethod) -> Word {
     Word::new(match method {
         LoopMethod::Both => {
@@ -39,12 +39,12 @@ pub(crate) fn loop_method(method: LoopMethod) -> Word {
     })
 }
 
-/// How the ends of a cycle were found.
+/// Says that the ends of a cycle were found, and how far apart they are.
 pub(crate) fn ends_found(distance_cm: f64) -> Message {
     msg!("Found automatically: the best-matching ends, {cm:.1} cm apart.", cm = distance_cm)
 }
 
-/// That the ends of a cycle that was found hardly fit.
+/// Warns that the ends of a cycle that was found hardly fit.
 pub(crate) fn poor_ends(distance_cm: f64) -> Message {
     msg!(
         "The best-matching ends are {cm:.1} cm apart: this clip hardly repeats itself. Choose a steadier clip, or set the ends by hand.",

@@ -6,73 +6,73 @@ use segue_session::HandTag;
 use segue_session::choices::Hysteresis;
 use segue_text::{Message, msg};
 
-/// What the Match lab does.
+/// The description of the Match lab.
 pub(crate) const MATCH_ABOUT: Word = Word::new(
     "Drive the character: W A S D or arrows, Shift to run, Q to strafe. Several times a second, all clips are searched for the best-matching frame.",
 );
-/// The same over the stage.
+/// The hint over the stage in the Match lab.
 pub(crate) const MATCH_HINT: Word = Word::new(
     "Drive with W A S D or the arrows, Shift to run, or the stick. Orange: the requested trajectory. Blue: the trajectory of the current frame.",
 );
-/// Over a pane whose character the user drives.
+/// The title of a pane whose character the user drives.
 pub(crate) const LIVE: Word = Word::new("Yours");
-/// The stick on the screen.
+/// The accessible name of the stick on the screen.
 pub(crate) const STICK: Word = Word::new("Stick: drive the character");
-/// Beside it.
+/// The button beside the stick that makes it run.
 pub(crate) const RUN: Word = Word::new("Run");
-/// Likewise.
+/// The hint of the button beside the stick.
 pub(crate) const RUN_HELP: Word = Word::new("The stick runs instead of walking");
-/// A section.
+/// The heading of the section on the current frame.
 pub(crate) const WHY: Word = Word::new("Why this frame");
-/// Before there was a search.
+/// The note before there was a search.
 pub(crate) const NO_SEARCH: Word = Word::new("No search yet.");
-/// How candidates are looked at.
+/// The help below the candidates.
 pub(crate) const GHOST_HELP: Word =
     Word::new("Point at a frame to show it as a ghost; click to keep it.");
-/// A section.
+/// The heading of the weights of features.
 pub(crate) const WEIGHTS: Word = Word::new("Feature weights");
-/// A section.
+/// The heading of the hysteresis.
 pub(crate) const HYSTERESIS: Word = Word::new("Hysteresis");
-/// A section.
+/// The title of the section on the search.
 pub(crate) const SEARCHING: Word = Word::new("Search and tags");
-/// A section.
+/// The title of the section on transitions and the trajectory.
 pub(crate) const GOING_OVER: Word = Word::new("Transition and trajectory");
-/// A section.
+/// The title of the section on clips and characters.
 pub(crate) const MATCH_CLIPS: Word = Word::new("Clips and characters");
-/// A button.
+/// The button that replays the input.
 pub(crate) const REPLAY: Word = Word::new("Replay");
-/// What it does.
+/// The hint of the button that replays the input.
 pub(crate) const REPLAY_HELP: Word =
     Word::new("Replays the same input exactly, from the start; the link then includes it");
-/// A button.
+/// The button that starts over.
 pub(crate) const START_OVER: Word = Word::new("Start over");
-/// What it does.
+/// The hint of the button that starts over.
 pub(crate) const START_OVER_HELP: Word =
     Word::new("Returns to the origin and clears the recorded input");
-/// A button.
+/// The button by which the user takes control.
 pub(crate) const DRIVE_YOURSELF: Word = Word::new("Take control");
-/// While written input plays.
+/// The note while recorded input plays.
 pub(crate) const RECORDED: Word =
     Word::new("Recorded input, the same for everyone. Change the weights and compare the results.");
-/// A button.
+/// The button that compares kinds of hysteresis.
 pub(crate) const HYSTERESES: Word = Word::new("Compare hysteresis: none, bias, votes");
-/// What it opens.
+/// The comparison that [`HYSTERESES`] opens.
 pub(crate) const HYSTERESES_QUERY: &str = "hysteresis:none,bias,votes";
-/// Of the clips.
+/// The note about the clips, while none are chosen.
 pub(crate) const MADE_SET: Word =
     Word::new("The synthesised set: standing, walks and runs, turns, starts, stops and spins.");
-/// The strip's name.
+/// The accessible name of the strip of clips.
 pub(crate) const CLIP_STRIP: Word = Word::new("All clips, with the current frame");
-/// Of the curves.
+/// The title of the curves of costs.
 pub(crate) const COST: Word = Word::new("cost");
-/// Likewise.
+/// The name of the curve of the cost of continuing.
 pub(crate) const COST_GOING_ON: Word = Word::new("continuing");
-/// Likewise.
+/// The name of the curve of the cost of the best frame.
 pub(crate) const COST_BEST: Word = Word::new("best frame");
-/// A mark on the timeline.
+/// The mark on the timeline where the character jumps to another frame.
 pub(crate) const JUMP: Word = Word::new("Jump to another frame");
 
-/// What a block of features is called below the bars.
+/// Returns the name of a block of features.
 pub(crate) const fn block(block: Block) -> Word {
     Word::new(match block {
         Block::TrajectoryPosition => "path ahead",
@@ -83,7 +83,7 @@ pub(crate) const fn block(block: Block) -> Word {
     })
 }
 
-/// A frame by its clip and time.
+/// Returns a frame by its clip and time.
 pub(crate) fn frame_of_clip(name: Message, mirrored: bool, secs: f64) -> Message {
     if mirrored {
         msg!("{name}, mirrored · {secs:.2} s", name, secs)
@@ -92,18 +92,18 @@ pub(crate) fn frame_of_clip(name: Message, mirrored: bool, secs: f64) -> Message
     }
 }
 
-/// The frame that played when the search was made.
+/// Returns the label of the frame that played when the search was made.
 pub(crate) fn going_on(place: Message) -> Message {
     msg!("Continuing: {place}", place)
 }
 
-/// How long was driven.
+/// Returns the length of the recording.
 pub(crate) fn driven_for(secs: f64) -> Message {
     let whole = secs.max(0.0) as u64;
     msg!("Recorded so far: {minutes}:{secs:02}.", minutes = whole / 60, secs = whole % 60)
 }
 
-/// What a way to hold on does.
+/// Returns the description of a kind of hysteresis.
 pub(crate) fn hysteresis(word: Hysteresis) -> Word {
     Word::new(match word {
         Hysteresis::None => "Always takes the best frame, however small the gain: many jumps.",
@@ -116,7 +116,7 @@ pub(crate) fn hysteresis(word: Hysteresis) -> Word {
     })
 }
 
-/// Whether a search led anywhere.
+/// Returns the outcome of a search: a jump, or the reason why there was none.
 fn held(held: Option<HoldReason>) -> Word {
     Word::new(match held {
         None => "jumped to the best match",
@@ -129,13 +129,13 @@ fn held(held: Option<HoldReason>) -> Word {
     })
 }
 
-/// What a search came to, in a few words.
+/// Returns the outcome of a search, in a few words.
 pub(crate) fn outcome_of_search(search: &SearchRecord, is_live: bool) -> Message {
     let what = held(search.held);
     if is_live { msg!("live · {what}", what) } else { what.into() }
 }
 
-/// What a search came to, and what it took.
+/// Returns the reason, the outcome and the cost of a search.
 pub(crate) fn searched(search: &SearchRecord, frames: usize) -> Message {
     let why = match search.reason {
         SearchReason::Interval => "Regular search",
@@ -151,7 +151,7 @@ pub(crate) fn searched(search: &SearchRecord, frames: usize) -> Message {
     )
 }
 
-/// How large a database is.
+/// Returns the size of a database.
 pub(crate) fn database(database: &Database) -> Message {
     msg!(
         "{motions} motions, {frames} frames ({minutes:.1} min), {valid} of them searchable.",
@@ -162,12 +162,12 @@ pub(crate) fn database(database: &Database) -> Message {
     )
 }
 
-/// The name of a button.
+/// Returns the name of the button that removes a clip.
 pub(crate) fn leave_clip_out(name: Message) -> Message {
     msg!("Remove {name}", name)
 }
 
-/// A tag that was set by hand, or taken away.
+/// Returns a tag that was set or removed by hand.
 pub(crate) fn hand_tag(clip: Message, tag: &HandTag) -> Message {
     let [from, to] = tag.secs;
     let word = tag_name(&tag.word);
@@ -178,13 +178,13 @@ pub(crate) fn hand_tag(clip: Message, tag: &HandTag) -> Message {
     }
 }
 
-/// Returns a tag as it is said on screen: one of Segue's, or a word of the user's own.
+/// Returns the name of a tag on screen: one of Segue's, or a word of the user's own.
 pub(crate) fn tag_name(word: &str) -> Message {
     let fixed = Tag::FIXED.into_iter().find(|tag| tag.name() == word);
     fixed.map_or_else(|| Message::data(word), |tag| tag.name().into())
 }
 
-/// The button that puts a tag on the chosen stretch, or takes it away from there.
+/// Returns the name of the button that sets a tag on the chosen stretch, or removes it there.
 pub(crate) fn tag_as(word: &str, takes_away: bool) -> Message {
     let word = tag_name(word);
     if takes_away { msg!("Not {word}", word) } else { msg!("Tag as {word}", word) }

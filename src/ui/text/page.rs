@@ -1,4 +1,4 @@
-//! What the page says: its panels, buttons and the details of a clip.
+//! The texts of the page: its panels, its buttons and the details of a clip.
 
 use crate::ui::language::Word;
 use segue_session::export::ExportFormat;
@@ -20,16 +20,16 @@ pub(crate) const SAMPLES: Word = Word::new("samples");
 pub(crate) const DROP_HERE: Word = Word::new("Drop BVH, ASF + AMC, GLB, a zip or a folder");
 pub(crate) const OPEN_FILES: Word = Word::new("open…");
 pub(crate) const DROP_NOW: Word = Word::new("Drop to open");
-/// Of a clip that was read in the wrong unit, or with a root that is elsewhere in a row.
+/// The button that corrects a clip that was read in the wrong unit, or with displaced roots.
 pub(crate) const CORRECT: Word = Word::new("Correct it");
-/// Of several of them.
+/// The button that corrects several clips.
 pub(crate) const CORRECT_ALL: Word = Word::new("Correct all");
-/// In a frame of another page.
+/// The warning in a frame of another page.
 pub(crate) const HOST_READS: Word =
     Word::new("The page that embeds Segue can read and save what you open here.");
 pub(crate) const COMPARE: Word = Word::new("Compare");
 pub(crate) const COMPARE_OFF: Word = Word::new("One pane");
-/// Of what several values stand side by side, and nothing of the kind.
+/// The label of the choice of the parameter that is compared.
 pub(crate) const SIDE_BY_SIDE: Word = Word::new("Compare values");
 pub(crate) const COMPARE_NOTHING: Word = Word::new("off");
 pub(crate) const PANE_MORE: Word = Word::new("Add a pane");
@@ -60,7 +60,7 @@ pub(crate) const TAKE_TAG_AWAY: Word = Word::new("Remove this tag");
 pub(crate) const THEME: Word = Word::new("Dark or light");
 pub(crate) const PROJECTOR: Word = Word::new("Projector: larger type");
 pub(crate) const LARGER: Word = Word::new("Aa");
-/// Behind the sign 中.
+/// The word behind the sign 中.
 pub(crate) const OR_ENGLISH: Word = Word::new("/ EN");
 pub(crate) const HELP: Word = Word::new("Shortcuts");
 pub(crate) const MENU: Word = Word::new("Menu");
@@ -101,7 +101,7 @@ pub(crate) const FRAMES: Word = Word::new("Frames");
 pub(crate) const FRAME_RATE: Word = Word::new("Frame rate");
 pub(crate) const BODY_HEIGHT: Word = Word::new("Body height");
 pub(crate) const GROUND: Word = Word::new("Ground");
-/// Of a body whose feet cannot be held.
+/// The warning for a skeleton whose feet cannot be locked.
 pub(crate) const NO_LEGS: Word = Word::new(
     "The foot lock does nothing: this skeleton has no leg with thigh, shin and foot. Assign these joints under Body parts in the View lab.",
 );
@@ -131,13 +131,13 @@ pub(crate) const WELCOME_HINT: Word = Word::new(
     "The same walk, in sync. Watch the feet and hips: the shorter the blend window, the more abrupt the change to the run.",
 );
 pub(crate) const EMPTY_PANE: Word = Word::new("Nothing to show yet");
-/// On a pane that still shows an earlier result.
+/// The chip of a pane that still shows an earlier result.
 pub(crate) const OUTDATED: Word = Word::new("updating…");
-/// Below a button that keeps and rows that save.
+/// The note below the buttons that keep and save, without a result.
 pub(crate) const NOTHING_TO_KEEP: Word = Word::new("There is no result to keep or save.");
 pub(crate) const STILL_COMPUTED: Word = Word::new("The result is still being computed.");
 
-/// What is being worked on, and how much of it is done.
+/// Returns what is being worked on, and how much of it is done.
 pub(crate) fn under_way(job: &Job) -> Message {
     let percent = 100.0 * job.progress;
     match &job.kind {
@@ -154,14 +154,15 @@ pub(crate) fn under_way(job: &Job) -> Message {
 pub(crate) const CLOSE: Word = Word::new("Close");
 
 pub(crate) const READING: Word = Word::new("being read…");
-/// Of a bundled take that did not come: a notice said why.
+/// The status of a bundled take that could not be fetched; a notice has said why.
 pub(crate) const NOT_LOADED: Word = Word::new("not loaded: select it again");
-/// Likewise, when reading it failed or was stopped: a notice said why.
+/// The status of a file that could not be read, or whose reading was stopped; a notice has said
+/// why.
 pub(crate) const UNREAD: Word = Word::new("not read: drop the file again");
-/// Likewise.
+/// The status of a motion whose file of the skeleton is missing.
 pub(crate) const AWAITS_SKELETON: Word = Word::new("needs its skeleton: drop the .asf file");
 
-/// What keeps a clip from being played; empty where nothing does.
+/// Returns what keeps a clip from being played; empty where nothing does.
 pub(crate) fn status(entry: &Entry) -> Word {
     match (&entry.motion, &entry.origin) {
         (Some(_), _) | (None, Origin::Preset | Origin::Made) => Word::default(),
@@ -173,7 +174,7 @@ pub(crate) fn status(entry: &Entry) -> Word {
     }
 }
 
-/// How far the work is stored.
+/// Returns how far the work is stored.
 pub(crate) fn stored(stored: StorageState) -> Word {
     match stored {
         StorageState::Done => SAVED,
@@ -182,13 +183,13 @@ pub(crate) fn stored(stored: StorageState) -> Word {
     }
 }
 
-/// How much memory is in use, and how much there is.
+/// Returns how much memory is in use, and how much there is.
 pub(crate) fn memory(memory: MemoryUse) -> Message {
     let limit_gb = (memory.limit as f64 / 1e8).round() / 10.0;
     msg!("{used_mb:.0} MB of {limit_gb} GB", used_mb = memory.used as f64 / 1e6, limit_gb)
 }
 
-/// The name of a file format on screen.
+/// Returns the name of a file format.
 pub(crate) fn format(format: ExportFormat) -> Word {
     Word::new(match format {
         ExportFormat::Bvh => "BVH",
@@ -197,17 +198,17 @@ pub(crate) fn format(format: ExportFormat) -> Word {
     })
 }
 
-/// What the menu of clips shows of one that the link names and that is not here.
+/// Returns the line in a menu of clips for one that the link names and the library lacks.
 pub(crate) fn missing(name: &str) -> Message {
     msg!("{name} · missing", name = name.to_owned())
 }
 
-/// So many joints have other channels.
+/// Says how many joints have other channels.
 pub(crate) fn others(count: usize) -> Message {
     msg!("{count, plural, one {# has others} other {# have others}}", count)
 }
 
-/// A set of clips, and what its button does.
+/// Returns the name of a set of clips, and the hint of its button.
 pub(crate) const fn clip_set(set: ClipSet) -> (Word, Word) {
     let (label, help) = match set {
         ClipSet::Made => ("Synthesised motion", "The default clips of this lab"),

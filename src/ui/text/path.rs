@@ -6,91 +6,91 @@ use segue_session::PathFacts;
 use segue_session::choices::PathKeep;
 use segue_text::{Message, msg};
 
-/// What the Path lab does.
+/// The description of the Path lab.
 pub(crate) const PATH_ABOUT: Word = Word::new(
     "The path of the hips is fitted with a spline. Drag its control points to reshape it; the character follows and keeps its local motion.",
 );
-/// The same over the stage.
+/// The hint over the stage in the Path lab.
 pub(crate) const PATH_HINT: Word = Word::new(
     "Drag a point to bend the path; the character follows. Double-click the path to add a point.",
 );
-/// A button.
+/// The button that lets a path be drawn.
 pub(crate) const DRAW: Word = Word::new("Draw");
-/// Its hint.
+/// The hint of the button that lets a path be drawn.
 pub(crate) const DRAW_HELP: Word =
     Word::new("Draw a path on the ground in one stroke; end at its start to make a loop");
-/// Over the stage, until something was drawn.
+/// The note over the stage until something is drawn.
 pub(crate) const DRAW_HINT: Word =
     Word::new("Draw the path on the ground in one stroke. Esc cancels.");
-/// A button.
+/// The button that adds a control point.
 pub(crate) const ADD_POINT: Word = Word::new("Add point");
-/// Its hint.
+/// The hint of the button that adds a control point.
 pub(crate) const ADD_POINT_HELP: Word =
     Word::new("Adds a control point after the selected one; the path keeps its shape");
-/// A button.
+/// The button that removes a control point.
 pub(crate) const REMOVE_POINT: Word = Word::new("Remove point");
-/// Its hint.
+/// The hint of the button that removes a control point.
 pub(crate) const REMOVE_POINT_HELP: Word =
     Word::new("Removes the selected control point from the path");
-/// While no point is chosen.
+/// The help while no control point is chosen.
 pub(crate) const POINTS_HELP: Word = Word::new(
     "Drag points on the stage, or select one: arrow keys move it (Shift: farther), Delete removes it, Tab selects the next.",
 );
-/// When none is chosen.
+/// The refusal of a button that needs a control point.
 pub(crate) const CHOOSE_POINT: Word = Word::new("Select a control point on the stage first.");
-/// Over the buttons that follow.
+/// The heading of the buttons for the whole path.
 pub(crate) const WHOLE_PATH: Word = Word::new("Whole path");
-/// A button.
+/// The button that turns the whole path to the left.
 pub(crate) const TURN_LEFT: Word = Word::new("Left 15°");
-/// Likewise.
+/// The button that turns the whole path to the right.
 pub(crate) const TURN_RIGHT: Word = Word::new("Right 15°");
-/// Likewise.
+/// The button that makes the whole path larger.
 pub(crate) const LARGER_PATH: Word = Word::new("Larger");
-/// Likewise.
+/// The button that makes the whole path smaller.
 pub(crate) const SMALLER_PATH: Word = Word::new("Smaller");
-/// Likewise.
+/// The button that mirrors the whole path.
 pub(crate) const MIRROR: Word = Word::new("Mirror");
-/// Likewise.
+/// The button that straightens the whole path.
 pub(crate) const STRAIGHTEN: Word = Word::new("Straighten");
-/// Likewise.
+/// The button that smooths the whole path.
 pub(crate) const SMOOTH: Word = Word::new("Smooth");
-/// Likewise.
+/// The button that closes the path.
 pub(crate) const CLOSE_LOOP: Word = Word::new("Close the loop");
-/// Likewise.
+/// The button that opens a closed path.
 pub(crate) const OPEN_LOOP: Word = Word::new("Open the loop");
-/// Likewise.
+/// The button that snaps all points to the grid.
 pub(crate) const SNAP_ALL: Word = Word::new("Snap all points");
-/// Likewise.
+/// The button that restores the fitted path.
 pub(crate) const RESET_PATH: Word = Word::new("Reset path");
-/// Its hint.
+/// The hint of the button that restores the fitted path.
 pub(crate) const RESET_PATH_HELP: Word =
     Word::new("Restores the fitted path; undo brings the edited one back");
-/// Over what belongs to the fit.
+/// The heading of the rows about the fit.
 pub(crate) const FIT: Word = Word::new("Fit");
-/// A button that opens panes.
+/// The button that compares numbers of control points.
 pub(crate) const FOUR_EIGHT_SIXTEEN: Word = Word::new("4, 8, 16 points");
-/// What it opens.
+/// The comparison that [`FOUR_EIGHT_SIXTEEN`] opens.
 pub(crate) const FOUR_EIGHT_SIXTEEN_QUERY: &str = "control_points:4,8,16";
-/// A chip over a pane whose path turns harder than the motion can.
+/// The chip over a pane whose path turns harder than its motion can.
 pub(crate) const TOO_HARD: Word = Word::new("turns too sharply");
-/// Where that is, on the timeline.
+/// The mark on the timeline where the path turns harder than the motion can.
 pub(crate) const HARD_MOMENT: Word = Word::new("The path turns faster than the original");
-/// Over the list of those who play along.
+/// The heading of the list of extra characters.
 pub(crate) const COMPANY: Word = Word::new("Also on stage");
-/// A button.
+/// The button that keeps this character on the stage.
 pub(crate) const JOIN: Word = Word::new("Add to stage");
-/// Its hint.
+/// The hint of the button that keeps this character on the stage.
 pub(crate) const JOIN_HELP: Word =
     Word::new("Keeps this character on the stage, so that you can edit another path beside it");
-/// Which clip is preferred while none is chosen.
+/// The choice of preferring the current clip.
 pub(crate) const THE_CLIP_THAT_PLAYS: Word = Word::new("the current one");
-/// While none is chosen.
+/// The first line of a menu of clips, before one is chosen.
 pub(crate) const CHOOSE_CLIP: Word = Word::new("choose…");
-/// What that is for.
+/// The help below the list of extra characters.
 pub(crate) const COMPANY_HELP: Word =
     Word::new("Each has its own path and colour; all play in sync. Links include them.");
 
-/// What a screen reader says of a control point.
+/// Returns the accessible name of a control point.
 pub(crate) fn control_point(index: usize, count: usize, place: glam::DVec2) -> Message {
     msg!(
         "Control point {number} of {count}: {x:.2} m, {z:.2} m",
@@ -101,7 +101,7 @@ pub(crate) fn control_point(index: usize, count: usize, place: glam::DVec2) -> M
     )
 }
 
-/// The chosen point, in the panel.
+/// Returns the number and place of the chosen control point, and what keys do with it.
 pub(crate) fn chosen_point(index: usize, count: usize, place: glam::DVec2) -> Message {
     let [x, z] = [place.x, place.y].map(|metres| format!("{metres:.2}").replace('-', "−"));
     msg!(
@@ -113,7 +113,7 @@ pub(crate) fn chosen_point(index: usize, count: usize, place: glam::DVec2) -> Me
     )
 }
 
-/// What stays when a path becomes longer or shorter.
+/// Returns the description of what stays when a path becomes longer or shorter.
 pub(crate) fn path_keep(word: PathKeep) -> Word {
     Word::new(match word {
         PathKeep::Duration => {
@@ -128,7 +128,7 @@ pub(crate) fn path_keep(word: PathKeep) -> Word {
     })
 }
 
-/// How long the path is, and was.
+/// Returns the length of a path, and of the fitted one where it was edited.
 pub(crate) fn path_lengths(path: &PathFacts) -> Message {
     let (now, before) = (path.curve.length_m(), path.fitted.curve().length_m());
     if path.is_edited {
@@ -138,7 +138,7 @@ pub(crate) fn path_lengths(path: &PathFacts) -> Message {
     }
 }
 
-/// How well the path follows the hips.
+/// Returns how well a path follows the hips.
 pub(crate) fn fit_error(rms_cm: f64, most_cm: f64, along_m: f64) -> Message {
     msg!(
         "Distance from the hips to the path: {rms_cm:.1} cm (root mean square), at most {most_cm:.1} cm at {along_m:.1} m.",
@@ -148,7 +148,7 @@ pub(crate) fn fit_error(rms_cm: f64, most_cm: f64, along_m: f64) -> Message {
     )
 }
 
-/// That an edited path does not change with the slider.
+/// Says that an edited path does not change with the slider.
 pub(crate) fn own_points(count: usize) -> Message {
     msg!(
         "The edited path keeps its {count} points; this number changes only the fitted path that it is compared with.",
@@ -156,7 +156,7 @@ pub(crate) fn own_points(count: usize) -> Message {
     )
 }
 
-/// A turn that the motion does not hold.
+/// Warns of a turn that is harder than the motion can follow.
 pub(crate) fn hard_turn(turn: &HardTurn, fps: f64) -> Message {
     let secs = |frame: usize| frame as f64 / fps;
     msg!(
@@ -168,7 +168,7 @@ pub(crate) fn hard_turn(turn: &HardTurn, fps: f64) -> Message {
     )
 }
 
-/// How many more there are.
+/// Returns the number of further turns that are too hard.
 pub(crate) fn more_hard_turns(count: usize) -> Message {
     msg!(
         "{count, plural, one {One more bend is too sharp.} other {# more bends are too sharp.}}",
@@ -176,16 +176,16 @@ pub(crate) fn more_hard_turns(count: usize) -> Message {
     )
 }
 
-/// While the feet of a long motion are not planted yet.
+/// The note while the feet of a long motion are not locked yet.
 pub(crate) const FEET_LATER: Word =
     Word::new("Long clip: the foot lock is applied when you stop dragging.");
 
-/// A button beside a companion.
+/// Returns the name of the button that edits the path of an extra character.
 pub(crate) fn edit_companion(name: Message) -> Message {
     msg!("Edit the path of {name}; it changes places with the current one", name)
 }
 
-/// Likewise.
+/// Returns the name of the button that removes an extra character.
 pub(crate) fn companion_leaves(name: Message) -> Message {
     msg!("Remove {name} from the stage", name)
 }

@@ -4,19 +4,19 @@ use crate::ui::language::Word;
 use segue_motion::gait::GaitFacts;
 use segue_text::{Message, msg};
 
-/// What the In place lab does.
+/// The description of the In place lab.
 pub(crate) const IN_PLACE_ABOUT: Word =
     Word::new("Removes the root motion of a clip, or rebuilds it from the planted feet.");
-/// What the Speed lab does.
+/// The description of the Speed lab.
 pub(crate) const SPEED_ABOUT: Word = Word::new(
     "Blends two gaits, such as a walk and a run, to any speed between them. Drag the speed while it plays.",
 );
-/// Opens the speeds of A and B and the one between.
+/// The button that compares the speeds of A and B and the one between them.
 pub(crate) const THREE_SPEEDS: Word = Word::new("A, midway, B");
-/// A chip over a pane whose speed lies beyond both clips.
+/// The chip over a pane whose speed lies beyond both clips.
 pub(crate) const BEYOND: Word = Word::new("extrapolated");
 
-/// How fast both clips go, and where.
+/// Returns the speed and the place of the cycle of each clip.
 pub(crate) fn gaits([a, b]: [f64; 2], [[from_a, to_a], [from_b, to_b]]: [[f64; 2]; 2]) -> Message {
     msg!(
         "Speed of one cycle: A {a:.2} m/s from {from_a:.2} to {to_a:.2} s, B {b:.2} m/s from {from_b:.2} to {to_b:.2} s. The mean over a whole clip, as in View, may differ.",
@@ -29,7 +29,7 @@ pub(crate) fn gaits([a, b]: [f64; 2], [[from_a, to_a], [from_b, to_b]]: [[f64; 2
     )
 }
 
-/// That the speed asked for lies beyond both clips; `None` where it does not.
+/// Warns that the requested speed lies beyond both clips; `None` where it does not.
 pub(crate) fn beyond_gaits(facts: &GaitFacts, [a, b]: [f64; 2]) -> Option<Message> {
     let (low, high) = (a.min(b), a.max(b));
     if facts.limited {
@@ -50,5 +50,5 @@ pub(crate) fn beyond_gaits(facts: &GaitFacts, [a, b]: [f64; 2]) -> Option<Messag
     }
 }
 
-/// A mark on the timeline.
+/// The mark on the timeline where a cycle begins.
 pub(crate) const CYCLE_BEGINS: Word = Word::new("Start of a cycle");

@@ -6,8 +6,8 @@ use segue_session::choices::Mistake;
 use segue_session::{LayerFacts, LayerFit, RetargetReport, Transition, format_number};
 use segue_text::{Message, msg};
 
-/// How the place of a transition was found, and how far apart the clips are there. `automatic`:
-/// whether A's frame and B's are left to Segue.
+/// Returns how the place of a transition was found, and the distance of the clips there.
+/// `automatic`: whether A's frame and B's are left to Segue.
 pub(crate) fn place_found(transition: &Transition, automatic: [bool; 2]) -> Message {
     let by_hand = automatic == [false, false];
     let Some(search) = transition.search.filter(|_| transition.distance_cm.is_finite()) else {
@@ -44,9 +44,9 @@ pub(crate) fn place_found(transition: &Transition, automatic: [bool; 2]) -> Mess
     Message::joined(said, " ")
 }
 
-/// That B was moved onto A's skeleton, and what was not matched.
+/// Says that B was retargeted to A's skeleton, and which joints were not matched.
 pub(crate) fn retargeted(retargeted: &RetargetReport) -> Message {
-    /// More names would be a list that nobody reads.
+    /// The greatest number of joints that are named.
     const NAMED: usize = 4;
     let unmatched = &retargeted.unmatched;
     let count = unmatched.len();
@@ -62,7 +62,7 @@ pub(crate) fn retargeted(retargeted: &RetargetReport) -> Message {
     }
 }
 
-/// That B runs at another rate than A.
+/// Says that B was resampled to A's rate.
 pub(crate) fn resampled(from: f64, to: f64) -> Message {
     let [from, to] = [from, to].map(|fps| format_number(fps, 0.01));
     msg!(
@@ -72,7 +72,7 @@ pub(crate) fn resampled(from: f64, to: f64) -> Message {
     )
 }
 
-/// What the student will see of a mistake of the Transition lab; empty for none.
+/// Returns what a mistake of the Transition lab looks like; empty for none.
 pub(crate) fn mistake(key: Mistake) -> Word {
     Word::new(match key {
         Mistake::Hemisphere => {
@@ -106,17 +106,17 @@ pub(crate) fn mistake(key: Mistake) -> Word {
     })
 }
 
-/// Of `velocity` where the method is a dissolve, which has no other velocity.
+/// The description of the mistake `velocity` for a dissolve, which has no other velocity.
 pub(crate) const VELOCITY_IN_DISSOLVE: Word = Word::new(
     "The character steps on the spot during the window, then moves on: its root velocity is thousands of times too small.",
 );
-/// For a method that the mistake cannot be made in.
+/// The note for a method in which the mistake cannot be made.
 pub(crate) const MISTAKE_IDLE: Word =
     Word::new("A cut blends nothing, so the bug has no effect: choose another method.");
-/// What a comparison opens that shows the mistake.
+/// The button that compares the mistake with the right way.
 pub(crate) const RIGHT_AND_WRONG: Word = Word::new("Compare with and without the bug");
 
-/// How B's time goes in a layer.
+/// Returns how B's time is fitted to A's in a layer.
 pub(crate) fn fit(layer: &LayerFacts) -> Message {
     let how = Message::word(match layer.fit {
         LayerFit::InStep => "One cycle of B is synchronised with A.",
@@ -131,17 +131,17 @@ pub(crate) fn fit(layer: &LayerFacts) -> Message {
     }
 }
 
-/// Several methods on the same transition.
+/// The button that compares methods on the same transition.
 pub(crate) const SHOOT_OUT: Word = Word::new("Compare methods");
-/// What the button opens.
+/// The comparison that [`SHOOT_OUT`] opens.
 pub(crate) const SHOOT_OUT_QUERY: &str = "method:inertialize,smooth,dead";
-/// The rows of the half-life ruler.
+/// The row of the half-life ruler for one half.
 pub(crate) const HALF_LEFT: Word = Word::new("50 % remains after");
-/// Likewise.
+/// The row of the half-life ruler for one tenth.
 pub(crate) const TENTH_LEFT: Word = Word::new("10 %");
-/// Likewise.
+/// The row of the half-life ruler for one hundredth.
 pub(crate) const HUNDREDTH_LEFT: Word = Word::new("1 %");
-/// The dissolve with as much of A in it.
+/// The row of the half-life ruler for the dissolve with as much of A in it.
 pub(crate) const ALIKE_WINDOW: Word = Word::new("Equivalent blend window");
 
 #[cfg(test)]
