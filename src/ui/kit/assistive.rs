@@ -1,4 +1,4 @@
-//! What the kit tells assistive technology beyond the widgets themselves: parts and groups, the
+//! Descriptions for assistive technology: names of widgets, parts and groups of the page, the
 //! values of sliders, and painted text.
 
 use crate::ui::language::{Word, say};
@@ -40,7 +40,7 @@ pub(super) struct Adjustable {
     pub(super) value: f64,
     /// Its smallest and greatest value.
     pub(super) range: RangeInclusive<f64>,
-    /// How far one step is.
+    /// Its step.
     pub(super) step: f64,
     /// The number with its unit.
     pub(super) said: String,

@@ -1,4 +1,4 @@
-//! Buttons, from the one that matters to those that only appear under the pointer.
+//! Buttons, from the primary one to those that show only under the pointer.
 
 use super::assistive::describe;
 use super::icon::{Icon, paint_icon};
@@ -10,10 +10,10 @@ use eframe::egui::{
     vec2,
 };
 
-/// How loud a button is.
+/// The prominence of a button.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Tone {
-    /// The one thing to do here. At most one in sight.
+    /// The main action; at most one in sight.
     Primary,
     /// Outlined.
     #[default]
@@ -35,7 +35,7 @@ pub(crate) struct Button<'a> {
 }
 
 impl<'a> Button<'a> {
-    /// A button that says `text`.
+    /// Returns a button with a text.
     pub(crate) fn new(text: impl Into<Text<'a>>) -> Self {
         let text = text.into();
         Self {
@@ -49,56 +49,56 @@ impl<'a> Button<'a> {
         }
     }
 
-    /// A button that is only an icon; `name` is what it is called, and its hint until another is
-    /// given.
+    /// Returns a button with an icon alone. `name` is its accessible name, and its hint until
+    /// another is given.
     pub(crate) fn icon_only(icon: Icon, name: impl Into<Text<'a>>) -> Self {
         let name = name.into();
         Self { name, icon: Some(icon), hint: name, tone: Tone::Quiet, ..Self::new(Text::EMPTY) }
     }
 
-    /// The one thing to do here.
+    /// Makes it the main action.
     pub(crate) fn primary(mut self) -> Self {
         self.tone = Tone::Primary;
         self
     }
 
-    /// Without a ground until the pointer is on it.
+    /// Makes it quiet: it has no ground until the pointer is on it.
     pub(crate) fn quiet(mut self) -> Self {
         self.tone = Tone::Quiet;
         self
     }
 
-    /// Outlined, where an icon alone would be taken for a sign.
+    /// Outlines it: an icon alone would be taken for a sign.
     pub(crate) fn outlined(mut self) -> Self {
         self.tone = Tone::Secondary;
         self
     }
 
-    /// With an icon before the text.
+    /// Sets an icon before the text.
     pub(crate) fn icon(mut self, icon: Icon) -> Self {
         self.icon = Some(icon);
         self
     }
 
-    /// With a small icon behind the text, such as a chevron.
+    /// Sets a small icon behind the text, such as a chevron.
     pub(crate) fn trailing(mut self, icon: Icon) -> Self {
         self.trailing = Some(icon);
         self
     }
 
-    /// Chosen, or switched on.
+    /// Shows it as chosen, or switched on.
     pub(crate) fn selected(mut self, selected: bool) -> Self {
         self.selected = selected;
         self
     }
 
-    /// What appears when the pointer rests on it.
+    /// Sets the hint.
     pub(crate) fn hint(mut self, hint: impl Into<Text<'a>>) -> Self {
         self.hint = hint.into();
         self
     }
 
-    /// What screen readers call it, where that is not its text.
+    /// Sets the accessible name, where it is not the text.
     pub(crate) fn name(mut self, name: impl Into<Text<'a>>) -> Self {
         self.name = name.into();
         self
@@ -131,7 +131,7 @@ impl<'a> Button<'a> {
     }
 }
 
-/// Shows a button; [`Response::clicked`] says whether it was pressed, by pointer or by keyboard.
+/// Draws a button. [`Response::clicked`] is true when it is pressed, by pointer or by keyboard.
 pub(crate) fn button_ui(button: Button<'_>, ui: &mut Ui) -> Response {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let scale = theme.scale();
@@ -139,7 +139,7 @@ pub(crate) fn button_ui(button: Button<'_>, ui: &mut Ui) -> Response {
     let height = theme.row_height();
     let icon_size = (16.0 * scale).round();
     let step = if button.tone == Tone::Primary { Type::Strong } else { Type::Body };
-    // Measured first: the colours depend on the response, which needs the size.
+    // The text is measured first: the colours depend on the response, which needs the size.
     let width_limit = ui.available_width() - 2.0 * space::M;
     let text_width = if button.text.is_empty() {
         0.0
@@ -199,12 +199,12 @@ pub(crate) fn button_ui(button: Button<'_>, ui: &mut Ui) -> Response {
     if button.hint.is_empty() { response } else { response.on_hover_text(say(button.hint, ui)) }
 }
 
-/// A small square button that is only an icon.
+/// Draws a small square button with an icon alone.
 pub(crate) fn icon_button_ui<'a>(icon: Icon, name: impl Into<Text<'a>>, ui: &mut Ui) -> Response {
     button_ui(Button::icon_only(icon, name), ui)
 }
 
-/// Words that are pressed, underlined within a sentence: `open…`.
+/// Draws an underlined text that acts as a button: `open…`.
 pub(crate) fn link_ui(text: Text<'_>, ui: &mut Ui) -> Response {
     let palette = palette_of(ui);
     let enabled = ui.is_enabled();

@@ -1,4 +1,4 @@
-//! Small words on a coloured ground, and the letter that stands for a clip.
+//! Chips: short texts on a coloured ground, and the letter of a clip.
 
 use super::assistive::describe;
 use super::icon::Icon;
@@ -10,22 +10,22 @@ use eframe::egui::{
     vec2,
 };
 
-/// What a coloured word means. The colour never says it alone: the word does too.
+/// The meaning of a coloured text. The text says it as well as the colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Mood {
     /// Neither good nor bad.
     #[default]
     Plain,
-    /// The best, or all well.
+    /// The best one, or a success.
     Good,
-    /// The worst, or broken.
+    /// The worst one, or a failure.
     Bad,
-    /// Deserves a look.
+    /// A warning.
     Warning,
 }
 
 impl Mood {
-    /// The colour of its text, and of the ground under it.
+    /// Returns the colour of its text, and that of the ground.
     pub(crate) fn colors(self, p: &Palette) -> (Color32, Color32) {
         match self {
             Self::Plain => (p.muted, p.panel_raised),
@@ -35,7 +35,7 @@ impl Mood {
         }
     }
 
-    /// The sign beside a longer text of this mood.
+    /// Returns the sign beside a longer text of this mood.
     pub(crate) fn icon(self) -> Icon {
         match self {
             Self::Plain => Icon::Info,
@@ -45,22 +45,22 @@ impl Mood {
     }
 }
 
-/// Which part a clip plays.
+/// The part that a clip has in the result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Part {
-    /// The clip that is left: warm.
+    /// The clip that is left; warm colours.
     A,
-    /// The clip that is entered: cool.
+    /// The clip that is entered; cool colours.
     B,
-    /// What was made of both.
+    /// The result of both.
     Result,
-    /// None at the moment.
+    /// No part at the moment.
     #[default]
     None,
 }
 
 impl Part {
-    /// Its fill, and the colour of text on that fill.
+    /// Returns its fill, and the colour of text on that fill.
     pub(crate) fn fill(self, p: &Palette) -> (Color32, Color32) {
         match self {
             Self::A => (p.a, p.on_a),
@@ -70,7 +70,7 @@ impl Part {
         }
     }
 
-    /// Its colour as text on a panel.
+    /// Returns its colour as text on a panel.
     pub(crate) fn ink(self, p: &Palette) -> Color32 {
         match self {
             Self::A => p.a_ink,
@@ -80,7 +80,7 @@ impl Part {
         }
     }
 
-    /// The letter on its badge.
+    /// Returns the letter on its badge.
     pub(crate) fn letter(self) -> &'static str {
         match self {
             Self::A => "A",
@@ -91,13 +91,13 @@ impl Part {
     }
 }
 
-/// How large a chip is.
+/// Returns the size of a chip.
 pub(crate) fn chip_size(text: Text<'_>, ui: &Ui) -> Vec2 {
     line_of(&[Run::new(text, Type::SmallStrong, Color32::PLACEHOLDER)], f32::INFINITY, ui).size()
         + vec2(16.0, 6.0)
 }
 
-/// Draws a chip whose right end lies at `right_center`; where it lies then.
+/// Draws a chip whose right end is at `right_center`. Returns its rectangle.
 pub(crate) fn paint_chip(text: Text<'_>, mood: Mood, right_center: Pos2, ui: &Ui) -> Rect {
     let (ink, ground) = mood.colors(palette_of(ui));
     let galley = line_of(&[Run::new(text, Type::SmallStrong, ink)], f32::INFINITY, ui);
@@ -126,7 +126,7 @@ pub(crate) fn paint_badge(part: Part, rect: Rect, ui: &Ui) {
     }
 }
 
-/// A film under way: a red dot and how long it is, `0:07`, left of `right_center`.
+/// Draws a red dot and the length of the recording so far, `0:07`, left of `right_center`.
 pub(crate) fn recording_ui(name: Word, secs: f64, right_center: Pos2, ui: &mut Ui) -> Rect {
     let palette = palette_of(ui);
     let scale = theme_of(ui).scale();

@@ -1,4 +1,4 @@
-//! A clip in the library.
+//! The row of a clip in the library.
 
 use super::assistive::describe;
 use super::chip::{Part, paint_badge};
@@ -11,38 +11,38 @@ use eframe::egui::{
     pos2, vec2,
 };
 
-/// What the library knows of a clip at a glance.
+/// A clip as its row shows it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ClipRow<'a> {
     /// Its name.
     pub(crate) name: Text<'a>,
     /// Length, rate, joints: `3.9 s · 120 fps · 30 joints`. Wraps.
     pub(crate) detail: Text<'a>,
-    /// The part it plays now.
+    /// Its part in the result.
     pub(crate) part: Part,
-    /// What was odd in its file, for the warning sign's hint; empty if nothing was.
+    /// The warnings about its file, for the hint of the sign; empty for none.
     pub(crate) warning: Text<'a>,
-    /// Seen or edited at the moment.
+    /// Whether its details are open.
     pub(crate) selected: bool,
-    /// What may be done with it: the signs shown while the pointer is on the row, with their names.
+    /// The icons of its actions, shown while the pointer is on the row, with their names.
     pub(crate) actions: &'a [(Icon, Word)],
 }
 
-/// What was done to a row of the library.
+/// The user's input to a row of the library.
 #[derive(Debug)]
 pub(crate) struct ClipRowResponse {
     /// The row was chosen.
     pub(crate) clicked: bool,
-    /// Which of [`ClipRow::actions`] was pressed.
+    /// The one of [`ClipRow::actions`] that was pressed.
     pub(crate) action: Option<usize>,
-    /// The letter was pressed: give the clip another part.
+    /// The letter was pressed: the clip gets another part.
     pub(crate) badge_clicked: bool,
     /// The row, which can be dragged; give it a payload with `dnd_set_drag_payload`.
     pub(crate) response: Response,
 }
 
-/// A clip: its letter, name and facts; a sign if its file was odd; what one may do with it while
-/// the pointer is there.
+/// Draws the row of a clip: its letter, name and facts, a sign if there are warnings, and the
+/// actions while the pointer is on it.
 pub(crate) fn clip_row_ui(row: ClipRow<'_>, ui: &mut Ui) -> ClipRowResponse {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let scale = theme.scale();
@@ -136,7 +136,7 @@ pub(crate) fn clip_row_ui(row: ClipRow<'_>, ui: &mut Ui) -> ClipRowResponse {
     }
 }
 
-/// An icon inside another widget, pressed by itself.
+/// Draws an icon inside another widget, as a button of its own.
 pub(super) fn small_icon_ui(
     icon: Icon,
     name: Word,

@@ -1,4 +1,4 @@
-//! Costs beside each other, each split into what it is made of.
+//! Costs below each other, each divided into its parts.
 
 use super::assistive::describe;
 use super::paint::{Run, focus_ring, full_width, line_of, put};
@@ -12,26 +12,26 @@ use segue_text::Message;
 /// One cost.
 #[derive(Clone, Debug)]
 pub(crate) struct CostRow {
-    /// What costs that.
+    /// The thing that has the cost.
     pub(crate) name: Message,
     /// Its parts, in the order of the names.
     pub(crate) parts: Vec<f32>,
-    /// Stands out: it plays, or was chosen.
+    /// It stands out: it plays, or was chosen.
     pub(crate) strong: bool,
-    /// It is shown on the stage.
+    /// Whether it is shown on the stage.
     pub(crate) shown: bool,
 }
 
-/// Costs and what their parts are called.
+/// Costs and the names of their parts.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CostBars<'a> {
     /// The rows, the first for comparison.
     pub(crate) rows: &'a [CostRow],
-    /// Names of the parts, with their colours.
+    /// The names of the parts, with their colours.
     pub(crate) parts: &'a [(Word, Color32)],
 }
 
-/// What the pointer does with the rows.
+/// The pointer's input to the rows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct CostResponse {
     /// The row under it.
@@ -40,13 +40,13 @@ pub(crate) struct CostResponse {
     pub(crate) clicked: Option<usize>,
 }
 
-/// Draws the rows, all to one scale, and what the colours mean below.
+/// Draws the rows on one scale, and a legend of the colours below.
 pub(crate) fn cost_bars_ui(bars: &CostBars<'_>, ui: &mut Ui) -> CostResponse {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let mut found = CostResponse::default();
     let total = |row: &CostRow| row.parts.iter().sum::<f32>();
     let most = bars.rows.iter().map(total).fold(0.0, f32::max).max(1e-6);
-    // Costs of a steady walk are next to nothing, those of a turn are large.
+    // The costs of a steady walk are tiny, those of a turn are large.
     let decimals = if most < 0.2 { 3 } else { 2 };
     let spacing = std::mem::replace(&mut ui.spacing_mut().item_spacing.y, 2.0);
     for (index, row) in bars.rows.iter().enumerate() {

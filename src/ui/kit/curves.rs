@@ -15,29 +15,29 @@ pub(crate) struct Series<'a> {
     pub(crate) color: Color32,
     /// Its colour as text.
     pub(crate) ink: Color32,
-    /// The one that matters: drawn thick, and last.
+    /// Whether it is drawn thick, and last.
     pub(crate) strong: bool,
-    /// Time in seconds and value, in rising time. Where a value is not finite, the curve has a gap.
+    /// Times in seconds and values, in rising time. A value that is not finite makes a gap.
     pub(crate) points: &'a [[f64; 2]],
 }
 
 /// Curves over one axis of values.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Curves<'a> {
-    /// What they show, for the space before them: `speed`.
+    /// The quantity, for the space before them: `speed`.
     pub(crate) title: Word,
     /// The unit of their values.
     pub(crate) unit: Word,
-    /// Digits after the point when a value is read off.
+    /// Digits after the point of a value under the pointer.
     pub(crate) decimals: usize,
-    /// Always within sight: such as 0 for speeds.
+    /// A value that is always in sight, such as 0 for speeds.
     pub(crate) include: Option<f64>,
     /// The curves.
     pub(crate) series: &'a [Series<'a>],
 }
 
 impl Curves<'_> {
-    /// The range of values that is shown: what there is, and a margin.
+    /// Returns the range of values that is shown: that of the curves, with a margin.
     fn bounds(&self) -> (f64, f64) {
         let values = self
             .series
@@ -57,15 +57,15 @@ impl Curves<'_> {
         } else {
             0.5 * high.abs().max(1.0)
         };
-        // What must be in sight as a limit, such as standing still, needs no margin beyond it.
+        // A limit, such as the speed 0, needs no margin beyond it.
         let floor =
             if self.include == Some(low) { low - 0.02 * (high - low) } else { low - margin };
         (floor, high + margin)
     }
 }
 
-/// Draws the curves into `plot`, whose width is the axis of time; with `scale_labels`, what its
-/// lines stand for is written before it.
+/// Draws the curves into `plot`, whose width is the axis of time. With `scale_labels`, the values
+/// of its lines are written before it.
 pub(super) fn curves_ui(
     curves: &Curves<'_>,
     axis: TimeAxis,
@@ -112,14 +112,14 @@ pub(super) fn curves_ui(
     }
 }
 
-/// The names of the curves in their colours, in the space before them.
+/// Draws the names of the curves in their colours, in the space before them.
 pub(super) fn key_ui(curves: &Curves<'_>, area: Rect, ui: &Ui) {
     let palette = palette_of(ui);
     let title = format!("{} {}", say(curves.title, ui), say(curves.unit, ui));
     let title = Run::new(Text::Data(title.trim()), Type::Small, palette.muted);
     let title = line_of(&[title], area.width(), ui);
     let at = put(ui.painter(), area.left_top() + vec2(0.0, space::S), Align2::LEFT_TOP, title);
-    // Letters share a line; words have one each.
+    // Single letters share a line; longer names have one each.
     let (letters, words): (Vec<_>, Vec<_>) =
         curves.series.iter().partition(|series| series.name.english().chars().count() == 1);
     let lines = if words.len() > 1 {
@@ -149,7 +149,7 @@ pub(super) fn key_ui(curves: &Curves<'_>, area: Rect, ui: &Ui) {
     }
 }
 
-/// What the curves say at the pointer: a dot on each, and their values with the unit.
+/// Draws a dot on each curve at the pointer, and their values with the unit.
 pub(super) fn hover_ui(
     curves: &Curves<'_>,
     axis: TimeAxis,
@@ -196,7 +196,7 @@ pub(super) fn hover_ui(
     runs.push(Run::new(curves.unit, Type::Small, palette.muted).after(space::XS));
     let galley = line_of(&runs, f32::INFINITY, ui);
     let size = galley.size() + vec2(2.0 * space::S, space::S);
-    // Beside the pointer, on the side where there is room.
+    // The values stand beside the pointer, on the side that has room.
     let left = if x + 12.0 + size.x < plot.right() {
         x + 12.0
     } else {
@@ -208,7 +208,7 @@ pub(super) fn hover_ui(
     put(painter, rect.center(), Align2::CENTER_CENTER, galley);
 }
 
-/// The value between two points of a curve; none outside it or in a gap.
+/// Returns the value between two points of a curve; `None` outside it or in a gap.
 fn value_at(points: &[[f64; 2]], time: f64) -> Option<f64> {
     let after = points.partition_point(|point| point[0] < time);
     let right = points.get(after)?;

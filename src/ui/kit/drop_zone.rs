@@ -1,4 +1,4 @@
-//! Where files are dropped, or asked for.
+//! The zone where files are dropped or opened.
 
 use super::button::link_ui;
 use super::paint::{Run, line_of, paragraph, put};
@@ -9,8 +9,8 @@ use eframe::egui::{
 };
 use std::f32::consts::FRAC_PI_2;
 
-/// A dashed field with a sentence and links below it. `hot` while files hang over the window. Which
-/// link was pressed.
+/// Draws a dashed field with a sentence and links below it. `hot`: whether files are held over the
+/// window. Returns the link that was pressed.
 pub(crate) fn drop_zone_ui(
     sentence: Word,
     links: &[Word],
@@ -29,7 +29,8 @@ pub(crate) fn drop_zone_ui(
     }
     let line = if hot { palette.accent } else { palette.line_strong };
     dashed_rect(rect.shrink(0.5), f32::from(radius::L), Stroke::new(theme.hairline(), line), ui);
-    // A galley is set flush left; a sentence in two lines is short enough to be centred as a block.
+    // A galley is aligned to the left; a sentence in two lines is short enough to be centred as a
+    // block.
     let text_rect =
         put(ui.painter(), pos2(rect.center().x, rect.top() + space::M), Align2::CENTER_TOP, text);
 
@@ -48,7 +49,7 @@ pub(crate) fn drop_zone_ui(
         .id_salt(sentence.english())
         .max_rect(row)
         .layout(Layout::left_to_right(Align::Center));
-    // A child of its own: the zone's space is taken already.
+    // The links get a child of their own: the zone's space is already allocated.
     let mut inner = ui.new_child(builder);
     inner.spacing_mut().item_spacing.x = space::S;
     for (index, link) in links.iter().enumerate() {
@@ -63,7 +64,7 @@ pub(crate) fn drop_zone_ui(
     pressed
 }
 
-/// The outline of a rectangle with round corners, in dashes.
+/// Draws the outline of a rectangle with round corners, in dashes.
 fn dashed_rect(rect: Rect, corner: f32, stroke: Stroke, ui: &Ui) {
     let mut path = Vec::new();
     let corners = [

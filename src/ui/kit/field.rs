@@ -1,4 +1,4 @@
-//! Words to type, and values only to read.
+//! Text fields, and rows of values that cannot be changed.
 
 use super::assistive::describe;
 use super::paint::{Run, faded, full_width, line_of, put};
@@ -8,17 +8,17 @@ use eframe::egui::{
     Align2, Key, Margin, Response, Role, Sense, TextEdit, Ui, WidgetInfo, pos2, vec2,
 };
 
-/// What was done to a text field.
+/// The user's input to a text field.
 #[derive(Debug)]
 pub(crate) struct FieldResponse {
-    /// The text was finished: Enter, or the focus went elsewhere. Esc does not finish.
+    /// The text is finished: by Enter, or because the focus went elsewhere. Esc does not finish it.
     pub(crate) committed: bool,
     /// The field.
     pub(crate) response: Response,
 }
 
-/// A line of text to type, as wide as the panel. `name` is its accessible name, `hint` stands in it
-/// while it is empty.
+/// Draws a text field of one line, as wide as the panel. `name` is its accessible name; `hint` is
+/// shown in it while it is empty.
 pub(crate) fn text_field_ui<'a>(
     name: Word,
     hint: impl Into<Text<'a>>,
@@ -42,8 +42,8 @@ pub(crate) fn text_field_ui<'a>(
     FieldResponse { committed: was_typing && !typing && !escaped, response }
 }
 
-/// A value that is found, not set: the label left, the number and its unit right, as in a slider's
-/// row.
+/// Draws a value that cannot be changed: the label at the left, the number and its unit at the
+/// right, as in the row of a slider.
 pub(crate) fn value_row_ui(label: Word, value: &str, unit: Word, ui: &mut Ui) -> Response {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let enabled = ui.is_enabled();

@@ -1,5 +1,5 @@
-//! How far apart every moment of one clip is from every moment of another: a field of colours with
-//! curves and pins on it.
+//! A heat map: the distance of every moment of one clip from every moment of another, with curves
+//! and pins on it.
 
 use super::assistive::describe;
 use super::paint::{Run, focus_ring, line_of, put};
@@ -13,16 +13,15 @@ use eframe::egui::{
 use segue_text::Message;
 use std::ops::Range;
 
-/// Colours of a picture of distances: more than an eye tells apart.
+/// Number of colours of a heat map: more than an eye tells apart.
 const SHADES: usize = 256;
 
-/// What colour a distance has, looked up: a picture of distances asks for it hundreds of thousands
-/// of times.
+/// The colours of distances in a table: a heat map looks up hundreds of thousands of them.
 #[derive(Clone, Debug)]
 pub(crate) struct Shades([Color32; SHADES]);
 
 impl Shades {
-    /// From the palette's few colours, alike to far apart.
+    /// Returns the shades between the palette's colours, from near to far.
     pub(crate) fn new(heat: &[Color32; 5]) -> Self {
         Self(std::array::from_fn(|shade| {
             let at = shade as f32 / (SHADES - 1) as f32 * (heat.len() - 1) as f32;
@@ -31,9 +30,9 @@ impl Shades {
         }))
     }
 
-    /// The colour of a share of the way, 0 to 1; what is beyond an end has that end's.
+    /// Returns the colour of a share, clamped to 0 to 1.
     pub(crate) fn at(&self, share: f32) -> Color32 {
-        // A conversion takes what is below 0 to 0.
+        // The conversion clamps negative numbers to 0.
         self.0[((share * (SHADES - 1) as f32 + 0.5) as usize).min(SHADES - 1)]
     }
 }
@@ -47,57 +46,57 @@ pub(crate) struct MapCurve<'a> {
     pub(crate) color: Color32,
     /// Its width, points.
     pub(crate) width: f32,
-    /// Broken into dashes.
+    /// Whether it is dashed.
     pub(crate) dashed: bool,
 }
 
-/// When the feet of one clip stand, left and right, seconds.
+/// The stances of one clip, left and right, seconds.
 pub(crate) type Feet = [Vec<Range<f64>>; 2];
 
-/// All that the map shows. The first clip's time runs to the right, the second's upwards.
+/// The content of the map. The first clip's time runs to the right, the second's upwards.
 #[derive(Clone, Debug)]
 pub(crate) struct HeatMap<'a> {
     /// The accessible name.
     pub(crate) label: Word,
-    /// The colours, of the part `field` of both times; none while they are unknown.
+    /// The colours of the part `field` of both times; `None` while they are unknown.
     pub(crate) texture: Option<TextureId>,
-    /// From and to of what the texture shows, of both clips, seconds.
+    /// The start and end of the part that the texture shows, of both clips, seconds.
     pub(crate) field: [[f64; 2]; 2],
-    /// How long both clips are, seconds.
+    /// The lengths of both clips, seconds.
     pub(crate) spans: [f64; 2],
     /// The names of both axes.
     pub(crate) names: [Word; 2],
-    /// When feet stand.
+    /// The stances of both clips.
     pub(crate) feet: &'a [Feet; 2],
-    /// Curves, the most important last.
+    /// The curves, the most important one last.
     pub(crate) curves: &'a [MapCurve<'a>],
-    /// Points that hold a curve, seconds.
+    /// The pins that hold a curve, seconds.
     pub(crate) pins: &'a [[f64; 2]],
-    /// What is shown now, seconds.
+    /// The pair of times at the playhead, seconds.
     pub(crate) now: Option<[f64; 2]>,
 }
 
-/// What was asked of the map. Times are in seconds.
+/// The user's input to the map. Times are in seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum HeatMapEvent {
-    /// The pointer is here.
+    /// The pointer is at these times.
     Hover([f64; 2]),
-    /// Show this.
+    /// Go to these times.
     Seek([f64; 2]),
-    /// A pin is wanted here; if it was somewhere else until now, it moves from there.
+    /// Set a pin, or move one.
     Pin {
-        /// Where it was.
+        /// Its place before; `None` for a new pin.
         from: Option<[f64; 2]>,
-        /// Where it is wanted.
+        /// Its new place.
         to: [f64; 2],
     },
-    /// The pin is taken away.
+    /// Remove the pin.
     Unpin([f64; 2]),
-    /// The pin was let go: what was done since it was taken is one step.
+    /// The pin was released: the changes since it was taken are one step of undo.
     Settled,
 }
 
-/// Where times lie on the screen.
+/// The places of times on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Axes {
     rect: Rect,
@@ -120,23 +119,24 @@ impl Axes {
     }
 }
 
-/// Room beside the field for the stripes of the feet, and for the seconds.
+/// Room beside the field for the stripes of the feet, points.
 const STRIPES: f32 = 12.0;
+/// Room beside the field for the seconds, points.
 const SECONDS: f32 = 16.0;
-/// A pin is taken hold of within this distance, points.
+/// The distance within which a pin is taken hold of, points.
 const REACH: f32 = 11.0;
-/// A pin that is dragged this far out of the field is taken away, points.
+/// The distance from the field at which a dragged pin is removed, points.
 const OUT: f32 = 14.0;
 
 /// Draws the map as wide as there is room, at most `most_height` points high. Press to go there,
-/// drag to set or move a pin, drag it out or double-click it to take it away.
+/// drag to set or move a pin, drag it out or double-click it to remove it.
 pub(crate) fn heat_map_ui(map: &HeatMap<'_>, most_height: f32, ui: &mut Ui) -> Vec<HeatMapEvent> {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let scale = theme.scale();
     let (stripes, seconds) = ((STRIPES * scale).round(), (SECONDS * scale).round());
     let margin = vec2(seconds + stripes + 4.0, seconds + stripes);
     let width = ui.available_width() - margin.x;
-    // As high as the times ask for, within reason: equal speeds are a diagonal.
+    // The height follows from the times, within limits: equal speeds are a diagonal.
     let wanted = width * (map.spans[1] / map.spans[0].max(1e-9)) as f32;
     let height =
         wanted.clamp(0.55 * width, 1.1 * width).min(most_height - margin.y).max(60.0).round();
@@ -202,8 +202,8 @@ pub(crate) fn heat_map_ui(map: &HeatMap<'_>, most_height: f32, ui: &mut Ui) -> V
     events
 }
 
-/// The stripes of the feet and the seconds: of the first clip below the field, of the second to its
-/// left.
+/// Draws the stripes of the feet and the seconds: those of the first clip below the field, those of
+/// the second at its left.
 fn sides_ui(map: &HeatMap<'_>, axes: &Axes, stripes: f32, ui: &Ui) {
     let palette = palette_of(ui);
     let scale = theme_of(ui).scale();
@@ -255,7 +255,7 @@ fn sides_ui(map: &HeatMap<'_>, axes: &Axes, stripes: f32, ui: &Ui) {
     }
 }
 
-/// The pin that is held, where it was last.
+/// The last place of the pin that is held.
 #[derive(Clone, Copy, Debug)]
 struct Held(Option<[f64; 2]>);
 
@@ -316,7 +316,7 @@ fn events(map: &HeatMap<'_>, axes: &Axes, response: &Response, ui: &Ui) -> Vec<H
     events
 }
 
-/// What the colours mean: from alike to far apart.
+/// Draws the legend of the colours, from near to far.
 pub(crate) fn heat_legend_ui([low, high]: &[Message; 2], ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let height = (14.0 * theme.scale()).round();

@@ -1,4 +1,4 @@
-//! How often values occur, with a line that is dragged: what lies before it counts.
+//! A histogram with a line that can be dragged: the values before it count.
 
 use super::assistive::{Adjustable, requested};
 use super::paint::{Run, focus_ring, full_width, line_of, put};
@@ -6,40 +6,40 @@ use crate::ui::language::{Text, Word, say};
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{Align2, CursorIcon, EventFilter, Key, Rect, Sense, Stroke, Ui, pos2};
 
-/// What it shows.
+/// The content of the histogram.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Histogram<'a> {
     /// The accessible name.
     pub(crate) label: Word,
-    /// How many values lie in each bin.
+    /// The number of values in each bin.
     pub(crate) counts: &'a [u32],
-    /// How wide a bin is, in the unit of the value.
+    /// The width of a bin, in the unit of the value.
     pub(crate) bin: f64,
-    /// Where the line stands.
+    /// The value at the line.
     pub(crate) value: f64,
-    /// The smallest place of the line, and how far one step of it is.
+    /// The smallest value of the line, and its step.
     pub(crate) step: f64,
     /// The unit.
     pub(crate) unit: Word,
 }
 
-/// What was asked of it.
+/// The user's input to the histogram.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct HistogramResponse {
-    /// The line is wanted here.
+    /// The new value of the line.
     pub(crate) changed: Option<f64>,
-    /// It was let go.
+    /// The line was released.
     pub(crate) settled: bool,
 }
 
-/// Draws it. Drag or press to move the line; the arrow keys move it by a step.
+/// Draws the histogram. Drag or press to move the line; the arrow keys move it by a step.
 pub(crate) fn histogram_ui(histogram: &Histogram<'_>, ui: &mut Ui) -> HistogramResponse {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let scale = theme.scale();
     let (height, foot) = ((54.0 * scale).round(), (14.0 * scale).round());
     let row = full_width(height + foot, ui);
     let plot = Rect::from_min_size(row.min, eframe::egui::vec2(row.width(), height));
-    // What lies far beyond the line is cut off: the line should not be at the very edge.
+    // Values far beyond the line are cut off, so that the line is not at the edge.
     let bins = shown_bins(histogram);
     let end = bins as f64 * histogram.bin;
     let x_of = |value: f64| plot.left() + (value / end).clamp(0.0, 1.0) as f32 * plot.width();
@@ -88,7 +88,7 @@ pub(crate) fn histogram_ui(histogram: &Histogram<'_>, ui: &mut Ui) -> HistogramR
     for (bin, &count) in
         histogram.counts.iter().take(bins).enumerate().filter(|(_, count)| **count > 0)
     {
-        // The root: few near pairs stand beside very many far ones.
+        // Heights are square roots: there are few near pairs and very many far ones.
         let high = (f64::from(count) / most).sqrt() as f32 * (height - 4.0);
         let left = plot.left() + bin as f32 * wide;
         let inside = (bin as f64 + 0.5) * histogram.bin <= value;
@@ -132,7 +132,8 @@ pub(crate) fn histogram_ui(histogram: &Histogram<'_>, ui: &mut Ui) -> HistogramR
     out
 }
 
-/// So many that the line lies in the left two thirds, and most of what there is is seen.
+/// Returns the number of bins that are shown: the line lies in the left two thirds, and most of the
+/// values are in sight.
 fn shown_bins(histogram: &Histogram<'_>) -> usize {
     let counts = histogram.counts;
     let all: u64 = counts.iter().map(|&count| u64::from(count)).sum();

@@ -1,5 +1,5 @@
-//! A large square of values as a picture that one can go into: tiles that are made when they are
-//! seen, marks on them, and the names of its parts along both sides.
+//! A large square matrix as a picture that can be zoomed: tiles that are made when they are in
+//! sight, marks on them, and the names of its parts along both sides.
 
 use super::assistive::describe;
 use super::paint::{Run, focus_ring, line_of, put};
@@ -11,53 +11,52 @@ use eframe::egui::{
 };
 use segue_text::Message;
 
-/// Texels of a tile, to a side.
+/// Texels along a side of a tile.
 pub(crate) const TILE: usize = 256;
-/// A mark is reached within this distance, points.
+/// The distance within which the pointer reaches a mark, points.
 const REACH: f32 = 9.0;
 /// Of what is in view, more marks than these are points that nobody can tell apart.
 const MOST_MARKS: usize = 2_500;
 
-/// A part of the picture: values are squares of `factor` cells.
+/// A tile of the picture. A texel is a square of cells, `factor` to a side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Tile {
-    /// Cells of a texel, to a side.
+    /// Cells along a side of a texel.
     pub(crate) factor: usize,
-    /// Counted in tiles from the top.
+    /// The row of tiles, from the top.
     pub(crate) row: usize,
-    /// Counted in tiles from the left.
+    /// The column of tiles, from the left.
     pub(crate) column: usize,
 }
 
-/// A place that is marked.
+/// A marked cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MatrixMark {
     /// Row and column.
     pub(crate) at: [f32; 2],
-    /// It is out of use.
+    /// Whether it is out of use.
     pub(crate) faint: bool,
 }
 
-/// All that is shown.
+/// The content of the matrix.
 pub(crate) struct Matrix<'a> {
     /// The accessible name.
     pub(crate) label: Word,
-    /// Rows, and columns.
+    /// The number of rows, and of columns.
     pub(crate) size: usize,
-    /// Tiles with so many cells to a texel, a power of two, or more are quickly made; finer ones
-    /// take their time.
+    /// The least `factor`, a power of two, for which tiles are made quickly; finer ones take long.
     pub(crate) known: usize,
-    /// Names of the parts, each with the row at which it begins.
+    /// The names of the parts, each with the row at which it begins.
     pub(crate) parts: &'a [(usize, Message)],
-    /// Marks, the most important first.
+    /// The marks, the most important one first.
     pub(crate) marks: &'a [MatrixMark],
-    /// The mark that is lit.
+    /// The highlighted mark.
     pub(crate) lit: Option<usize>,
-    /// What is shown now, as row and as column.
+    /// The row and column of the playhead.
     pub(crate) now: Option<f32>,
 }
 
-/// What was asked of it.
+/// The user's input to the matrix.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct MatrixResponse {
     /// The mark under the pointer.
@@ -68,7 +67,7 @@ pub(crate) struct MatrixResponse {
     pub(crate) clicked: Option<usize>,
 }
 
-/// The part that is seen: its upper left corner in cells, and cells per point.
+/// The visible part: its upper left corner in cells, and cells per point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Window {
     corner: Vec2,
@@ -80,28 +79,29 @@ impl Window {
         Self { corner: Vec2::ZERO, cells: size / side.max(1.0) }
     }
 
-    /// The same part on a field of another size.
+    /// Returns the same part on a field of another size.
     fn on(self, before: f32, side: f32) -> Self {
         Self { cells: self.cells * before / side, ..self }
     }
 
-    /// Inside of the picture, and not so near that a cell is larger than a fingertip.
+    /// Returns the window moved into the picture, and zoomed out until a cell is no larger than a
+    /// fingertip.
     fn bounded(self, size: f32, side: f32) -> Self {
         let cells = self.cells.clamp((1.0_f32 / 24.0).min(size / side), size / side);
         let last = (size - cells * side).max(0.0);
         Self { corner: self.corner.clamp(Vec2::ZERO, Vec2::splat(last)), cells }
     }
 
-    /// Nearer by a factor, with what is at a point of the field staying there.
+    /// Returns the window zoomed in by a factor about a point of the field.
     fn zoomed(self, factor: f32, at: Vec2) -> Self {
         let cells = self.cells / factor;
         Self { corner: self.corner + at * (self.cells - cells), cells }
     }
 }
 
-/// Draws it as a square of at most `side` points. Wheel or pinch zooms, dragging moves, a double
-/// click shows all of it; the keys +, − and 0 do the same. `tile` gives the texture of a part, or
-/// none while that is not made yet.
+/// Draws the matrix as a square of at most `side` points. Wheel or pinch zooms, dragging moves, a
+/// double click shows all of it; the keys +, − and 0 do the same. `tile` returns the texture of a
+/// tile, or `None` while it is not made yet.
 pub(crate) fn matrix_ui(
     matrix: &Matrix<'_>,
     side: f32,
@@ -120,7 +120,7 @@ pub(crate) fn matrix_ui(
         .filter(|(of, ..)| *of == matrix.size)
         .map_or(Window::whole(size, side), |(_, before, window)| window.on(before, side))
         .bounded(size, side);
-    // There is nowhere to drag all of it to: a finger that lies on it moves the panel.
+    // The whole picture cannot be dragged: a finger on it moves the panel.
     let is_whole = window.cells >= 0.999 * size / side;
     let sense = if is_whole { Sense::click() } else { Sense::click_and_drag() };
     let response = ui.interact(field, id, sense);
@@ -135,7 +135,7 @@ pub(crate) fn matrix_ui(
     let pixels = ui.ctx().pixels_per_point();
     let coarse = factor_for(size / side / pixels);
     let fine = factor_for(window.cells / pixels).min(coarse);
-    // What is quickly made lies below what is not made yet.
+    // Tiles that are made quickly lie below finer ones that may not be made yet.
     let mut factors = vec![coarse, matrix.known.clamp(fine, coarse), fine];
     factors.dedup();
     for factor in factors {
@@ -181,7 +181,7 @@ pub(crate) fn matrix_ui(
         let nearest = marks.min_by(|a, b| a.1.total_cmp(&b.1));
         nearest.filter(|(_, off)| *off <= REACH).map(|(index, _)| index)
     });
-    // Small where there are many, larger the nearer one comes.
+    // Marks are small where there are many, and grow with the zoom.
     let radius_of_mark =
         ((side / 190.0).clamp(1.4, 2.6) * theme.scale() * (size / side / window.cells).powf(0.4))
             .min(6.5);
@@ -217,10 +217,10 @@ pub(crate) fn matrix_ui(
     MatrixResponse { hovered, at, clicked: hovered.filter(|_| response.clicked()) }
 }
 
-/// The marks in view with their indices: the most important first, and the one that is lit. The
-/// nearer one comes, the more of the others are among them.
+/// Returns the marks in view with their indices: the highlighted one first, then the most important
+/// ones. With the zoom, more of the others are among them.
 fn seen_marks<'a>(matrix: &Matrix<'a>, window: &Window, side: f32) -> Vec<(usize, &'a MatrixMark)> {
-    // A ring at the edge is seen, too.
+    // A ring at the edge is partly in view.
     let (margin, cells) = (4.0 * window.cells, window.cells * side);
     let within =
         |at: f32, corner: f32| (corner - margin..=corner + cells + margin).contains(&(at + 0.5));
@@ -236,12 +236,13 @@ fn seen_marks<'a>(matrix: &Matrix<'a>, window: &Window, side: f32) -> Vec<(usize
         .collect();
     let lit = matrix.lit.filter(|lit| seen.binary_search_by_key(lit, |(index, _)| *index).is_err());
     let lit = lit.and_then(|lit| Some((lit, matrix.marks.get(lit)?)));
-    // Drawn last, it would lie under all others: the last one is drawn first.
+    // The first one is drawn last, above all others.
     seen.splice(0..0, lit.filter(|(_, mark)| is_seen(mark)));
     seen
 }
 
-/// Cells per texel, a power of two, so that a texel is about as large as a pixel.
+/// Returns the cells along a side of a texel, a power of two, for which a texel is about as large
+/// as a pixel.
 fn factor_for(cells_per_pixel: f32) -> usize {
     let power = cells_per_pixel.max(1.0).log2().floor() as u32;
     1 << power.min(16)
@@ -263,7 +264,7 @@ fn moved(
         let factor = pinch * (scroll * 0.004).exp();
         if (factor - 1.0).abs() > 1e-4 {
             window = window.zoomed(factor, pos - field.min);
-            // The panel behind it stays where it is.
+            // The panel around it does not scroll.
             ui.ctx().input_mut(|input| input.smooth_scroll_delta = Vec2::ZERO);
         }
     }
@@ -297,7 +298,7 @@ fn moved(
     window.bounded(size, side)
 }
 
-/// The names of the parts: of the columns above, of the rows at the left, turned.
+/// Draws the names of the parts: those of the columns above, those of the rows at the left, turned.
 fn names_ui(
     matrix: &Matrix<'_>,
     (field, margin): (Rect, f32),
@@ -332,7 +333,7 @@ fn names_ui(
     }
 }
 
-/// Where a widget keeps its tiles.
+/// Returns the id under which the tiles are stored.
 pub(crate) fn tiles_id() -> Id {
     Id::unique("matrix tiles")
 }
@@ -356,7 +357,7 @@ mod tests {
 
     #[test]
     fn whoever_comes_nearer_sees_the_marks_that_there_was_no_room_for() {
-        // A hundred to a side, ever less important from the top to the bottom.
+        // A hundred to a side, in falling importance from the top to the bottom.
         let marks: Vec<MatrixMark> = (0..10_000)
             .map(|index| MatrixMark {
                 at: [(index / 100) as f32 * 10.0, (index % 100) as f32 * 10.0],
@@ -378,13 +379,13 @@ mod tests {
             (seen.len(), seen[0].0, seen[1].0, seen[MOST_MARKS].0),
             (MOST_MARKS + 1, 9_999, 0, MOST_MARKS - 1)
         );
-        // The lower right corner, where none was marked but the one that is lit.
+        // The lower right corner, where only the highlighted mark was shown.
         let near = whole.zoomed(4.0, vec2(500.0, 500.0));
         let seen: Vec<usize> =
             seen_marks(&matrix, &near, 500.0).iter().map(|(index, _)| *index).collect();
         let wanted = (0..10_000).filter(|index| index / 100 >= 75 && index % 100 >= 75);
         assert_eq!(seen, wanted.collect::<Vec<_>>());
-        // Where it does not lie in view it is not drawn.
+        // Out of view, it is not drawn.
         let away = whole.zoomed(4.0, vec2(0.0, 0.0));
         assert!(
             seen_marks(&matrix, &away, 500.0)

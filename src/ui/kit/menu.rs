@@ -1,4 +1,4 @@
-//! Lists that open: menus behind a button, and a choice among many.
+//! Menus behind a button, and a choice among many.
 
 use super::assistive::describe;
 use super::icon::{Icon, paint_icon};
@@ -13,18 +13,18 @@ use eframe::egui::{
 /// One line of a menu.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct MenuItem<'a> {
-    /// What it does.
+    /// Its label.
     pub(crate) text: Text<'a>,
-    /// The sign before it.
+    /// The icon before it.
     pub(crate) icon: Option<Icon>,
-    /// The keys that do the same, at the right.
+    /// The keys of the same command, at the right.
     pub(crate) shortcut: Text<'a>,
-    /// The one in force: it wears a tick.
+    /// Whether it is the current choice, which has a tick.
     pub(crate) chosen: bool,
 }
 
-/// A menu that opens below (or above, where there is no room) `opener` when that is clicked, and
-/// closes after a choice.
+/// Draws a menu that opens below (or above, where there is no room) `opener` when that is clicked,
+/// and closes after a choice.
 pub(crate) fn menu_ui<R>(
     opener: &Response,
     align: RectAlign,
@@ -41,7 +41,7 @@ pub(crate) fn menu_ui<R>(
         })
 }
 
-/// One line of a menu, as wide as the menu.
+/// Draws one line of a menu, as wide as the menu.
 pub(crate) fn menu_item_ui(item: MenuItem<'_>, ui: &mut Ui) -> Response {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let enabled = ui.is_enabled();
@@ -87,7 +87,7 @@ pub(crate) fn menu_item_ui(item: MenuItem<'_>, ui: &mut Ui) -> Response {
     response
 }
 
-/// A hairline between groups of a menu.
+/// Draws a hairline between groups of a menu.
 pub(crate) fn menu_line_ui(ui: &mut Ui) {
     let width = if ui.is_sizing_pass() { 0.0 } else { ui.available_width() };
     let (_, rect) = ui.allocate_space(vec2(width, 9.0));
@@ -95,8 +95,8 @@ pub(crate) fn menu_line_ui(ui: &mut Ui) {
     ui.painter().hline(rect.x_range(), rect.center().y, stroke);
 }
 
-/// A parameter with many possible values: the label left, the chosen value right, the others in a
-/// menu. What was chosen anew.
+/// Draws a parameter with many possible values: the label at the left, the chosen value at the
+/// right, the others in a menu. Returns a new choice.
 pub(crate) fn choice_row_ui<'a, T: Copy + PartialEq>(
     label: impl Into<Text<'a>>,
     chosen: T,

@@ -1,4 +1,4 @@
-//! Measured numbers in a row: large, with what they measure below.
+//! Metrics in a row: large numbers with their labels below.
 
 use super::assistive::describe;
 use super::paint::{Run, line_of, put};
@@ -8,7 +8,7 @@ use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Align2, Galley, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 use std::sync::Arc;
 
-/// How a number compares to the same one in the other panes.
+/// The rank of a number among the same one of all panes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Rank {
     /// In between, or there is nothing to compare with.
@@ -23,18 +23,18 @@ pub(crate) enum Rank {
 /// One measured number.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Metric<'a> {
-    /// The number as it is written, sign and degree included.
+    /// The number as text, with its sign and degree sign.
     pub(crate) value: &'a str,
-    /// What it measures and in which unit: `slide cm`.
+    /// Its name and unit: `slide cm`.
     pub(crate) label: Word,
-    /// How it compares.
+    /// Its rank.
     pub(crate) rank: Rank,
-    /// What it means, in a sentence, for the hint.
+    /// Its meaning in a sentence, for the hint.
     pub(crate) hint: Word,
 }
 
-/// Numbers side by side, in further rows where there is no room. The best and the worst are marked
-/// in colour and in words.
+/// Draws metrics side by side, in further rows where there is no room. The best and the worst are
+/// marked in colour and in words.
 pub(crate) fn metric_strip_ui(metrics: &[Metric<'_>], ui: &mut Ui) {
     let (rects, total) = places(metrics, ui.available_width(), ui);
     let (_, space) = ui.allocate_space(vec2(ui.available_width(), total));
@@ -58,7 +58,7 @@ pub(crate) fn metric_strip_ui(metrics: &[Metric<'_>], ui: &mut Ui) {
     }
 }
 
-/// How high [`metric_strip_ui`] is where it is `width` wide.
+/// Returns the height of [`metric_strip_ui`] at a width.
 pub(crate) fn metric_strip_height(metrics: &[Metric<'_>], width: f32, ui: &Ui) -> f32 {
     places(metrics, width, ui).1
 }
@@ -67,7 +67,7 @@ fn row_height(ui: &Ui) -> f32 {
     (36.0 * theme_of(ui).scale()).round()
 }
 
-/// The number with its verdict, what it measures, and the verdict's word.
+/// Returns the number with its verdict, the label, and the word of the verdict.
 fn galleys(metric: &Metric<'_>, ui: &Ui) -> (Arc<Galley>, Arc<Galley>, Word) {
     let palette = palette_of(ui);
     let (ink, word) = match metric.rank {
@@ -84,7 +84,7 @@ fn galleys(metric: &Metric<'_>, ui: &Ui) -> (Arc<Galley>, Arc<Galley>, Word) {
     (number, label, word)
 }
 
-/// Where each stands, from the origin, and how high all are together.
+/// Returns the place of each metric, from the origin, and the height of all.
 fn places(metrics: &[Metric<'_>], width: f32, ui: &Ui) -> (Vec<Rect>, f32) {
     let height = row_height(ui);
     let mut at = pos2(0.0, 0.0);

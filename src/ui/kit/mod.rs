@@ -1,7 +1,7 @@
 //! The widgets the whole app is built from.
 //!
 //! Each is one file and a function that takes `&mut Ui` last and ends in `_ui`. None changes the
-//! app: they are told a state and return what was asked for. All take their colours, sizes and
+//! app: each is given a state and returns what the user asks for. All take their colours, sizes and
 //! spaces from the theme, name themselves to screen readers, and can be worked by mouse, by touch
 //! and by keyboard.
 //!

@@ -1,5 +1,4 @@
-//! What the app has to say: a caption over the stage, a notice that can be dismissed, a task under
-//! way.
+//! Captions over the stage, notices that can be dismissed, and the progress of tasks.
 
 use super::assistive::describe;
 use super::button::{Button, button_ui, icon_button_ui};
@@ -15,27 +14,27 @@ use eframe::egui::{
 };
 use segue_text::Message;
 
-/// Something to be told once.
+/// A notice.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Notice<'a> {
-    /// What happened, and what to do about it. As long as it needs.
+    /// What has happened, and what to do about it, of any length.
     pub(crate) text: &'a Message,
-    /// How grave it is.
+    /// Its severity.
     pub(crate) mood: Mood,
-    /// A button beside it; none if empty.
+    /// The label of a button below it; empty for none.
     pub(crate) action: Word,
 }
 
-/// What was done to a notice.
+/// The user's input to a notice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NoticeEvent {
-    /// Take it away.
+    /// Close it.
     Dismissed,
     /// Its button was pressed.
     Acted,
 }
 
-/// A notice as wide as the panel it stands in.
+/// Draws a notice as wide as its panel.
 pub(crate) fn notice_ui(notice: &Notice<'_>, ui: &mut Ui) -> Option<NoticeEvent> {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let scale = theme.scale();
@@ -88,16 +87,15 @@ pub(crate) fn notice_ui(notice: &Notice<'_>, ui: &mut Ui) -> Option<NoticeEvent>
         }
     });
     if notice.mood != Mood::Plain {
-        // The mood as a quiet ground over the whole, and as an edge that is seen from the corner of
-        // the eye.
+        // A quiet ground in the colour of the mood, which catches the eye.
         let rect = shown.response.rect;
         ui.painter().rect_filled(rect, radius::L, wash.gamma_multiply(0.5));
     }
     event
 }
 
-/// Notices floating over the lower edge of the stage, the newest lowest. Which of them was touched,
-/// and how.
+/// Draws notices over the lower edge of the stage, the newest at the bottom. Returns the index of
+/// the one that was used, and the input to it.
 pub(crate) fn toasts_ui(
     notices: &[Notice<'_>],
     stage: Rect,
@@ -116,8 +114,7 @@ pub(crate) fn toasts_ui(
         .default_width(width);
     let shown = area.show(ui.ctx(), |ui| {
         ui.set_width(width);
-        // More than there is room for is scrolled, from its end: the cross of every notice can be
-        // reached.
+        // Notices scroll where there is no room, from the end, so that each can be closed.
         let scrolled = ScrollArea::vertical()
             .max_height(stage.height() - 2.0 * space::L)
             .stick_to_bottom(true);
@@ -137,8 +134,7 @@ pub(crate) fn toasts_ui(
     shown.inner
 }
 
-/// One sentence on a round ground, centred on `center_bottom`: what to look at. Wraps on narrow
-/// stages.
+/// Draws a sentence on a round ground, centred at the bottom of `stage`. It wraps on narrow stages.
 pub(crate) fn caption_ui<'a>(text: impl Into<Text<'a>>, stage: Rect, ui: &mut Ui) -> Rect {
     let text = text.into();
     let (theme, palette) = (theme_of(ui), palette_of(ui));
@@ -160,8 +156,8 @@ pub(crate) fn caption_ui<'a>(text: impl Into<Text<'a>>, stage: Rect, ui: &mut Ui
     rect
 }
 
-/// A task under way: what it does, how far it is (`None`: unknown), and a button that stops it. Was
-/// that pressed?
+/// Draws a task: its name, its progress (`None` if unknown), and a button that stops it. Returns
+/// whether that was pressed.
 pub(crate) fn progress_row_ui<'a>(
     label: impl Into<Text<'a>>,
     done: Option<f32>,
@@ -171,7 +167,7 @@ pub(crate) fn progress_row_ui<'a>(
     progress_ui(label.into(), done, detail.into(), true, ui)
 }
 
-/// A task that is over before anybody wants to stop it.
+/// Draws a task that is too short to be stopped.
 pub(crate) fn brief_progress_ui<'a>(
     label: Word,
     done: f32,
@@ -202,7 +198,7 @@ fn progress_ui(
     let stopped =
         can_be_stopped && icon_button_ui(Icon::Close, words::CANCEL, &mut inner).clicked();
     let right = if can_be_stopped { inner.min_rect().left() - space::XS } else { head.right() };
-    // What it does comes first; how far it is takes what is left, and the bar says it too.
+    // The name has precedence over the detail: the bar shows the progress as well.
     let galley = line_of(&[Run::new(label, Type::Label, palette.text)], right - head.left(), ui);
     let said = put(ui.painter(), head.left_center(), Align2::LEFT_CENTER, galley);
     let detail = line_of(&[Run::new(detail, Type::Small, palette.muted)], f32::INFINITY, ui);
@@ -215,7 +211,7 @@ fn progress_ui(
     let (from, to) = if let Some(done) = done {
         (0.0, done.clamp(0.0, 1.0))
     } else {
-        // Nothing is known of the end: a third of the bar wanders.
+        // The end is unknown: a third of the bar moves along it.
         ui.request_repaint();
         let phase = (ui.input(|input| input.time) * 0.7).rem_euclid(1.4) as f32 - 0.35;
         (phase.max(0.0), (phase + 0.35).clamp(0.0, 1.0))

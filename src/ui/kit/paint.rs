@@ -1,4 +1,4 @@
-//! What the widgets share: setting text, the ring around what has the keyboard, fades.
+//! Painting that the widgets share: text, the focus ring, gradients.
 
 use crate::ui::language::{Text, say};
 use crate::ui::theme::{Theme, Type, palette_of, theme_of};
@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// One run of text in one font and colour.
 #[derive(Clone, Debug)]
 pub(crate) struct Run<'a> {
-    /// What it says.
+    /// Its text.
     pub(crate) text: Text<'a>,
     /// Its step of the type scale.
     pub(crate) step: Type,
@@ -26,19 +26,19 @@ pub(crate) struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    /// A run that follows without a gap.
+    /// Returns a run that follows without a gap.
     pub(crate) fn new(text: impl Into<Text<'a>>, step: Type, color: Color32) -> Self {
         Self { text: text.into(), step, color, gap: 0.0 }
     }
 
-    /// The same with space before it.
+    /// Returns the run with space before it.
     pub(crate) fn after(mut self, gap: f32) -> Self {
         self.gap = gap;
         self
     }
 }
 
-/// Sets runs in one line on one baseline; cut with … where they are wider than `max_width`.
+/// Lays runs out in one line on one baseline, cut with … where they are wider than `max_width`.
 pub(crate) fn line_of(runs: &[Run<'_>], max_width: f32, ui: &Ui) -> Arc<Galley> {
     let theme = theme_of(ui);
     let mut job = LayoutJob {
@@ -60,8 +60,8 @@ pub(crate) fn line_of(runs: &[Run<'_>], max_width: f32, ui: &Ui) -> Arc<Galley> 
     ui.fonts_mut(|fonts| fonts.layout_job(job))
 }
 
-/// The line height that puts text of `size` on one baseline with text of size `largest`, set as
-/// [`format()`] sets it.
+/// Returns the line height that puts text of `size` on one baseline with text of size `largest`, in
+/// the format of [`format()`].
 ///
 /// egui aligns the lower edges of line boxes and centres text in a box of given height. With ascent
 /// `a` and descent `d` (shares of the size), the baseline lies `(height + (a - d) size) / 2` below
@@ -72,7 +72,7 @@ fn baseline_height(size: f32, largest: f32) -> f32 {
     (ascent - descent) * size + 2.0 * descent * largest
 }
 
-/// Sets text in as many lines as it needs.
+/// Lays text out in as many lines as it needs.
 pub(crate) fn paragraph<'a>(
     text: impl Into<Text<'a>>,
     step: Type,
@@ -98,19 +98,20 @@ fn format(theme: Theme, step: Type, color: Color32) -> TextFormat {
     }
 }
 
-/// Draws set text so that the given corner or edge of it lies at `pos`; where it lies then.
+/// Draws a galley so that the given corner or edge of it is at `pos`. Returns its rectangle.
 pub(crate) fn put(painter: &Painter, pos: Pos2, anchor: Align2, galley: Arc<Galley>) -> Rect {
     let rect = anchor.anchor_size(pos, galley.size());
     painter.galley(rect.min, galley, Color32::PLACEHOLDER);
     rect
 }
 
-/// Takes `color` away while `ui` is disabled, as egui does for its own widgets.
+/// Returns a colour, faded unless `enabled`, as egui does for its own widgets.
 pub(crate) fn faded(color: Color32, enabled: bool) -> Color32 {
     if enabled { color } else { color.gamma_multiply(0.5) }
 }
 
-/// Was the last thing used the keyboard? Then what has the focus wears a ring; a click needs none.
+/// Returns whether the keyboard was used last. The focus is then shown by a ring; a click needs
+/// none.
 fn keyboard_in_use(ui: &Ui) -> bool {
     let id = Id::unique("segue keyboard in use");
     let (pointer, key) = ui.input(|input| {
@@ -130,8 +131,8 @@ fn keyboard_in_use(ui: &Ui) -> bool {
     })
 }
 
-/// The ring around the widget that the keyboard acts on. A widget that gets the focus by keyboard is
-/// scrolled into view.
+/// Draws the ring around the widget with the focus, and scrolls a widget into view that gets it by
+/// keyboard.
 pub(crate) fn focus_ring(rect: Rect, corner: u8, response: &Response, ui: &Ui) {
     if response.has_focus() && keyboard_in_use(ui) {
         if response.gained_focus() {
@@ -147,8 +148,8 @@ pub(crate) fn focus_ring(rect: Rect, corner: u8, response: &Response, ui: &Ui) {
     }
 }
 
-/// A bar with round ends whose colour runs from left to right through `stops`: (0..=1, colour), in
-/// rising order.
+/// Draws a bar with round ends, with a gradient from left to right through `stops`: (0..=1,
+/// colour), in rising order.
 ///
 /// egui's rectangles have one fill, so the shape is cut into thin columns where it is round and
 /// into the stops where it is not.
@@ -166,7 +167,7 @@ pub(crate) fn gradient_bar(rect: Rect, corner: f32, stops: &[(f32, Color32)], pa
     columns.sort_by(f32::total_cmp);
     let mut mesh = Mesh::default();
     for x in columns {
-        // Height lost to the round corner at this column.
+        // The height that the round corner takes at this column.
         let into = (corner - (x - rect.left()).min(rect.right() - x)).max(0.0);
         let lost = corner - (corner * corner - into * into).max(0.0).sqrt();
         let color = color_at((x - rect.left()) / rect.width(), stops);
@@ -206,7 +207,7 @@ fn color_at(at: f32, stops: &[(f32, Color32)]) -> Color32 {
     previous.1
 }
 
-/// Space for `height` points across the whole width that is free.
+/// Allocates `height` points across the available width.
 pub(crate) fn full_width(height: f32, ui: &mut Ui) -> Rect {
     let (_, rect) = ui.allocate_space(vec2(ui.available_width(), height));
     rect

@@ -1,4 +1,4 @@
-//! What lies over the stage: the one difference of a pane at its top, its numbers at its bottom.
+//! The title and the metrics of a pane, over the stage.
 
 use super::assistive::describe;
 use super::chip::{Mood, chip_size, paint_chip};
@@ -11,27 +11,27 @@ use eframe::egui::{
 };
 use segue_text::Message;
 
-/// What a pane says of itself.
+/// The title of a pane.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PaneTitle<'a> {
-    /// The number or word that tells this pane from the others: `30`.
+    /// The value in which this pane differs from the others: `30`.
     pub(crate) strong: &'a Message,
-    /// What it counts: `frames`.
+    /// The unit: `frames`.
     pub(crate) text: &'a Message,
-    /// The same said in another way, quietly: `0.50 s`.
+    /// The same value in another unit: `0.50 s`.
     pub(crate) secondary: &'a Message,
-    /// The verdict, as a chip; none if empty.
+    /// The verdict on a chip; empty for none.
     pub(crate) chip: Word,
     /// The colour of the verdict.
     pub(crate) mood: Mood,
 }
 
-/// Height of the strip at the top of a pane.
+/// Returns the height of the strip at the top of a pane.
 pub(crate) fn pane_header_height(ui: &Ui) -> f32 {
     (40.0 * theme_of(ui).scale()).round()
 }
 
-/// The title over the top of `pane`. The picture below stays visible through it. Returns the strip.
+/// Draws the title over the top of `pane`. The picture stays visible through it. Returns the strip.
 pub(crate) fn pane_header_ui(title: &PaneTitle<'_>, pane: Rect, ui: &mut Ui) -> Rect {
     let palette = palette_of(ui);
     let strip = Rect::from_min_size(pane.min, vec2(pane.width(), pane_header_height(ui)));
@@ -51,7 +51,7 @@ pub(crate) fn pane_header_ui(title: &PaneTitle<'_>, pane: Rect, ui: &mut Ui) -> 
         runs.push(Run::new(Text::Data("·"), Type::Body, palette.muted).after(space::XS + 1.0));
         runs.push(Run::new(title.secondary, Type::Body, palette.muted).after(space::XS + 1.0));
     }
-    // Where there is little room, what is said twice gives way before anything is cut.
+    // Where there is little room, the second form of the value is left out before anything is cut.
     let fits = line_of(&runs, f32::INFINITY, ui).size().x <= right - left;
     let galley = line_of(if fits { &runs } else { &runs[..essential] }, right - left, ui);
     put(ui.painter(), pos2(left, strip.center().y), Align2::LEFT_CENTER, galley);
@@ -67,8 +67,8 @@ pub(crate) fn pane_header_ui(title: &PaneTitle<'_>, pane: Rect, ui: &mut Ui) -> 
     strip
 }
 
-/// The numbers over the bottom of `pane`. Returns the strip they stand in, so that a caption can
-/// keep clear of it.
+/// Draws the metrics over the bottom of `pane`. Returns their strip, so that a caption can keep
+/// clear of it.
 pub(crate) fn pane_footer_ui(metrics: &[Metric<'_>], pane: Rect, ui: &mut Ui) -> Rect {
     if metrics.is_empty() {
         return pane.with_min_y(pane.bottom());
@@ -82,7 +82,7 @@ pub(crate) fn pane_footer_ui(metrics: &[Metric<'_>], pane: Rect, ui: &mut Ui) ->
     strip
 }
 
-/// The ground's colour, fading into the picture, so that text stays legible over bodies.
+/// Draws the colour of the ground, fading into the picture, so that text stays legible over bodies.
 fn scrim(rect: Rect, direction: Direction, ui: &Ui) {
     let ground = palette_of(ui).stage.sky;
     ui.painter().add(Shape::gradient_rect(

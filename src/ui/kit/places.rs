@@ -1,5 +1,4 @@
-//! All clips in a row, and the place in them that plays: it runs along its clip and jumps to
-//! another.
+//! All clips in a row, with the current frame: it runs along its clip and jumps to another.
 
 use super::assistive::describe;
 use super::paint::{Run, line_of, put};
@@ -14,11 +13,11 @@ use std::ops::Range;
 /// A clip.
 #[derive(Clone, Debug)]
 pub(crate) struct PlaceBar {
-    /// What it is called.
+    /// Its name.
     pub(crate) name: Message,
-    /// How many frames it has.
+    /// Its number of frames.
     pub(crate) frames: usize,
-    /// What its stretches are, by colour.
+    /// Its stretches with their colours.
     pub(crate) stretches: Vec<(Range<usize>, Color32)>,
 }
 
@@ -42,7 +41,7 @@ pub(crate) struct Chosen {
     pub(crate) frames: Range<usize>,
 }
 
-/// All that the strip shows.
+/// The content of the strip.
 #[derive(Clone, Debug)]
 pub(crate) struct Places<'a> {
     /// The accessible name.
@@ -51,20 +50,20 @@ pub(crate) struct Places<'a> {
     pub(crate) bars: &'a [PlaceBar],
     /// 2 where there are mirror images.
     pub(crate) rows: usize,
-    /// What plays.
+    /// The current frame.
     pub(crate) now: Option<StripPlace>,
-    /// The last jumps, from and to, with how clear they are, 0 to 1.
+    /// The last jumps, from and to, each with its opacity, 0 to 1.
     pub(crate) jumps: &'a [(StripPlace, StripPlace, f32)],
-    /// What was chosen by hand.
+    /// The frames that were chosen by hand.
     pub(crate) chosen: Option<&'a Chosen>,
-    /// Frames that could be gone to.
+    /// Candidates of the search.
     pub(crate) marks: &'a [StripPlace],
-    /// Names of the colours.
+    /// The names of the colours.
     pub(crate) legend: &'a [(Word, Color32)],
 }
 
-/// Draws the strip `height` points high; the stretch that is just being chosen by dragging along a
-/// clip.
+/// Draws the strip, `height` points high. Returns the stretch that is being chosen by dragging
+/// along a clip.
 pub(crate) fn places_ui(places: &Places<'_>, height: f32, ui: &mut Ui) -> Option<Chosen> {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let scale = theme.scale();
@@ -144,7 +143,7 @@ pub(crate) fn places_ui(places: &Places<'_>, height: f32, ui: &mut Ui) -> Option
         let [a, b] = [from, to].map(|pos| frame_at(bar, pos.x).min(frames));
         (a != b).then(|| Chosen { bar, frames: a.min(b)..a.max(b) })
     });
-    // What is pointed at, or plays, by name; else what the colours mean.
+    // The name of the clip under the pointer, else of the current one, and the legend.
     let named = hovered.or(places.now.map(|now| now.bar)).and_then(|bar| places.bars.get(bar));
     let base = whole.bottom() - 0.5 * legend;
     let mut x = whole.right();

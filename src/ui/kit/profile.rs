@@ -1,4 +1,4 @@
-//! A small curve of one value along the way, filled down to its zero.
+//! A small curve of one value along a path, filled down to zero.
 
 use super::assistive::describe;
 use super::paint::full_width;
@@ -7,11 +7,10 @@ use crate::ui::theme::{palette_of, radius, theme_of};
 use eframe::egui::{Color32, Pos2, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2};
 use segue_text::Message;
 
-/// More points than a panel is wide only cost time.
+/// The greatest number of points: a panel is not wider.
 const COLUMNS: usize = 240;
 
-/// Draws values (along the way, value) from 0 to `most`; `label` tells a screen reader what it
-/// shows.
+/// Draws values (distance along the path, value) from 0 to `most`. `label` is the accessible name.
 pub(crate) fn profile_ui(
     label: &Message,
     points: &[[f64; 2]],
@@ -30,7 +29,7 @@ pub(crate) fn profile_ui(
             rect.bottom() - 2.0 - y.clamp(0.0, 1.0) * (rect.height() - 6.0),
         )
     };
-    // The largest of what falls into one column: a peak must not be lost.
+    // The largest value of each column: a peak must not be lost.
     let columns = points.chunks(points.len().div_ceil(COLUMNS).max(1));
     let largest =
         columns.filter_map(|column| column.iter().copied().max_by(|a, b| a[1].total_cmp(&b[1])));

@@ -1,4 +1,4 @@
-//! What divides a panel: headings and hairlines.
+//! The sections of a panel: headings, folded parts and notes.
 
 use super::assistive::describe;
 use super::icon::{Icon, paint_icon};
@@ -10,8 +10,8 @@ use eframe::egui::{
     WidgetInfo, vec2,
 };
 
-/// The heading of a section, set in quiet capitals. Returns the line it stands on, for a button at
-/// its right end.
+/// Draws the heading of a section, in quiet capitals. Returns its line, for a mark at the right
+/// end.
 pub(crate) fn section_header_ui(title: Word, ui: &mut Ui) -> Rect {
     let rect = full_width((24.0 * theme_of(ui).scale()).round(), ui);
     let capitals = say(title, ui).to_uppercase();
@@ -24,7 +24,7 @@ pub(crate) fn section_header_ui(title: Word, ui: &mut Ui) -> Rect {
     rect
 }
 
-/// A quiet word at the right end of a heading's line.
+/// Draws a quiet word at the right end of the line of a heading.
 pub(crate) fn section_mark_ui(words: Word, header: Rect, ui: &mut Ui) {
     let at = header.shrink2(vec2(space::XS, 0.0));
     let mut ui =
@@ -33,7 +33,7 @@ pub(crate) fn section_mark_ui(words: Word, header: Rect, ui: &mut Ui) {
     ui.label(RichText::new(say(words, &ui)).font(font).color(muted));
 }
 
-/// A section that is folded until it is asked for. Whether its content was shown.
+/// Draws a section that is folded at first. Returns whether its content was shown.
 pub(crate) fn folded_ui<'a>(
     title: impl Into<Text<'a>>,
     ui: &mut Ui,
@@ -56,7 +56,7 @@ pub(crate) fn folded_ui<'a>(
     shown.body_response.is_some()
 }
 
-/// A sentence about what stands above or below it.
+/// Draws a sentence about the rows above or below it.
 pub(crate) fn note_ui<'a>(words: impl Into<Text<'a>>, color: Color32, ui: &mut Ui) {
     ui.label(RichText::new(say(words, ui)).font(theme_of(ui).font(Type::Small)).color(color));
     ui.add_space(space::XS);

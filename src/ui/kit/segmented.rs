@@ -1,4 +1,4 @@
-//! One of a few, all of them visible: cut | dissolve | inertialize.
+//! A choice among a few options, all of them visible: cut | dissolve | inertialize.
 
 use super::assistive::{describe, set_role};
 use super::paint::{Run, faded, focus_ring, full_width, line_of, put};
@@ -10,18 +10,18 @@ use eframe::egui::{
     StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };
 
-/// What a choice among a few is about, above it. `true` when a double click on it asks for the
-/// default.
+/// Draws the label above a choice among a few options. Returns whether a double click on it asks
+/// for the default.
 pub(crate) fn segmented_label_ui(label: Word, ui: &mut Ui) -> bool {
     let words = RichText::new(say(label, ui)).font(theme_of(ui).font(Type::Label));
     let response = ui.add(Label::new(words).selectable(false).sense(Sense::CLICK));
     response.on_hover_text(say(words::RESET_HINT, ui)).double_clicked()
 }
 
-/// A choice among a few, as wide as the panel. `label` is its accessible name; what was chosen
-/// anew, if anything.
+/// Draws a choice among a few options, as wide as the panel. `label` is its accessible name.
+/// Returns a new choice.
 ///
-/// With the keyboard on it, the arrow keys go from one to the next.
+/// While it has the focus, the arrow keys go from one option to the next.
 pub(crate) fn segmented_ui<T: Copy + PartialEq>(
     label: Word,
     chosen: T,
@@ -62,7 +62,7 @@ fn segments_ui<T: Copy + PartialEq>(
     let current = options.iter().position(|&(value, _)| value == chosen);
     let mut picked = None;
 
-    // The chosen one's ground slides to its place.
+    // The ground of the chosen option slides to its place.
     if let Some(current) = current {
         let secs = ui.style().animation_time;
         let left = ui.ctx().animate_value_with_time(id.with("thumb"), current as f32, secs);
@@ -111,7 +111,7 @@ fn segments_ui<T: Copy + PartialEq>(
         focus_ring(rect, radius::S, &response, ui);
         let name = say(name, ui);
         describe(&response, &WidgetInfo::selected(Role::RadioButton, enabled, is_chosen, name));
-        // A hairline between two that are both not chosen.
+        // A hairline between two options that are not chosen.
         if index > 0 && !is_chosen && current != Some(index - 1) {
             let tone = if enabled { palette.line } else { Color32::TRANSPARENT };
             ui.painter().vline(

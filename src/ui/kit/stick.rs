@@ -1,4 +1,4 @@
-//! A stick under the thumb: how far and which way it is pushed.
+//! A joystick on the screen.
 
 use super::assistive::describe;
 use crate::ui::language::{Word, say};
@@ -10,13 +10,14 @@ const RADIUS: f32 = 46.0;
 /// Radius of the knob.
 const KNOB: f32 = 17.0;
 
-/// How much room the stick takes.
+/// Returns the width and height of the stick.
 pub(crate) fn stick_size(ui: &Ui) -> f32 {
     (2.0 * RADIUS * theme_of(ui).scale()).round()
 }
 
-/// Draws it about `center`, pushed as `shown` says while no hand is on it: each from -1 to 1, to
-/// the right and up. What the hand asks for, no longer than 1; nothing while it is let go.
+/// Draws the stick about `center`. While it is released, it is shown pushed by `shown`: each from
+/// -1 to 1, to the right and up. Returns the push of the hand, of length 1 at most; `None` while it
+/// is released.
 pub(crate) fn stick_ui(label: Word, center: Pos2, shown: Vec2, ui: &mut Ui) -> Option<Vec2> {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let radius = RADIUS * theme.scale();

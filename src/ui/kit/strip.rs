@@ -1,4 +1,4 @@
-//! Clips end to end, as bars, with an arc for every way from one place to another.
+//! Clips end to end, as bars, with an arc for every transition.
 
 use super::assistive::describe;
 use super::paint::{Run, focus_ring, line_of, put};
@@ -11,61 +11,61 @@ use eframe::egui::{
 };
 use segue_text::Message;
 
-/// What becomes of who comes here.
+/// The reachability of a stretch in the graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Fate {
-    /// One can go on for ever, and come back.
+    /// In the main component: every stretch of it can be reached again, without end.
     Main,
-    /// Likewise, apart from the main part: in which of the other parts.
+    /// In another component, by its number.
     Apart(usize),
-    /// One comes to an end, or cannot come here.
+    /// In no component: the way from here ends, or none leads here.
     Astray,
-    /// Here it ends.
+    /// A dead end.
     End,
 }
 
 /// A part of a bar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stretch {
-    /// From and to, counted through all bars.
+    /// Its first frame, counted through all bars.
     pub(crate) from: usize,
     /// One past its end.
     pub(crate) to: usize,
-    /// What becomes of who comes here.
+    /// The reachability of a stretch in the graph.
     pub(crate) fate: Fate,
 }
 
-/// A way from one place to another.
+/// An arc from one frame to another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Arc {
-    /// Where it leaves and where it arrives, counted through all bars.
+    /// The frames where it leaves and enters, counted through all bars.
     pub(crate) ends: [usize; 2],
-    /// How probable it is, 0 to 1.
+    /// Its probability, 0 to 1.
     pub(crate) weight: f32,
-    /// It is not used.
+    /// Whether it is not used.
     pub(crate) faint: bool,
 }
 
-/// All that is shown.
+/// The content of the strip.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Strip<'a> {
     /// The accessible name.
     pub(crate) label: Word,
-    /// The bars: name, and how long each is.
+    /// The bars: the name and the number of frames of each.
     pub(crate) bars: &'a [(Message, usize)],
     /// Their parts.
     pub(crate) stretches: &'a [Stretch],
     /// The arcs.
     pub(crate) arcs: &'a [Arc],
-    /// Where we are.
+    /// The current frame.
     pub(crate) now: Option<usize>,
-    /// The part that is lit.
+    /// The highlighted part.
     pub(crate) lit_stretch: Option<[usize; 2]>,
-    /// The arc that is lit.
+    /// The highlighted arc.
     pub(crate) lit_arc: Option<usize>,
 }
 
-/// What was asked of it.
+/// The user's input to the strip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct StripResponse {
     /// The arc under the pointer.
@@ -76,16 +76,16 @@ pub(crate) struct StripResponse {
     pub(crate) clicked_bar: Option<usize>,
 }
 
-/// Between two bars, points.
+/// The gap between two bars, points.
 const GAP: f32 = 4.0;
-/// An arc is reached within this distance, points.
+/// The distance within which the pointer reaches an arc, points.
 const REACH: f32 = 5.0;
 /// More arcs than these are a thicket: the most probable are drawn.
 const MOST_ARCS: usize = 500;
-/// Straight pieces by which an arc is felt for.
+/// Straight pieces by which the distance to an arc is measured.
 const PIECES: usize = 20;
 
-/// Draws it as high as there is room.
+/// Draws the strip at a height.
 pub(crate) fn strip_ui(strip: &Strip<'_>, height: f32, ui: &mut Ui) -> StripResponse {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let scale = theme.scale();
@@ -156,7 +156,7 @@ pub(crate) fn strip_ui(strip: &Strip<'_>, height: f32, ui: &mut Ui) -> StripResp
             draw(index, Stroke::new(2.4 * scale, color));
         }
     }
-    // The first of the others is as blue as the main part.
+    // The first of the other colours is as blue as the main component.
     let [_, second, third, fourth] = palette.others;
     let apart = [palette.a, second, third, fourth];
     let bar_of = |from: f32, to: f32| Rect::from_x_y_ranges(x_of(from)..=x_of(to), bars);
@@ -168,7 +168,7 @@ pub(crate) fn strip_ui(strip: &Strip<'_>, height: f32, ui: &mut Ui) -> StripResp
         };
         // The end of one bar is not the beginning of the next.
         let mut rect = bar_of(stretch.from as f32, stretch.to as f32 - 0.01);
-        // A hairline tells it from the next one, where that does not take most of it away.
+        // A hairline divides it from the next one, unless that would take most of it.
         if rect.width() >= 4.0 * theme.hairline() {
             rect.max.x -= theme.hairline();
         }
@@ -216,7 +216,7 @@ pub(crate) fn strip_ui(strip: &Strip<'_>, height: f32, ui: &mut Ui) -> StripResp
     }
 }
 
-/// How far a point is from an arc.
+/// Returns the distance of a point from an arc.
 fn distance(points: &[Pos2; 4], pos: Pos2) -> f32 {
     let at = |t: f32| {
         let u = 1.0 - t;

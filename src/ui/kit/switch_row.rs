@@ -1,4 +1,4 @@
-//! Yes or no: a label, the word, a switch.
+//! A row with a switch: a label, the state as a word, and the switch.
 
 use super::assistive::describe;
 use super::paint::{Run, faded, focus_ring, full_width, line_of, put};
@@ -7,7 +7,8 @@ use crate::ui::language::{Word, say};
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Align2, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 
-/// A row that is switched by a click anywhere on it. Returns what it was switched to, if it was.
+/// Draws a row with a switch that a click anywhere on the row turns. Returns the new state when it
+/// was turned.
 pub(crate) fn switch_row_ui(label: Word, on: bool, ui: &mut Ui) -> Option<bool> {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let enabled = ui.is_enabled();

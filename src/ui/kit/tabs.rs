@@ -1,4 +1,4 @@
-//! The labs, side by side; behind a menu where there is no room for all.
+//! Tabs side by side, with a menu where there is no room for all.
 
 use super::assistive::{describe, set_role};
 use super::button::{Button, button_ui};
@@ -15,10 +15,10 @@ use eframe::egui::{
 /// Fewer tabs than this beside a menu are not worth the line: the chosen one alone is clearer.
 const LEAST_TABS: usize = 3;
 
-/// Tabs in one line, `width` points at most. What has no room stands in a menu at the right end,
-/// and the chosen one is always among the tabs; where hardly any have room, the chosen one alone is
-/// shown, with all in its menu. `names` are those of the tabs and of the menu with the rest. What
-/// was chosen anew.
+/// Draws tabs in one line, `width` points at most. Those without room are in a menu at the right
+/// end; the chosen one is always among the tabs. Where hardly any have room, the chosen one alone
+/// is shown, with all in its menu. `name` and `more` are the accessible names of the tabs and of
+/// the menu with the rest. Returns a new choice.
 pub(crate) fn tabs_ui<T: Copy + PartialEq>(
     [name, more]: [Word; 2],
     chosen: T,
@@ -64,11 +64,12 @@ pub(crate) fn tabs_ui<T: Copy + PartialEq>(
     picked.filter(|&value| value != chosen)
 }
 
-/// Between two tabs, points.
+/// The gap between two tabs, points.
 const GAP: f32 = 2.0;
 
-/// Which tabs have room, in order: all of them, or as many of the first as fit beside a menu of the
-/// width `rest`, of which the last gives way to the chosen one where that is not among them.
+/// Returns the tabs that have room, in order: all of them, or as many of the first as fit beside a
+/// menu of the width `rest`. The last of these gives way to the chosen one, if it is not among
+/// them.
 fn fitting(widths: &[f32], chosen: usize, width: f32, rest: f32) -> Vec<usize> {
     let needed = |tabs: &[usize]| {
         tabs.iter().filter_map(|&tab| widths.get(tab)).map(|width| width + GAP).sum::<f32>() - GAP

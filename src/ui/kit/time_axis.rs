@@ -1,8 +1,8 @@
-//! Where times lie on the screen, and round steps between labels.
+//! The axis of time on the screen, and round steps between labels.
 
 use eframe::egui::{Rangef, Rect, Response};
 
-/// Where times lie on the screen.
+/// The axis of time on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TimeAxis {
     /// The range of x that stands for the whole duration.
@@ -12,7 +12,7 @@ pub(crate) struct TimeAxis {
 }
 
 impl TimeAxis {
-    /// Returns where a time lies.
+    /// Returns the place of a time.
     pub(crate) fn x_of(&self, time: f64) -> f32 {
         let t = if self.duration > 0.0 { time / self.duration } else { 0.0 };
         self.x.min + t as f32 * self.x.span()

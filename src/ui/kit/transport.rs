@@ -1,4 +1,4 @@
-//! The row above the timeline: play, where we are, and how fast.
+//! The row above the timeline: play, position and speed.
 
 use super::assistive::{describe, readable_ui};
 use super::button::{Button, button_ui, icon_button_ui};
@@ -13,48 +13,50 @@ use eframe::egui::{
     vec2,
 };
 
-/// The speeds one may choose.
+/// The speeds in the menu.
 const SPEEDS: [f64; 7] = [0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0];
 
-/// Where time is, as the row shows it.
+/// The state of playback.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Transport<'a> {
-    /// Time runs.
+    /// Whether it plays.
     pub(crate) playing: bool,
-    /// It starts again at the end.
+    /// Whether it starts again at the end.
     pub(crate) repeat: bool,
-    /// How fast: 1 is real time.
+    /// The speed; 1 is real time.
     pub(crate) speed: f64,
-    /// Now, in seconds.
+    /// The playhead, in seconds.
     pub(crate) now: f64,
-    /// The frame shown, counted from 0.
+    /// The frame at the playhead, from 0.
     pub(crate) frame: usize,
-    /// How many frames there are.
+    /// The number of frames.
     pub(crate) frames: usize,
-    /// What the curves below show, at the right end: `right foot · speed m/s`.
+    /// The caption at the right end, such as the quantity of the curves below: `right foot · speed
+    /// m/s`.
     pub(crate) caption: Text<'a>,
 }
 
-/// What was asked of time.
+/// The user's input to playback.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum TransportEvent {
-    /// Run or stop.
+    /// Play or pause.
     SetPlaying(bool),
     /// Start again at the end, or not.
     SetRepeat(bool),
-    /// Run this fast.
+    /// Set the speed.
     SetSpeed(f64),
-    /// Go on by frames (negative: back), and stop.
+    /// Go on by frames (negative: back), and pause.
     Step(i32),
 }
 
-/// Play, steps, speed, the time and the frame; the caption at the right where there is room.
+/// Draws play, steps, speed, the time and the frame, and the caption at the right where there is
+/// room.
 pub(crate) fn transport_ui(transport: &Transport<'_>, ui: &mut Ui) -> Option<TransportEvent> {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let scale = theme.scale();
     let height = transport_height(ui);
     let width = ui.available_width();
-    // On a phone, the steps give way: the timeline itself is there to scrub.
+    // A phone has no room for the steps: the timeline itself can be scrubbed.
     let narrow = width < 520.0 * scale;
     let (_, row) = ui.allocate_space(vec2(width, height));
     let mut event = None;
@@ -109,12 +111,12 @@ pub(crate) fn transport_ui(transport: &Transport<'_>, ui: &mut Ui) -> Option<Tra
     event
 }
 
-/// How high [`transport_ui`] is.
+/// Returns the height of [`transport_ui`].
 pub(crate) fn transport_height(ui: &Ui) -> f32 {
     (36.0 * theme_of(ui).scale()).round()
 }
 
-/// The round button that starts and stops time. Was it pressed?
+/// Draws the round button that plays and pauses. Returns whether it was pressed.
 pub(crate) fn play_button_ui(playing: bool, ui: &mut Ui) -> bool {
     let palette = palette_of(ui);
     let side = (34.0 * theme_of(ui).scale()).round();
@@ -124,7 +126,7 @@ pub(crate) fn play_button_ui(playing: bool, ui: &mut Ui) -> bool {
     let fill = palette.handle.lerp_to_gamma(palette.accent, 0.25 * hot);
     ui.painter().circle_filled(rect.center(), side / 2.0 - 0.5 + hot * 0.5, fill);
     let icon = if playing { Icon::Pause } else { Icon::Play };
-    // The weight of a triangle lies left of the middle of its box.
+    // The centroid of a triangle lies left of the middle of its box.
     let nudge = if playing { 0.0 } else { 0.02 * side };
     paint_icon(
         icon,

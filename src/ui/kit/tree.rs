@@ -1,4 +1,4 @@
-//! Things in a hierarchy, one of them chosen: joints of a skeleton.
+//! A hierarchy of items, one of them chosen, such as the joints of a skeleton.
 
 use super::assistive::describe;
 use super::icon::{Icon, paint_icon};
@@ -20,24 +20,24 @@ pub(crate) struct Tree<'a> {
     pub(crate) label: Word,
     /// The parent of every item.
     pub(crate) parents: &'a [Option<usize>],
-    /// The item that is chosen.
+    /// The chosen item.
     pub(crate) chosen: Option<usize>,
-    /// It scrolls above this height, points.
+    /// The height above which it scrolls, points.
     pub(crate) max_height: f32,
 }
 
-/// What one row says.
+/// The content of a row.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct TreeRow {
     /// The item's name.
     pub(crate) name: String,
-    /// A word at the right end.
+    /// The word at the right end.
     pub(crate) detail: Word,
-    /// What appears when the pointer rests on it.
+    /// The hint.
     pub(crate) hint: Message,
 }
 
-/// A row that is open to be seen.
+/// A row whose ancestors are unfolded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Open {
     item: usize,
@@ -45,13 +45,13 @@ struct Open {
     has_children: bool,
 }
 
-/// Deeper rows are not set farther in: fingers would leave no room for their names.
+/// The greatest indent: the many levels of fingers would leave no room for names.
 const MOST_INDENTS: usize = 9;
 
-/// A tree as wide as the panel. Only the rows in sight are laid out; `row_of` says what they say.
-/// What was chosen anew.
+/// Draws a tree as wide as the panel. Only the rows in sight are laid out, with the content that
+/// `row_of` returns. Returns a new choice.
 ///
-/// With the keyboard on a row, up and down choose the next one, left and right fold it, unfold it
+/// While a row has the focus, up and down choose the next one; left and right fold it, unfold it,
 /// and go to its parent or first child.
 pub(crate) fn tree_ui(
     tree: &Tree<'_>,
@@ -64,7 +64,7 @@ pub(crate) fn tree_ui(
     let height = (HIT * theme_of(ui).scale()).round();
     let focused =
         rows.iter().position(|row| ui.memory(|memory| memory.has_focus(id.with(row.item))));
-    // Once it is chosen elsewhere, it is brought into sight.
+    // An item that was chosen elsewhere is scrolled into sight.
     let seen: Option<Option<usize>> = ui.data(|data| data.get_temp(id.with("seen")));
     let news = tree.chosen.filter(|chosen| seen != Some(Some(*chosen)));
     ui.data_mut(|data| data.insert_temp(id.with("seen"), tree.chosen));
@@ -85,7 +85,7 @@ pub(crate) fn tree_ui(
                 let top = space.top() + (index as f32 - range.start as f32) * height;
                 Rect::from_min_size(pos2(space.left(), top), vec2(space.width(), height))
             };
-            // What has the keyboard stays, even where it was scrolled out of sight.
+            // The row with the focus stays, even scrolled out of sight.
             let out_of_sight = focused.filter(|index| !range.contains(index));
             for index in range.clone().chain(out_of_sight) {
                 let row = rows[index];
@@ -111,7 +111,7 @@ pub(crate) fn tree_ui(
             }
         });
         if matches!(event, Some(Event::Choose(_))) {
-            // The panel around it, too.
+            // The panel around it scrolls as well.
             ui.scroll_to_rect_animation(shown.inner_rect, None, ScrollAnimation::none());
         }
     });
@@ -134,12 +134,12 @@ pub(crate) fn tree_ui(
 #[derive(Clone, Copy, Debug)]
 enum Event {
     Choose(usize),
-    /// Folds what is unfolded, and the other way round.
+    /// Folds an unfolded item, and unfolds a folded one.
     Fold(usize),
 }
 
-/// The rows whose parents are all unfolded, each parent followed by all below it. Without
-/// recursion: files nest as deep as they like.
+/// Returns the rows whose ancestors are all unfolded, each parent followed by its descendants. It
+/// does not recurse: files may nest to any depth.
 fn open_rows(parents: &[Option<usize>], folded: &BTreeSet<usize>) -> Vec<Open> {
     let mut children: Vec<Vec<usize>> = vec![Vec::new(); parents.len()];
     let mut waiting = Vec::new();
@@ -211,7 +211,7 @@ fn event_of(
     }
 }
 
-/// The place of the sign that folds a row.
+/// Returns the place of the sign that folds a row.
 fn chevron_of(row: Open, rect: Rect) -> Rect {
     let step = rect.height() * 0.42;
     let left = rect.left() + space::XS + step * row.depth.min(MOST_INDENTS) as f32;

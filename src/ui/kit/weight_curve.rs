@@ -1,4 +1,4 @@
-//! A weight over time as a curve through keys that a hand can move.
+//! A weight over time, as a curve through keys that can be dragged.
 
 use super::assistive::describe;
 use super::keys::keys_pressed;
@@ -11,45 +11,45 @@ use eframe::egui::{
 };
 use segue_text::msg;
 
-/// A key: per cent of the time, and per cent of the weight.
+/// A key: per cent of the time and per cent of the weight.
 type CurveKey = (usize, usize);
 
-/// All that the row shows.
+/// The content of the row.
 #[derive(Clone, Debug)]
 pub(crate) struct WeightCurveRow<'a> {
     /// The accessible name.
     pub(crate) label: Word,
     /// The keys, in the order of time.
     pub(crate) keys: &'a [CurveKey],
-    /// The curve through them: weights at equal distances, 0 to 1.
+    /// The curve through them: weights at equal intervals, 0 to 1.
     pub(crate) curve: &'a [f64],
-    /// Share of the time that is shown now, 0 to 1.
+    /// The playhead as a share of the time, 0 to 1.
     pub(crate) now: Option<f64>,
-    /// What stands at the ends of the weight: full, and none.
+    /// The labels of the ends of the weight: 1, and 0.
     pub(crate) ends: [Word; 2],
 }
 
-/// What was asked of it.
+/// The user's input to the curve.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum WeightCurveEvent {
-    /// These keys are wanted.
+    /// The new keys.
     Keys(Vec<CurveKey>),
-    /// The key was let go: what was done since it was taken is one step.
+    /// The key was released: the changes since it was taken are one step of undo.
     Settled,
 }
 
 const HEIGHT: f32 = 96.0;
-/// A key is taken hold of within this distance, points: a target of 24 points.
+/// The distance within which a key is taken hold of, points: a target of 24 points.
 const REACH: f32 = 12.0;
 
-/// Draws the curve as wide as there is room. Drag a key to move it, press twice to add one or to
-/// take one away; with the keyboard, Tab goes from key to key, arrows move the one that has the
-/// focus (with shift by ten), Delete takes it away.
+/// Draws the curve as wide as there is room. Drag a key to move it, double-click to add or remove
+/// one. With the keyboard, Tab goes from key to key, arrows move the one that has the focus (with
+/// Shift by ten), Delete removes it.
 pub(crate) fn weight_curve_ui(row: &WeightCurveRow<'_>, ui: &mut Ui) -> Vec<WeightCurveEvent> {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let scale = theme.scale();
     let (_, whole) = ui.allocate_space(vec2(ui.available_width(), (HEIGHT * scale).round()));
-    // Keys at the ends are whole, too.
+    // The margin keeps keys at the ends whole.
     let field = whole.shrink((REACH * 0.5 * scale).round());
     let id = ui.make_persistent_id(row.label.english());
     let ground = ui.interact(whole, id, Sense::click_and_drag());
@@ -173,7 +173,7 @@ pub(crate) fn weight_curve_ui(row: &WeightCurveRow<'_>, ui: &mut Ui) -> Vec<Weig
     events
 }
 
-/// What the keyboard does to a key.
+/// Returns the change that the keyboard makes to a key.
 fn worked(keys: &[CurveKey], index: usize, ui: &Ui) -> Option<WeightCurveEvent> {
     ui.memory_mut(|memory| {
         if let Some(id) = memory.focused() {
@@ -202,8 +202,8 @@ fn worked(keys: &[CurveKey], index: usize, ui: &Ui) -> Option<WeightCurveEvent> 
     moved(keys, index, (at, weight))
 }
 
-/// The keys with one of them elsewhere: between its neighbours, so that it stays the one that it
-/// is. `None` where nothing changes.
+/// Returns the keys with one of them moved, between its neighbours, so that the order stays. `None`
+/// where nothing changes.
 fn moved(keys: &[CurveKey], index: usize, to: CurveKey) -> Option<WeightCurveEvent> {
     let least = index.checked_sub(1).map_or(0, |before| keys[before].0 + 1);
     let most = keys.get(index + 1).map_or(100, |after| after.0.saturating_sub(1));
@@ -212,7 +212,7 @@ fn moved(keys: &[CurveKey], index: usize, to: CurveKey) -> Option<WeightCurveEve
     (std::mem::replace(&mut keys[index], to) != to).then_some(WeightCurveEvent::Keys(keys))
 }
 
-/// The keys without one of them; the last one stays.
+/// Returns the keys without one of them; `None` for the last one, which stays.
 fn without(keys: &[CurveKey], index: usize) -> Option<Vec<CurveKey>> {
     let mut keys = keys.to_vec();
     (keys.len() > 1).then(|| {
@@ -221,7 +221,7 @@ fn without(keys: &[CurveKey], index: usize) -> Option<Vec<CurveKey>> {
     })
 }
 
-/// The keys with one more, which takes the place of one at the same time.
+/// Returns the keys with one more, which replaces one at the same time.
 fn with(keys: &[CurveKey], key: CurveKey) -> Vec<CurveKey> {
     let mut keys: Vec<CurveKey> = keys.iter().copied().filter(|other| other.0 != key.0).collect();
     keys.push(key);

@@ -1,5 +1,5 @@
-//! The line above the track: the label, who decides, the value and its unit, and the field to type
-//! one.
+//! The line above the track: the label, whether the value is automatic, the value and its unit, and
+//! the field to type one.
 
 use super::super::assistive::describe;
 use super::super::paint::{Run, faded, focus_ring, line_of, put};
@@ -12,7 +12,7 @@ use eframe::egui::{
     WidgetInfo, pos2, vec2,
 };
 
-/// The line with label and value; returns the label, which may be double-clicked.
+/// Draws the line with label and value. Returns the label, which may be double-clicked.
 pub(super) fn head_ui(
     value: f64,
     row: &SliderRow<'_>,
@@ -87,8 +87,8 @@ pub(super) fn head_ui(
     ui.interact(rect, id.with("label"), Sense::CLICK).on_hover_text(say(words::RESET_HINT, ui))
 }
 
-/// The word that says who decides: filled while the app does; an outline to press while the user
-/// does and the app could.
+/// Draws the word `auto`: filled while the value is automatic, an outlined button while it could
+/// be.
 fn auto_tag_ui(
     row: &SliderRow<'_>,
     right_center: Pos2,
@@ -138,8 +138,7 @@ fn edit_ui(
     let fresh_id = edit_id.with("fresh");
     let fresh = ui.data_mut(|data| data.remove_temp::<bool>(fresh_id)).unwrap_or(false);
     let font = theme_of(ui).font(Type::Number);
-    // Asked before the field sees the keys: Esc also takes the focus away, and that must not
-    // commit.
+    // Read before the field sees the keys: Esc also takes the focus away, and must not commit.
     let escape = ui.input(|input| input.key_pressed(Key::Escape));
     let edit = egui::TextEdit::singleline(typed)
         .id(edit_id.with("field"))
@@ -169,7 +168,8 @@ fn edit_ui(
     }
 }
 
-/// The number that someone typed: a decimal comma, a true minus sign and a unit behind it are fine.
+/// Returns the number in a typed text. A decimal comma, a true minus sign and a unit behind it are
+/// accepted.
 fn parsed(typed: &str) -> Option<f64> {
     let plain = typed.trim().replace(',', ".").replace('−', "-");
     let end = plain

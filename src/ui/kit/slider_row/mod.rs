@@ -1,4 +1,4 @@
-//! One number of a lab: what it is called, what it is now and in which unit, and a track to drag.
+//! A number with its label, value and unit, and a track to drag.
 
 mod head;
 mod row;
@@ -14,10 +14,10 @@ use crate::ui::language::say;
 use crate::ui::theme::{self, Type, palette_of, space, theme_of};
 use eframe::egui::{Align2, Rect, Sense, Ui, pos2};
 
-/// A parameter: label, value and unit on one line, the track below, and a sentence of help where
-/// there is one.
+/// Draws a parameter: label, value and unit on one line, the track below, and a sentence of help
+/// where there is one.
 ///
-/// Drag the track, hold shift for a tenth of the speed. Arrow keys step (shift: finely), page keys
+/// Drag the track; hold Shift for a tenth of the speed. Arrow keys step (shift: finely), page keys
 /// step tenfold, home and end go to the ends. Click the number to type one; Enter takes it, Esc
 /// does not. A double click on label or track resets.
 pub(crate) fn slider_row_ui(value: f64, row: &SliderRow<'_>, ui: &mut Ui) -> SliderResponse {
@@ -28,7 +28,7 @@ pub(crate) fn slider_row_ui(value: f64, row: &SliderRow<'_>, ui: &mut Ui) -> Sli
     let previous_spacing = std::mem::replace(&mut ui.spacing_mut().item_spacing.y, 0.0);
 
     let head = full_width((20.0 * scale).round(), ui);
-    // The hit target is taller than what is seen, and reaches up under the label.
+    // The hit target is taller than the track, and reaches up under the label.
     let track_area = full_width((18.0 * scale).round(), ui);
     let track_hit = Rect::from_min_max(
         pos2(track_area.left(), track_area.bottom() - (theme::HIT * scale).round()),

@@ -1,31 +1,31 @@
-//! A slider's row as it is described, and what was done to it.
+//! The description of a slider's row, and the user's input to it.
 
 use crate::ui::language::{Text, Word};
 use eframe::egui::{Color32, Response};
 use std::ops::RangeInclusive;
 
-/// Who decides the value.
+/// The origin of a value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Source {
-    /// Always the user.
+    /// The user, always.
     #[default]
     Manual,
-    /// The user now; the app could be asked to (a reset asks it).
+    /// The user; after a reset, the app.
     ManualOverAuto,
-    /// The app found the value. Dragging takes it over.
+    /// The app. Dragging takes the value over.
     Auto,
 }
 
-/// A small mark on the track, such as the value of a neighbouring pane.
+/// A mark on the track, such as the value of a neighbouring pane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Mark {
-    /// Where, in the unit of the value.
+    /// Its place, in the unit of the value.
     pub(crate) value: f64,
-    /// In which colour.
+    /// Its colour.
     pub(crate) color: Color32,
 }
 
-/// A parameter as the row shows it.
+/// The description of a row.
 #[derive(Clone, Debug)]
 pub(crate) struct SliderRow<'a> {
     pub(super) label: Text<'a>,
@@ -43,8 +43,8 @@ pub(crate) struct SliderRow<'a> {
 }
 
 impl<'a> SliderRow<'a> {
-    /// A row for values of `range`, which must rise. One step is a hundredth of it until
-    /// [`Self::step`] says otherwise.
+    /// Returns a row for values of `range`, which must rise. One step is a hundredth of it until
+    /// [`Self::step`] sets another.
     pub(crate) fn new(
         label: impl Into<Text<'a>>,
         range: RangeInclusive<f64>,
@@ -67,39 +67,39 @@ impl<'a> SliderRow<'a> {
         }
     }
 
-    /// The same row with another label.
+    /// Sets another label.
     pub(crate) fn label(mut self, label: impl Into<Text<'a>>) -> Self {
         self.label = label.into();
         self
     }
 
-    /// The unit behind the number, in the quiet colour.
+    /// Sets the unit behind the number.
     pub(crate) fn unit(mut self, unit: Word) -> Self {
         self.unit = unit;
         self
     }
 
-    /// The same value said in another way, behind a dot: `0.50 s` after `30 frames`.
+    /// Sets the same value in another unit, behind a dot: `0.50 s` after `30 frames`.
     pub(crate) fn secondary(mut self, secondary: &'a str) -> Self {
         self.secondary = secondary;
         self
     }
 
-    /// One sentence below the track.
+    /// Sets the sentence below the track.
     pub(crate) fn help(mut self, help: impl Into<Text<'a>>) -> Self {
         self.help = help.into();
         self
     }
 
-    /// How much an arrow key changes the value; dragging lands on multiples of it too. The fine
-    /// step (shift) is a tenth.
+    /// Sets the step of an arrow key; dragging also lands on multiples of it. The fine step (Shift)
+    /// is a tenth.
     pub(crate) fn step(mut self, step: f64) -> Self {
         self.step = step;
         self.fine = step / 10.0;
         self
     }
 
-    /// Only whole numbers: no decimals, steps of one, shift included.
+    /// Allows whole numbers only: no decimals, and steps of one, also with Shift.
     pub(crate) fn whole(mut self) -> Self {
         self.step = 1.0;
         self.fine = 1.0;
@@ -107,31 +107,31 @@ impl<'a> SliderRow<'a> {
         self
     }
 
-    /// How many digits stand after the point. Two until said.
+    /// Sets the number of digits after the point; two by default.
     pub(crate) fn decimals(mut self, decimals: usize) -> Self {
         self.decimals = decimals;
         self
     }
 
-    /// Every tenfold takes the same length of track. Both ends of the range must be positive.
+    /// Makes the track logarithmic. Both ends of the range must be positive.
     pub(crate) fn log(mut self) -> Self {
         self.log = *self.range.start() > 0.0 && *self.range.end() > 0.0;
         self
     }
 
-    /// Who decides the value now.
+    /// Sets the origin of the value.
     pub(crate) fn source(mut self, source: Source) -> Self {
         self.source = source;
         self
     }
 
-    /// Marks on the track.
+    /// Sets the marks on the track.
     pub(crate) fn marks(mut self, marks: &'a [Mark]) -> Self {
         self.marks = marks;
         self
     }
 
-    /// Where on the track a value lies, 0..=1.
+    /// Returns the position of a value on the track, 0..=1.
     pub(super) fn position(&self, value: f64) -> f64 {
         let (low, high) = (*self.range.start(), *self.range.end());
         let position = if self.log {
@@ -142,11 +142,11 @@ impl<'a> SliderRow<'a> {
         if position.is_finite() { position.clamp(0.0, 1.0) } else { 0.0 }
     }
 
-    /// The value at a position on the track, on a multiple of `step`.
+    /// Returns the value at a position on the track, on a multiple of `step`.
     pub(super) fn value_at(&self, position: f64, step: f64) -> f64 {
         let (low, high) = (*self.range.start(), *self.range.end());
         let position = position.clamp(0.0, 1.0);
-        // The ends are the ends, whether or not they are multiples of the step.
+        // The ends can be reached, whether or not they are multiples of the step.
         if position <= 0.0 {
             return low;
         }
@@ -162,8 +162,7 @@ impl<'a> SliderRow<'a> {
     }
 
     pub(super) fn snapped(&self, value: f64, step: f64) -> f64 {
-        // Where the steps of a logarithmic track are wide compared to the value they would swallow
-        // it.
+        // A step that is large compared to the value of a logarithmic track would round it to zero.
         let step =
             if self.log { step.min(value.abs() / 50.0).max(f64::MIN_POSITIVE) } else { step };
         let value = if step > 0.0 { (value / step).round() * step } else { value };
@@ -175,17 +174,16 @@ impl<'a> SliderRow<'a> {
     }
 }
 
-/// What was done to a [`SliderRow`].
+/// The user's input to a [`SliderRow`].
 #[derive(Debug)]
 pub(crate) struct SliderResponse {
-    /// The value asked for, if it differs from the one shown. In the row's range.
+    /// The new value, if it differs from the shown one, in the row's range.
     pub(crate) changed: Option<f64>,
-    /// The default was asked for; for a value the app can find, that it find it. `changed` has the
-    /// default as well.
+    /// The value was reset to the default, or to automatic. `changed` has the default as well.
     pub(crate) reset: bool,
-    /// A drag began: what follows until [`Self::drag_ended`] is one thing to undo.
+    /// A drag began: the changes until [`Self::drag_ended`] are one step of undo.
     pub(crate) drag_started: bool,
-    /// The drag is over.
+    /// The drag ended.
     pub(crate) drag_ended: bool,
     /// The track.
     pub(crate) response: Response,

@@ -1,4 +1,4 @@
-//! The track: how pointer, keys and screen readers move the handle, and how it looks.
+//! The track of a slider: pointer and keys on it, and its painting.
 
 use super::super::keys::keys_pressed;
 use super::super::paint::{faded, focus_ring};
@@ -6,8 +6,8 @@ use super::row::{SliderResponse, SliderRow, Source};
 use crate::ui::theme::{palette_of, theme_of};
 use eframe::egui::{EventFilter, Key, Pos2, Rect, Response, Stroke, Ui, Vec2, pos2, vec2};
 
-/// Where the pointer holds the handle, kept between frames: unclamped, so that the way back from
-/// beyond an end is as long as the way there.
+/// The place where the pointer holds the handle, kept between frames. It is not clamped, so that
+/// the way back from beyond an end is as long as the way there.
 #[derive(Clone, Copy, Debug)]
 struct Held {
     position: f64,
@@ -39,7 +39,8 @@ pub(super) fn drag(value: f64, row: &SliderRow<'_>, hit: Rect, out: &mut SliderR
         out.drag_started = true;
         let position = row.position(value);
         let handle_x = f64::from(rail.left()) + position * width;
-        // Taken by the handle, the value stays; elsewhere on the track it jumps to the pointer.
+        // A press on the handle keeps the value; a press elsewhere on the track moves it to the
+        // pointer.
         let grabbed = (f64::from(x) - handle_x).abs() <= 12.0;
         let position = if grabbed { position } else { (f64::from(x - rail.left())) / width };
         Held { position, pointer_x: x }
@@ -78,8 +79,8 @@ pub(super) fn keys(value: f64, row: &SliderRow<'_>, out: &mut SliderResponse, ui
         };
         let step = if modifiers.shift { row.fine } else { row.step };
         next = if row.log {
-            // On a logarithmic track a step is a fiftieth of the way, or the small values could not
-            // be reached.
+            // A step of a logarithmic track is a fiftieth of its length: linear steps would miss
+            // the small values.
             let share = if modifiers.shift { 0.002 } else { 0.02 };
             row.value_at(row.position(next) + steps * share, row.fine)
         } else {
@@ -91,7 +92,7 @@ pub(super) fn keys(value: f64, row: &SliderRow<'_>, out: &mut SliderResponse, ui
     }
 }
 
-/// The line along which the middle of the handle moves.
+/// Returns the line along which the middle of the handle moves.
 fn rail(area: Rect, ui: &Ui) -> Rect {
     area.shrink2(vec2(handle_radius(ui), 0.0))
 }
@@ -116,7 +117,7 @@ pub(super) fn paint_track(
     let painter = ui.painter();
     painter.rect_filled(bar, thickness / 2.0, palette.track);
     let auto = row.source == Source::Auto;
-    // A value the app found is there but not asserted: its bar is quieter.
+    // The bar of an automatic value is quieter.
     let fill =
         faded(if auto { palette.accent.gamma_multiply(0.45) } else { palette.accent }, enabled);
     let handle = pos2(x_of(value), bar.center().y);
@@ -157,8 +158,7 @@ pub(super) fn paint_track(
         let tone = if enabled { palette.handle } else { palette.muted };
         painter.circle_filled(handle, radius, tone);
     }
-    // The default, as a nick below the track: where a double click would go. Only for whoever is at
-    // this track.
+    // The default is a nick below the track, where a double click goes, while the track is used.
     let default_x = x_of(row.default);
     if !auto && grown > 0.0 && (default_x - handle.x).abs() > radius + 2.0 {
         let nick = Rect::from_center_size(pos2(default_x, bar.bottom() + 4.0), vec2(2.0, 4.0));

@@ -1,4 +1,4 @@
-//! What a timeline shows, and what can be asked of it.
+//! The content of a timeline, and the user's input to it.
 
 use super::super::chip::Part;
 use super::super::curves::Curves;
@@ -9,90 +9,91 @@ use std::ops::Range;
 /// A clip on the timeline.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Track<'a> {
-    /// Which part it plays: gives the bar its colour.
+    /// Its part in the result, which gives the bar its colour.
     pub(crate) part: Part,
-    /// What stands before the bar: `A walk`. Hidden where there is no room.
+    /// The label before the bar: `A`. Hidden where there is no room.
     pub(crate) label: Text<'a>,
-    /// What stands inside the bar.
+    /// The name inside the bar.
     pub(crate) name: Text<'a>,
-    /// When it begins and ends, in seconds.
+    /// When it begins, in seconds.
     pub(crate) start: f64,
     /// When it ends, in seconds.
     pub(crate) end: f64,
-    /// How long it takes to appear, in seconds.
+    /// The length of its fade in, in seconds.
     pub(crate) fade_in: f64,
-    /// How long it takes to vanish, in seconds.
+    /// The length of its fade out, in seconds.
     pub(crate) fade_out: f64,
 }
 
-/// When the feet of a motion stand: the left one in the upper line, the right one in the lower.
+/// The stances of a motion: those of the left foot in the upper line, of the right foot in the
+/// lower.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Stripe<'a> {
-    /// Whose feet: gives the colour.
+    /// The part of the motion, which gives the colour.
     pub(crate) part: Part,
-    /// What stands before them.
+    /// The label before them.
     pub(crate) label: Text<'a>,
-    /// From and to, seconds: left, right.
+    /// The stances, seconds: left, right.
     pub(crate) feet: [Vec<Range<f64>>; 2],
 }
 
-/// A moment with a mark: where a foot is planted, or a cycle begins.
+/// A moment with a mark, such as the beginning of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Moment {
-    /// When, in seconds.
+    /// Its time, in seconds.
     pub(crate) time: f64,
     /// Its colour.
     pub(crate) color: Color32,
-    /// What it is.
+    /// Its name.
     pub(crate) name: Word,
 }
 
-/// All that the timeline shows.
+/// The content of a timeline.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Timeline<'a> {
-    /// The length of it all, in seconds.
+    /// The whole length, in seconds.
     pub(crate) duration: f64,
-    /// Where the playhead stands, in seconds.
+    /// The playhead, in seconds.
     pub(crate) now: f64,
-    /// Frames per second: arrow keys step by one frame. 0: by a hundredth of the whole.
+    /// Frames per second, by which arrow keys step. 0: they step by a hundredth of the whole.
     pub(crate) fps: f64,
     /// The clips, from top to bottom.
     pub(crate) tracks: &'a [Track<'a>],
-    /// When feet stand, below the clips, from top to bottom.
+    /// The stances, below the clips, from top to bottom.
     pub(crate) stripes: &'a [Stripe<'a>],
     /// When the transition begins and ends, in seconds.
     pub(crate) transition: Option<Range<f64>>,
-    /// Its edges can be dragged.
+    /// Whether its edges can be dragged.
     pub(crate) transition_editable: bool,
-    /// Where a loop begins, in seconds.
+    /// The start of a loop, in seconds.
     pub(crate) in_point: Option<f64>,
-    /// Where it ends, in seconds.
+    /// The end of a loop, in seconds.
     pub(crate) out_point: Option<f64>,
-    /// Marks above the bars.
+    /// The marks above the bars.
     pub(crate) moments: &'a [Moment],
-    /// The curves below the bars; none: bars only.
+    /// The curves below the bars; `None` for bars alone.
     pub(crate) curves: Option<Curves<'a>>,
 }
 
-/// What was asked of the timeline. Times are in seconds, within the timeline.
+/// The user's input to a timeline. Times are in seconds, within the timeline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum TimelineEvent {
-    /// Show this moment.
+    /// Move the playhead.
     Seek(f64),
-    /// The playhead was taken hold of: pause while it is held.
+    /// The playhead was taken hold of: playback pauses while it is held.
     ScrubStarted,
-    /// It was let go.
+    /// The playhead was released.
     ScrubEnded,
-    /// Let the loop begin here.
+    /// Move the start of the loop.
     SetIn(f64),
-    /// Let the loop end here.
+    /// Move the end of the loop.
     SetOut(f64),
-    /// Let the transition begin here.
+    /// Move the start of the transition.
     SetTransitionStart(f64),
-    /// Let the transition end here.
+    /// Move the end of the transition.
     SetTransitionEnd(f64),
-    /// A handle was taken hold of: what follows until it is let go is one thing to undo.
+    /// A handle was taken hold of: the changes until it is released are one step of undo.
     EditStarted,
-    /// The handle was let go.
+    /// The handle was released.
     EditEnded,
 }

@@ -1,4 +1,4 @@
-//! What can be dragged along the timeline: the edges of the transition, the ends of the loop.
+//! The handles of a timeline: the edges of the transition, and the ends of the loop.
 
 use super::super::assistive::{Adjustable, requested};
 use super::super::keys::keys_pressed;
@@ -11,9 +11,9 @@ use eframe::egui::{
     CursorIcon, EventFilter, Id, Key, Rangef, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2,
 };
 
-/// Things on the timeline that can be dragged along it.
+/// The handles of a timeline.
 pub(super) struct Handles {
-    /// Where times lie.
+    /// The axis of time.
     pub(super) axis: TimeAxis,
     /// The upper end of their lines.
     pub(super) top: f32,
@@ -24,7 +24,7 @@ pub(super) struct Handles {
 }
 
 impl Handles {
-    /// An edge of the transition: bare until the pointer is on it.
+    /// Draws an edge of the transition: a line, with a grip while the pointer is on it.
     pub(super) fn edge_ui(
         &self,
         name: Word,
@@ -65,7 +65,7 @@ impl Handles {
         }
     }
 
-    /// An end of the loop: a flag that hangs into the loop.
+    /// Draws an end of the loop: a flag that hangs into the loop.
     #[expect(
         clippy::too_many_arguments,
         reason = "the two ends differ in three of them, and a struct would only be taken apart again"

@@ -1,4 +1,4 @@
-//! How the timeline looks: bars, seconds, the playhead, what a loop leaves out.
+//! The painting of a timeline: bars, seconds, the playhead, and the parts outside the loop.
 
 use super::super::assistive::describe;
 use super::super::chip::Part;
@@ -21,8 +21,7 @@ pub(super) fn paint_track(track: &Track<'_>, row: Rangef, axis: TimeAxis, durati
     if bar.width() < 1.0 {
         return;
     }
-    // What fades is a veil of the panel's colour, not nothing: the bar's shape stays in sight to
-    // its end.
+    // A fade ends in a faint colour, not in none: the bar's shape stays in sight to its end.
     let faint = palette.panel.lerp_to_gamma(fill, 0.14);
     let length = (end - start).max(f64::EPSILON);
     let (fade_in, fade_out) = ((track.fade_in / length) as f32, (track.fade_out / length) as f32);
@@ -37,7 +36,7 @@ pub(super) fn paint_track(track: &Track<'_>, row: Rangef, axis: TimeAxis, durati
     stops.sort_by(|one, other| one.0.total_cmp(&other.0));
     gradient_bar(bar, f32::from(radius::S), &stops, ui.painter());
 
-    // The name stands where the bar is full: at its beginning, or at its end if it fades in.
+    // The name is at the opaque end of the bar: the beginning, or the end if it fades in.
     let name =
         line_of(&[Run::new(track.name, Type::SmallStrong, ink)], bar.width() - 2.0 * space::S, ui);
     let (anchor, x) = if fade_in > 0.0 {
@@ -50,7 +49,7 @@ pub(super) fn paint_track(track: &Track<'_>, row: Rangef, axis: TimeAxis, durati
     }
 }
 
-/// Seconds along the bottom, and hairlines up through the curves.
+/// Draws seconds along the bottom, and hairlines up through the curves.
 pub(super) fn paint_ruler(axis: TimeAxis, bottom: f32, plot: Rect, ruler: Rect, ui: &Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     if axis.duration <= 0.0 {
@@ -79,7 +78,7 @@ pub(super) fn paint_ruler(axis: TimeAxis, bottom: f32, plot: Rect, ruler: Rect, 
     }
 }
 
-/// What a loop leaves out is veiled.
+/// Veils the parts outside the loop.
 pub(super) fn outside_loop(timeline: &Timeline<'_>, axis: TimeAxis, area: Rect, ui: &Ui) {
     let veil = palette_of(ui).panel.gamma_multiply(0.66);
     let cover = |from: f64, to: f64| {
@@ -115,7 +114,7 @@ pub(super) fn paint_playhead(x: f32, top: f32, bottom: f32, scrub: &Response, ui
     ui.painter().circle_filled(pos2(x, top + 2.0), (3.5 + hot) * theme.scale(), palette.handle);
 }
 
-/// The feet of a motion: a bar wherever one stands.
+/// Draws the stances of a motion as bars.
 pub(super) fn paint_stripe(stripe: &Stripe<'_>, row: Rangef, axis: TimeAxis, ui: &Ui) {
     let palette = palette_of(ui);
     let color =
@@ -135,7 +134,7 @@ pub(super) fn paint_stripe(stripe: &Stripe<'_>, row: Rangef, axis: TimeAxis, ui:
     }
 }
 
-/// A moment: a small diamond that says its name under the pointer.
+/// Draws a moment: a small diamond, with its name as the hint.
 pub(super) fn moment_ui(moment: &Moment, center: Pos2, id: Id, ui: &Ui) {
     let size = 3.0 * theme_of(ui).scale();
     let diamond = vec![

@@ -1,5 +1,5 @@
-//! What happens in time: bars for the clips, the transition between them, a playhead over all, and
-//! the curves below.
+//! The timeline: bars for the clips, the transition between them, a playhead over all, and the
+//! curves below.
 
 mod content;
 mod handles;
@@ -18,8 +18,8 @@ use eframe::egui::{Align2, Rangef, Rect, Sense, Ui, pos2};
 
 pub(crate) use self::content::{Moment, Stripe, Timeline, TimelineEvent, Track};
 
-/// The bars, the curves, and the playhead over both. Press anywhere to go there, drag to scrub, use
-/// the arrow keys for frames.
+/// Draws the bars, the curves, and the playhead over both. Press anywhere to go there, drag to
+/// scrub, use the arrow keys for frames.
 pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineEvent> {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let scale = theme.scale();
@@ -28,7 +28,7 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
 
     let gutter = if ui.available_width() < 560.0 * scale { 0.0 } else { (112.0 * scale).round() };
     let Heights { head, bar: bar_height, pitch, .. } = Heights::of(ui);
-    // Of several panes each has less room.
+    // Each of several panes has less room.
     let crowded = timeline.stripes.len() > 3;
     let stripe_pitch = ((if crowded { 0.8 } else { 1.0 }) * STRIPE * scale).round();
     let tracks_height = head + timeline.tracks.len() as f32 * pitch;
@@ -48,7 +48,7 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
     let area = Rect::from_min_max(pos2(axis.x.min, bars.top()), pos2(axis.x.max, ruler.bottom()));
     let plot = plot_row.with_min_x(axis.x.min).with_min_y(plot_row.top() + space::XS);
 
-    // Interaction first: the playhead should be where the pointer is, in this very frame.
+    // Input is read before painting: the playhead is at the pointer in the same frame.
     let mut events = Vec::new();
     let scrub = ui.interact(area, id, Sense::click_and_drag());
     let mut now = timeline.now;
@@ -173,8 +173,8 @@ impl Heights {
     }
 }
 
-/// Height of a stripe of feet, at a desk.
+/// Height of a stripe of stances at scale 1, points.
 const STRIPE: f32 = 15.0;
 
-/// Height of the line with the seconds, at a desk.
+/// Height of the line with the seconds at scale 1, points.
 const RULER: f32 = 18.0;

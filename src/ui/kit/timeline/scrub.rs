@@ -1,4 +1,4 @@
-//! How pointer, keys and screen readers move the playhead.
+//! Pointer, keys and screen readers on the playhead.
 
 use super::super::assistive::{Adjustable, requested};
 use super::super::keys::keys_pressed;
@@ -8,7 +8,7 @@ use super::content::{Timeline, TimelineEvent};
 use crate::ui::language::say;
 use eframe::egui::{EventFilter, Key, Pos2, Response, Ui};
 
-/// Moves `now` as it was asked to, and says so in `events`.
+/// Moves `now` by the user's input, and adds the events.
 pub(super) fn scrub_ui(
     timeline: &Timeline<'_>,
     axis: TimeAxis,
@@ -43,7 +43,7 @@ pub(super) fn scrub_ui(
         ui.memory_mut(|memory| memory.set_focus_lock_filter(scrub.id, filter));
         for (key, modifiers) in keys_pressed(ui) {
             let frames = if modifiers.shift { 10.0 } else { 1.0 };
-            // From one whole frame to the next, wherever between two one was.
+            // Steps go from one whole frame to the next, also from between two.
             asked = match key {
                 Key::ArrowRight => ((asked / frame).round() + frames) * frame,
                 Key::ArrowLeft => ((asked / frame).round() - frames) * frame,
