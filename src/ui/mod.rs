@@ -1,4 +1,4 @@
-//! What is seen and touched: the theme, the kit of widgets, and the panels built from them.
+//! The user interface: the theme, the kit of widgets, and the panels built from them.
 
 mod appearance;
 mod clip_panel;

@@ -1,9 +1,9 @@
-//! What the panels ask for. They change nothing themselves.
+//! The requests of the panels, which change nothing themselves.
 
 use segue_session::export::ExportOptions;
 use segue_session::{Command, Compare, Key, Value};
 
-/// What only the platform can do.
+/// A request to the platform.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Action {
     /// Let the user choose files.
@@ -20,10 +20,10 @@ pub(crate) enum Action {
     Save {
         /// A clip's id, `result`, or `result:1` for the second pane.
         which: String,
-        /// As what, and how.
+        /// The format and its options.
         how: ExportOptions,
     },
-    /// Put what is shown into the clipboard, as a report with a picture.
+    /// Put a report on the present state into the clipboard, with a picture.
     CopyReport,
     /// Put a text into the clipboard.
     CopyText(String),
@@ -31,23 +31,23 @@ pub(crate) enum Action {
     SaveText {
         /// The file's name.
         name: &'static str,
-        /// Its type.
+        /// Its media type.
         mime: &'static str,
-        /// What it holds.
+        /// Its content.
         text: String,
     },
     /// Save the stage as a picture.
     SavePicture,
-    /// Begin to film the page, or end it and save the film.
+    /// Start a video of the page, or end it and save it.
     Record,
 }
 
-/// What was asked for in one frame.
+/// The requests of one frame.
 #[derive(Debug, Default)]
 pub(crate) struct Out {
     /// Changes of the document, in order.
     pub(crate) commands: Vec<Command>,
-    /// What the platform is asked for.
+    /// Requests to the platform.
     pub(crate) actions: Vec<Action>,
     /// The parameters whose rows were shown and that can be compared, in order.
     pub(crate) rows: Vec<Key>,
@@ -75,7 +75,7 @@ impl Out {
         self.commands.push(Command::Reset(key));
     }
 
-    /// Turns a switch round.
+    /// Turns a switch on or off.
     pub(crate) fn toggle(&mut self, key: Key, on: bool) {
         self.set_once(key, Value::Switch(!on));
     }

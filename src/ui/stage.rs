@@ -1,4 +1,4 @@
-//! The stage: its panes, what lies over them, and what the pointer does on it.
+//! The stage: its panes, the layers over them, and the input of the pointer.
 
 mod buttons;
 mod camera;
@@ -23,7 +23,7 @@ use segue_session::Session;
 /// and its place.
 pub(crate) type Paint<'a> = &'a mut dyn FnMut(Rect, &[(usize, Rect)], &mut Ui);
 
-/// The whole stage, as large as `ui`, in the stage's own theme.
+/// Draws the stage, as large as `ui`, in its own theme.
 pub(crate) fn stage_panel_ui(
     session: &Session,
     layout: Layout,
@@ -78,7 +78,7 @@ fn stage_ui(
     camera_buttons_ui(session, stage, state, out, ui);
     on_stage::controls_ui(session, stage, layout, state, ui);
     let roomy = numbers_top - stage.top() > 240.0 * theme_of(ui).scale();
-    // Where nothing can be done, no hint says what to do.
+    // A pane without a result needs no hint.
     let is_refused = session.panes().iter().any(|pane| pane.problem.is_some());
     if let Some(note) = on_stage::note(session, state) {
         kit::caption_ui(&note, stage.with_max_y(numbers_top - space::S), ui);

@@ -36,7 +36,7 @@ pub(super) const SHIFT: Modifiers = Modifiers::SHIFT;
 pub(super) const COMMAND: Modifiers = Modifiers::COMMAND;
 pub(super) const COMMAND_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
-/// The keys of the labs, from left to right: the row of digits and what stands behind them.
+/// The keys of the labs, from left to right: the digits and the two keys after them.
 pub(in crate::ui) const LAB_KEYS: [Keyboard; 12] = [
     Keyboard::Num1,
     Keyboard::Num2,

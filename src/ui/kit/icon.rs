@@ -1,83 +1,83 @@
-//! Signs, drawn as strokes: no icon font has to be downloaded, and they take the colour of what
-//! they stand in.
+//! Icons, drawn as strokes: no icon font has to be downloaded, and they take the colour of their
+//! widget.
 
 use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Vec2, pos2, vec2};
 use std::f32::consts::{PI, TAU};
 
-/// A sign of the interface.
+/// An icon of the interface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Icon {
-    /// Run time.
+    /// Play.
     Play,
-    /// Stop time.
+    /// Pause.
     Pause,
-    /// One frame on.
+    /// One frame forward.
     StepForward,
     /// One frame back.
     StepBack,
     /// Start again at the end.
     Loop,
-    /// Dark or light.
+    /// Dark or light theme.
     Contrast,
-    /// 中: another language.
+    /// Another language: 中.
     Language,
-    /// More, behind three lines.
+    /// Menu.
     Menu,
-    /// Take away.
+    /// Close.
     Close,
-    /// Back to what was before.
+    /// Undo.
     Undo,
-    /// And on again.
+    /// Redo.
     Redo,
-    /// Two that are tied; a link to share.
+    /// A link to share.
     Link,
-    /// One more.
+    /// Add.
     Plus,
-    /// One fewer.
+    /// Remove one.
     Minus,
-    /// Throw away.
+    /// Delete.
     Trash,
-    /// Change the words.
+    /// Rename.
     Pencil,
     /// The camera follows the body.
     Follow,
-    /// Seen from above.
+    /// Top view.
     Top,
-    /// Everything in view.
+    /// Frame all.
     FrameAll,
-    /// Look here.
+    /// Warning.
     Warning,
-    /// All went well.
+    /// Success, or the current choice.
     Check,
-    /// Something to know.
+    /// Information.
     Info,
     /// Opens downward.
     ChevronDown,
     /// Back by one.
     ChevronLeft,
-    /// Folded: opens downward when pressed; on by one.
+    /// Forward by one; folded.
     ChevronRight,
-    /// A picture of what is seen.
+    /// Save a picture.
     Picture,
-    /// A page with lines: what is seen, written down.
+    /// Report.
     Report,
-    /// A film of what is seen.
+    /// Record a video.
     Record,
-    /// To a file.
+    /// Save a file.
     Download,
-    /// What is this?
+    /// Help.
     Help,
-    /// Files.
+    /// Library.
     Folder,
-    /// Exchange two.
+    /// Compare, or swap.
     Swap,
-    /// Something to read.
+    /// Lessons.
     Book,
-    /// Settings.
+    /// Details.
     Sliders,
 }
 
-/// Draws a sign into the square in the middle of `rect`, in strokes of one colour.
+/// Draws an icon into the square in the middle of `rect`, in strokes of one colour.
 pub(crate) fn paint_icon(icon: Icon, rect: Rect, color: Color32, painter: &Painter) {
     let side = rect.width().min(rect.height());
     let pen = Pen {
@@ -115,12 +115,12 @@ pub(crate) fn paint_icon(icon: Icon, rect: Rect, color: Color32, painter: &Paint
             pen.fill(&arc.collect::<Vec<_>>());
         }
         Icon::Language => {
-            // A box and an upright: no font has to have it.
+            // A box and an upright line, since fonts may lack the character.
             pen.stroke(&[(2.5, 4.5), (13.5, 4.5), (13.5, 10.3), (2.5, 10.3), (2.5, 4.5)]);
             pen.stroke(&[(8.0, 1.5), (8.0, 14.5)]);
         }
         Icon::Book => {
-            // Two pages that lie open.
+            // An open book.
             pen.stroke(&[
                 (8.0, 4.2),
                 (6.2, 3.0),
@@ -281,7 +281,7 @@ pub(crate) fn paint_icon(icon: Icon, rect: Rect, color: Color32, painter: &Paint
     }
 }
 
-/// The mark of Segue: one line that leaves warm and arrives cool.
+/// Draws the logo: one line from a warm to a cool colour.
 pub(crate) fn paint_logo(rect: Rect, warm: Color32, cool: Color32, painter: &Painter) {
     let wave = |t: f32| {
         let y = 0.5 - 0.32 * (TAU * (t * 0.92 - 0.21)).sin();
@@ -298,7 +298,7 @@ pub(crate) fn paint_logo(rect: Rect, warm: Color32, cool: Color32, painter: &Pai
     painter.circle_filled(wave(1.0), width / 2.0, cool);
 }
 
-/// Draws in a square of 16 × 16 units.
+/// A painter in a square of 16 × 16 units.
 struct Pen<'a> {
     origin: Pos2,
     unit: f32,
@@ -319,7 +319,7 @@ impl Pen<'_> {
         points.iter().map(|&point| self.at(point)).collect()
     }
 
-    /// An open line with round ends.
+    /// Draws an open line with round ends.
     fn stroke(&self, points: &[(f32, f32)]) {
         for end in [points.first(), points.last()].into_iter().flatten() {
             self.painter.circle_filled(self.at(*end), self.line().width / 2.0, self.color);
@@ -351,7 +351,7 @@ impl Pen<'_> {
         self.painter.circle_filled(self.at((x, y)), radius * self.unit, self.color);
     }
 
-    /// A link of a chain, leaning up to the right.
+    /// Draws a link of a chain, leaning up to the right.
     fn capsule(&self, center: (f32, f32), half_length: f32, radius: f32) {
         let size = vec2(2.0 * (half_length + radius * 0.5), 2.0 * radius) * self.unit;
         let rect = Rect::from_center_size(self.at(center), size);
@@ -374,7 +374,7 @@ fn arc(center: (f32, f32), radius: f32, from: f32, to: f32) -> Vec<(f32, f32)> {
         .collect()
 }
 
-/// A line, an arc, a line.
+/// Returns the points of a line, an arc and a line.
 fn curve(
     before: &[(f32, f32)],
     center: (f32, f32),

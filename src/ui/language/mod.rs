@@ -1,9 +1,9 @@
-//! Which language the interface is shown in.
+//! The language of the interface.
 //!
-//! The parameter `lang` is `auto` until it is chosen by hand, as the theme is. A link therefore
-//! carries a language only when its sender chose one; a link that names none leaves every reader
-//! their own; and a language that was chosen by hand is stored with the work and is there again on
-//! the next visit.
+//! The parameter `lang` is `auto` until a language is chosen by hand, as with the theme. A link
+//! therefore has a language only if its sender chose one; with any other link every reader keeps
+//! their own. A language that was chosen by hand is stored with the work and restored on the next
+//! visit.
 //!
 //! Texts are English where they are used, as [`Word`]s or as [`segue_text::Message`]s, and [`say`]
 //! writes them in the language of the interface where they are drawn. The widgets of the kit take a
@@ -23,20 +23,20 @@ use std::fmt;
 
 /// A language of the interface.
 struct LanguageRow {
-    /// Its tag: the word in the link, and the name of its files.
+    /// The tag: the word in the link, and the name of its files.
     tag: &'static str,
-    /// The tags of readers that it is for: a language, and the scripts or regions of it; none where
-    /// it is for all of them.
+    /// The readers' tags that it serves: a language, and scripts or regions of it; none to serve
+    /// all of them.
     readers: (&'static str, &'static [&'static str]),
-    /// Its name, in English.
+    /// The name, in English.
     name: &'static str,
     /// The name of the button that switches to it.
     switch: Word,
-    /// Whether the program itself is written in it, so that it has no files.
+    /// Whether the program is written in it, so that it has no files.
     is_built_in: bool,
 }
 
-/// The languages of the interface, the one that texts are written in first.
+/// The languages of the interface. The texts of the program are written in the first one.
 static LANGUAGES: [LanguageRow; 2] = [
     LanguageRow {
         tag: PageLanguage::En.word(),
@@ -45,7 +45,7 @@ static LANGUAGES: [LanguageRow; 2] = [
         switch: Word::new("Interface in English"),
         is_built_in: true,
     },
-    // Traditional Chinese as it is written in Taiwan. Simplified Chinese is another one.
+    // Traditional Chinese as written in Taiwan; not Simplified Chinese.
     LanguageRow {
         tag: PageLanguage::ZhHant.word(),
         readers: ("zh", &["hant", "tw", "hk", "mo"]),
@@ -76,8 +76,7 @@ impl Language {
         LANGUAGES.iter().position(|row| row.tag == tag).map(Self)
     }
 
-    /// Returns the first of a reader's languages, best first, that there is; English where there is
-    /// none of them.
+    /// Returns the first of a reader's languages, best first, that has a row; English if none has.
     pub(crate) fn preferred<'a>(tags: impl IntoIterator<Item = &'a str>) -> Self {
         tags.into_iter().find_map(Self::of_reader).unwrap_or_default()
     }
@@ -141,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_language_that_there_is_is_taken() {
+    fn preferred_language_is_the_first_with_a_row() {
         for (tags, expected) in [
             (&["zh-TW", "zh", "en-US"][..], chinese()),
             (&["zh-Hant-HK"], chinese()),
@@ -157,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn a_link_names_a_language_only_after_it_was_chosen_by_hand() {
+    fn link_has_a_language_only_after_a_choice() {
         let mut session = Session::new();
         assert_eq!(Language::of(&session, chinese()), chinese());
         assert!(!session.query().contains("lang"), "{}", session.query());
@@ -169,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn a_link_without_a_language_leaves_the_readers() {
+    fn link_without_a_language_keeps_the_readers() {
         let mut session = Session::new();
         let open = |session: &mut Session, link: &str| {
             session.apply(Command::OpenLink(link.to_owned())).unwrap();
@@ -182,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_chosen_on_the_last_visit_is_there_again() {
+    fn language_chosen_on_the_last_visit_is_restored() {
         let saved = |query: &str| Saved { query: query.into(), ..Session::new().saved() };
         for (stored, link, expected) in [
             ("lang=zh-Hant", None, chinese()),

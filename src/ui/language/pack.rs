@@ -1,5 +1,4 @@
-//! The texts and letters of a language, and how a context comes to show them, as
-//! [`theme_of`](crate::ui::theme::theme_of) is its theme.
+//! The texts and the font of a language, and the context that shows them.
 
 use super::text::Text;
 use crate::ui::text;
@@ -10,23 +9,23 @@ use std::sync::Arc;
 #[cfg(all(test, feature = "ui-tests"))]
 use std::sync::{Mutex, PoisonError};
 
-/// What the interface is shown with in a language: its texts, and a font with its letters.
+/// The texts of a language, and a font with its letters.
 #[derive(Clone, Debug)]
 pub(crate) struct LanguagePack {
     texts: Arc<Texts>,
     font: Arc<[u8]>,
 }
 
-/// Why a language pack cannot be used.
+/// The reason why a language pack cannot be used.
 #[derive(Debug, thiserror::Error, ToMessage)]
 pub(crate) enum PackError {
     /// One of its files is not here.
     #[error("{0}")]
     NotLoaded(Message),
-    /// The texts are not JSON, or not sections of texts.
+    /// The texts are not JSON, or have another structure.
     #[error("its texts cannot be read")]
     Texts,
-    /// The font is of no kind that is known.
+    /// The font has no known format.
     #[error("its font cannot be read")]
     Font,
 }
@@ -42,8 +41,7 @@ struct Texts {
 impl LanguagePack {
     /// Reads the two files of a language: sections of texts by their English, and a font.
     ///
-    /// # Errors
-    /// [`PackError`] where one of them is something else.
+    /// # Errors [`PackError`] if one of them has another format.
     pub(crate) fn read(texts: &[u8], font: Arc<[u8]>) -> Result<Self, PackError> {
         let signatures = [&b"OTTO"[..], &[0, 1, 0, 0]];
         if !signatures.iter().any(|signature| font.starts_with(signature)) {
@@ -71,7 +69,7 @@ impl LanguagePack {
         crate::ui::theme::add_face("Noto Sans TC", FontData::from_owned(self.font.to_vec()), ctx);
     }
 
-    /// Shows the texts of this context in this language from now on.
+    /// Shows the texts of a context in this language from now on.
     pub(crate) fn activate(&self, ctx: &Context) {
         ctx.data_mut(|data| data.insert_temp(texts_id(), Some(self.texts.clone())));
     }
@@ -82,7 +80,7 @@ pub(crate) fn skip_words(ctx: &Context) -> String {
     written(text::SKIP_TO_PARAMETERS.into(), ctx)
 }
 
-/// Shows the texts of this context in English from now on, as they are written.
+/// Shows the texts of a context in English from now on.
 pub(crate) fn activate_english(ctx: &Context) {
     ctx.data_mut(|data| data.insert_temp(texts_id(), None::<Arc<Texts>>));
 }

@@ -10,7 +10,7 @@ use crate::ui::theme::{space, theme_of};
 use eframe::egui::{Rect, Ui, UiBuilder, pos2, vec2};
 use segue_session::{Key, Session};
 
-/// Draws the button that goes on to the next pane: a phone shows one at a time.
+/// Draws the button that goes to the next pane: a phone shows one at a time.
 pub(super) fn pane_switch_ui(count: usize, stage: Rect, state: &mut UiState, ui: &mut Ui) {
     let rect =
         Rect::from_min_size(pos2(stage.right() - 92.0, stage.top() + 44.0), vec2(84.0, 28.0));
@@ -22,7 +22,7 @@ pub(super) fn pane_switch_ui(count: usize, stage: Rect, state: &mut UiState, ui:
     });
 }
 
-/// Draws the buttons of the camera, and below them those that save what is seen.
+/// Draws the buttons of the camera, and below them those for pictures, reports and videos.
 pub(super) fn camera_buttons_ui(
     session: &Session,
     stage: Rect,
@@ -53,8 +53,8 @@ pub(super) fn camera_buttons_ui(
     }
 }
 
-/// Draws the buttons for a picture of the stage and a film of the page. A film under way says so,
-/// and how long it is.
+/// Draws the buttons for a picture of the stage, a report, and a video of the page; beside a video
+/// under way, its length.
 fn filming_ui(filming: Filming, rect: Rect, out: &mut Out, ui: &mut Ui) {
     let builder = UiBuilder::new().id_salt("filming").max_rect(rect);
     let recorded = ui.scope_builder(builder, |ui| {

@@ -50,15 +50,15 @@ pub(super) fn camera_input(
     }
 }
 
-/// What keys ask of the camera: a drag in points, whether it moves the camera, and how much nearer
-/// it comes.
+/// The keys' input to the camera: a drag in points, whether it moves the camera, and the factor of
+/// the zoom.
 struct CameraKeys {
     drag: Vec2,
     panning: bool,
     nearer: f64,
 }
 
-/// Points of a drag that a press of a key, or its repetition, stands for.
+/// Points of a drag for each press of a key, or its repetition.
 const POINTS_PER_KEY: f32 = 16.0;
 
 /// Reads the keys of the camera: W, A, S, D turn it (with Shift they move it), the page keys zoom.
@@ -110,7 +110,7 @@ fn drag_of(response: &Response, ui: &Ui) -> (Vec2, bool) {
 /// Returns the values that move the camera by a drag.
 fn pan(session: &Session, drag: Vec2, stage: Rect) -> Vec<(Key, Value)> {
     let params = session.params();
-    // The way of the pointer on the screen does not depend on how large the figure is shown.
+    // The pan follows the pointer, whatever the shown size of the character.
     let mut camera = camera_of(session.params(), 1.0);
     let before = camera.target;
     camera.pan(glam_vec2(drag), stage.height());

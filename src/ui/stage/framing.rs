@@ -13,8 +13,8 @@ pub(crate) fn frame_everything(session: &Session, state: &UiState, out: &mut Out
     out.commands.extend(framing(session, state, None).map(Command::Set));
 }
 
-/// Returns the values of the camera that shows the whole way of all characters, from this height
-/// (degrees) or from where it is; `None` where there is nothing to see.
+/// Returns the values of the camera that shows the whole way of all characters, at the given pitch
+/// (degrees) or at the present one; `None` where there is nothing to see.
 pub(crate) fn framing(
     session: &Session,
     state: &UiState,

@@ -1,4 +1,4 @@
-//! What lies over a pane: its title, its numbers, or why there are none.
+//! The title of a pane, and its numbers or the reason why there are none.
 
 use super::verdicts::{Verdicts, ranking};
 use crate::ui::kit::{self, Metric, Mood, PaneTitle, Rank};
@@ -11,7 +11,7 @@ use segue_session::metrics::{METRICS, MetricRow, Unit};
 use segue_session::{Kind, Pane, Session, Value};
 use segue_text::{Message, ToMessage, msg};
 
-/// Draws what lies over one pane. Returns where its numbers begin, from the top of the page.
+/// Draws the title and the numbers of a pane. Returns the top of its numbers on the page.
 pub(super) fn pane_ui(
     pane: &Pane,
     index: usize,
@@ -23,7 +23,7 @@ pub(super) fn pane_ui(
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let Title { strong, text, secondary } = pane_words(pane, session);
     if pane.is_outdated() {
-        // The picture is not the one that is asked for.
+        // The picture is outdated.
         ui.painter().rect_filled(rect, 0.0, palette.stage.sky.gamma_multiply(0.55));
     }
     let (chip, mood) = if pane.is_outdated() {
@@ -80,8 +80,8 @@ pub(super) fn pane_ui(
     kit::pane_footer_ui(&strip, rect, ui).top()
 }
 
-/// Draws why a pane has no result, on a plate where its numbers would be: the clips above it are to
-/// be seen. Returns where it begins.
+/// Draws why a pane has no result, on a plate in the place of its numbers, so that the clips above
+/// it stay visible. Returns its top.
 fn problem_ui(problem: &Message, rect: Rect, ui: &mut Ui) -> f32 {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let width = (rect.width() - 2.0 * space::L).min(420.0 * theme.scale());
@@ -104,7 +104,7 @@ fn problem_ui(problem: &Message, rect: Rect, ui: &mut Ui) -> f32 {
     shown.inner.response.rect.top()
 }
 
-/// Returns the value of a metric as it is read at a glance.
+/// Returns the value of a metric as short text.
 fn written(row: &MetricRow, value: Option<f64>) -> String {
     let Some(value) = value else {
         return "–".to_owned();
@@ -118,10 +118,10 @@ fn written(row: &MetricRow, value: Option<f64>) -> String {
     format!("{}{degree}", digits.replace('-', "−"))
 }
 
-/// Returns the title of a pane: the value in which it differs, or what it shows.
+/// Returns the title of a pane: the value in which it differs, or the title of its lab.
 fn pane_words(pane: &Pane, session: &Session) -> Title {
     let fps = pane.outcome.as_ref().map_or(60.0, |outcome| outcome.motion.clip().fps());
-    // The parameters of what is on the stage, if they are earlier ones; else the present ones.
+    // The parameters of the result on the stage, which may be earlier ones; else the present ones.
     let params = pane.made_from().unwrap_or(session.params());
     if let Some((key, value)) = pane.compared() {
         let param = key.param();

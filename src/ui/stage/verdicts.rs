@@ -1,10 +1,10 @@
-//! Which pane is the best and which the worst.
+//! The best and the worst pane.
 
 use segue_session::Pane;
 use segue_session::metrics::{Better, MetricId};
 
-/// The best and the worst pane, by the velocity jump, which an eye calls smooth or rough; of
-/// registered clips by foot skating. Where that is alike, the next of these numbers decides.
+/// The best and the worst pane: by the velocity jump, which is seen as smooth or rough; for
+/// registered clips by foot skating. For equal values the next of these numbers decides.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Verdicts {
     pub(super) best: Option<usize>,
