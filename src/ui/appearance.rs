@@ -15,7 +15,7 @@ pub(crate) fn theme(session: &Session, system_dark: bool) -> Theme {
     Theme { dark, projector: session.params().is_on(Key::Projector) }
 }
 
-/// Returns the theme of what lies over the stage, on a page of that theme.
+/// Returns the theme of the layers over the stage, on a page of that theme.
 pub(crate) fn stage_theme(session: &Session, page: Theme) -> Theme {
     let dark = match session.params().choice::<Backdrop>() {
         Backdrop::Dark => true,

@@ -1,5 +1,4 @@
-//! What was read of a clip, and what may be said of it by hand: in the library under its row, and
-//! in the View lab.
+//! The details of a clip and their corrections: below its row in the library, and in the View lab.
 
 use super::kit::{self, Tree, TreeRow};
 use super::language::{Text, Word, say};
@@ -18,11 +17,11 @@ use segue_session::{
 };
 use segue_text::{Message, ToMessage, msg};
 
-/// The tree of joints scrolls above this height, points.
+/// The height above which the tree of joints scrolls, points.
 const TREE_HEIGHT: f32 = 264.0;
 
-/// The whole panel of one clip. `saved` is the id of what is saved from here: the clip, or a result
-/// that is made of it alone.
+/// Draws the panel of a clip. `saved` is the id of the motion that is saved from here: the clip, or
+/// a result of it alone.
 pub(crate) fn clip_panel_ui(
     entry: &Entry,
     saved: &str,
@@ -95,7 +94,7 @@ const UNITS: [(f64, Word); 6] = [
 /// Frame rates that files come in.
 const RATES: [f64; 5] = [24.0, 25.0, 30.0, 60.0, 120.0];
 
-/// What may be said better than it was found.
+/// Draws the rows that correct what was detected.
 fn overrides_ui(
     entry: &Entry,
     file: &SourceFile,
@@ -148,15 +147,15 @@ fn as_found(value: &Message, is_found: bool) -> Message {
     if is_found { msg!("{value}, detected", value) } else { text::AS_FOUND.into() }
 }
 
-/// What is chosen in the list of frame rates.
+/// A choice in the list of frame rates.
 #[derive(Clone, Copy, PartialEq)]
 enum Rate {
     Given(Option<f64>),
-    /// A number is to be typed.
+    /// A number that is typed.
     Other,
 }
 
-/// The frame rate by hand: what was chosen anew.
+/// Draws the choice of the frame rate. Returns a new choice.
 fn rate_ui(entry: &Entry, fps: Option<f64>, state: &mut UiState, ui: &mut Ui) -> Option<Rate> {
     let typed = fps.filter(|fps| !RATES.contains(fps));
     let rates = RATES.into_iter().chain(typed);
@@ -186,13 +185,13 @@ fn rate_ui(entry: &Entry, fps: Option<f64>, state: &mut UiState, ui: &mut Ui) ->
     rate.filter(|_| field.committed).map(|fps| Rate::Given(Some(fps)))
 }
 
-/// The frame rate that was typed, where it is one.
+/// Returns the frame rate in a typed text.
 fn rate_of(text: &str) -> Option<f64> {
     let number = text.trim().trim_end_matches("fps").trim_end().replace(',', ".");
     number.parse::<f64>().ok().filter(|fps| (0.1..=10_000.0).contains(fps))
 }
 
-/// The joints, one of them chosen: the one whose curve is plotted, and that is marked on the stage.
+/// Draws the tree of joints. The chosen one has its curve plotted, and is marked on the stage.
 fn joints_ui(motion: &Motion, session: &Session, out: &mut Out, ui: &mut Ui) {
     let joints = motion.clip().skeleton().joints();
     let parents: Vec<Option<usize>> = joints.iter().map(|joint| joint.parent).collect();
@@ -232,7 +231,7 @@ fn roles_ui(entry: &Entry, motion: &Motion, out: &mut Out, ui: &mut Ui) {
     }
 }
 
-/// `position X Y Z, rotation Z X Y`; empty for a joint without channels.
+/// Returns channels in words: `position X Y Z, rotation Z X Y`; empty without channels.
 fn in_words(channels: &[Channel]) -> Message {
     let letters = |of: fn(Channel) -> Option<&'static str>| {
         channels.iter().filter_map(|&channel| of(channel)).collect::<Vec<_>>().join(" ")
@@ -257,8 +256,8 @@ fn in_words(channels: &[Channel]) -> Message {
     }
 }
 
-/// What channels the file has: for the root, and for the other joints, the most common first. Empty
-/// where there are none.
+/// Returns the channels of a file in words: those of the root, and those of the other joints, the
+/// most common ones first. Empty without channels.
 fn channels_in_words(skeleton: &Skeleton) -> Message {
     let Some((root, others)) = skeleton.joints().split_first() else {
         return Message::default();

@@ -13,7 +13,7 @@ use prose::{blocks_ui, spans_ui};
 use segue_session::lesson::{Block, CONTENTS, Page, Try};
 use segue_session::{Command, Key, Lesson, LessonPage, Session, Value};
 
-/// Whether there is a lesson to show.
+/// Returns whether there is a lesson to show.
 pub(super) fn is_open(session: &Session) -> bool {
     !session.params().text(Key::Lesson).is_empty() && !session.params().is_on(Key::Embed)
 }
@@ -23,13 +23,13 @@ pub(super) fn toggle_lessons(session: &Session, out: &mut Out) {
     go_to(if is_open(session) { "" } else { CONTENTS }, out);
 }
 
-/// The width of the panel beside the stage: as wide as a line reads well, less where the stage
-/// needs the room.
+/// Returns the width of the panel beside the stage: a comfortable length of lines, less where the
+/// stage needs the room.
 pub(super) fn width(available: f32, scale: f32) -> f32 {
     (0.29 * available).clamp(330.0 * scale, 460.0 * scale).round()
 }
 
-/// Where a lesson and the parameters share one place: which of them is there.
+/// Draws the choice between a lesson and the parameters, where they share a place.
 pub(super) fn lesson_or_parameters_ui(state: &mut UiState, ui: &mut Ui) {
     let options = [(false, text::LESSON), (true, text::PARAMETERS)];
     let picked = clear_of_bar_ui(ui, |ui| {
@@ -41,7 +41,7 @@ pub(super) fn lesson_or_parameters_ui(state: &mut UiState, ui: &mut Ui) {
     ui.add_space(space::XS);
 }
 
-/// The whole panel.
+/// Draws the panel.
 pub(super) fn lessons_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let Some(lesson) = session.lesson() else {
         return;
@@ -52,7 +52,7 @@ pub(super) fn lessons_panel_ui(session: &Session, state: &mut UiState, out: &mut
     }
     clear_of_bar_ui(ui, |ui| header_ui(&lesson, out, ui));
     ui.add_space(space::XS);
-    // Every page is scrolled for itself.
+    // Each page has its own scroll position.
     ScrollArea::vertical().id_salt(name).auto_shrink(false).show(ui, |ui| {
         clear_of_bar_ui(ui, |ui| match &lesson {
             Lesson::Contents(page) => contents_ui(page, out, ui),
@@ -73,13 +73,14 @@ pub(super) fn lessons_panel_ui(session: &Session, state: &mut UiState, out: &mut
     });
 }
 
-/// Leaves the room in which the bar of what scrolls lies.
+/// Draws content beside the room for the scroll bar.
 fn clear_of_bar_ui<R>(ui: &mut Ui, content: impl FnOnce(&mut Ui) -> R) -> R {
     let margin = Margin { right: space::M as i8, ..Margin::ZERO };
     Frame::new().inner_margin(margin).show(ui, content).inner
 }
 
-/// Back to the list, where one is, forth and back, and away.
+/// Draws the buttons to the list, to the pages before and after, and to close, with the number of
+/// the page.
 fn header_ui(lesson: &Lesson<'_>, out: &mut Out, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     ui.horizontal(|ui| {
@@ -145,7 +146,7 @@ fn page_ui(
     let page = shown.page;
     title_ui(&page.title, ui);
     if let Some(begin) = &page.state {
-        // The page's own state has no link laid over it.
+        // An empty link is the state of the page itself.
         try_ui(&begin.label, "", session, out, ui);
     }
     ui.add_space(space::S);
@@ -173,7 +174,7 @@ fn page_ui(
     }
 }
 
-/// The answer, once it was asked for.
+/// Draws the button of the answer, and the answer while it is shown.
 fn answer_ui(page: &Page, name: &str, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     if page.answer.is_empty() {
         return;
@@ -195,7 +196,7 @@ fn answer_ui(page: &Page, name: &str, state: &mut UiState, out: &mut Out, ui: &m
     }
 }
 
-/// A button that sets a state; the one whose state there is has a mark.
+/// Draws a button that sets a state, with a mark while the state is set.
 fn try_ui(label: &str, query: &str, session: &Session, out: &mut Out, ui: &mut Ui) {
     let is_there = session.is_tried(query);
     let icon = if is_there { Icon::Check } else { Icon::Play };
@@ -221,10 +222,10 @@ fn note_ui(words: Text<'_>, is_problem: bool, ui: &mut Ui) {
     ui.add_space(space::S);
 }
 
-/// How far the words of a menu's item are set in, points.
+/// The indent of the text of a menu's item, points.
 const MENU_INDENT: f32 = 31.0;
 
-/// Set in, below a button or an item of a menu.
+/// Draws indented content, below a button or an item of a menu.
 fn indented_ui(by: f32, ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     let margin = Margin { left: by as i8, ..Margin::ZERO };
     Frame::new().inner_margin(margin).show(ui, content);

@@ -1,4 +1,4 @@
-//! The left panel: the clips that there are.
+//! The left panel: the library of clips.
 
 use super::clip_panel::clip_panel_ui;
 use super::kit::{self, Button, ClipRow, Icon, MenuItem, Part};
@@ -14,10 +14,10 @@ use segue_session::export::{ExportFormat, ExportOptions};
 use segue_session::{Command, Entry, FileCommand, Key, Origin, Session, Slot};
 use segue_text::{Message, msg};
 
-/// The share of the memory from which on it is shown how much is in use.
+/// The share of the memory in use from which on it is shown.
 const MEMORY_SHOWN_FROM: f32 = 0.25;
 
-/// The whole panel: the list, and below it, always in sight, where files are dropped.
+/// Draws the panel: the list, and below it, always in sight, the drop zone.
 pub(crate) fn library_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let frame = Frame::new().inner_margin(Margin { top: space::S as i8, ..Margin::ZERO });
     Panel::bottom("drop files here")
@@ -29,7 +29,7 @@ pub(crate) fn library_panel_ui(session: &Session, state: &mut UiState, out: &mut
         .show(ui, |ui| library_list_ui(session, state, out, ui));
 }
 
-/// The clips: first what the user brought and made, then what is built in.
+/// Draws the list of clips: first the user's, then the built-in ones.
 pub(crate) fn library_list_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let header = kit::section_header_ui(text::LIBRARY, ui);
     if let Some(stored) = state.stored {
@@ -42,7 +42,7 @@ pub(crate) fn library_list_ui(session: &Session, state: &mut UiState, out: &mut 
         .iter()
         .filter(|entry| !is_built_in(entry))
         .chain(entries.iter().filter(|entry| is_built_in(entry)));
-    // The one that came last, and has not been here before: it is brought into sight.
+    // The newest clip is scrolled into sight once.
     let newest = entries
         .iter()
         .rfind(|entry| !is_built_in(entry) && entry.motion.is_some())
@@ -65,11 +65,11 @@ pub(crate) fn library_list_ui(session: &Session, state: &mut UiState, out: &mut 
     });
 }
 
-/// Where files are dropped or asked for, and the bundled takes.
+/// Draws the tasks under way, the bundled takes and the drop zone.
 pub(crate) fn drop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let memory = session.memory().filter(|memory| memory.share() > MEMORY_SHOWN_FROM);
-    // A panel is as large as what was in it the last time: it is laid out once more before anybody
-    // sees it cut off.
+    // A panel has the size of its contents in the last frame: when they grow, the frame is laid out
+    // again before it is shown.
     let rows = (
         state.fetching.len(),
         session.jobs().iter().filter(|job| job.size.is_some()).count(),
@@ -148,8 +148,7 @@ fn samples_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     );
 }
 
-/// Where a clip goes when it is clicked: what is looked at in View; in Blend the slot that does not
-/// hold the other chosen clip.
+/// Returns the slot for a new clip: A, or B where A has a clip of the user's and B has none.
 fn free_slot(session: &Session) -> Slot {
     let built_in =
         |slot| session.slot(slot).is_none_or(|entry| matches!(entry.origin, Origin::Preset));
@@ -171,7 +170,7 @@ fn part_of(session: &Session, entry: &Entry) -> Part {
     }
 }
 
-/// `3.9 s · 468 frames · 30 joints`.
+/// Returns the facts below the name of a clip: `3.9 s · 468 frames · 30 joints`.
 fn facts(entry: &Entry) -> Message {
     match &entry.motion {
         Some(motion) => {
@@ -224,7 +223,7 @@ fn entry_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out
         }
         Some(_) => out.commands.push(Command::Remove(entry.id.clone())),
         None if response.clicked || response.badge_clicked => {
-            // In Blend a click goes round: into A, from A into B, from B into A.
+            // With two slots, a click assigns the clip to A, or to B if it is in A.
             let slot = if blending && part == Part::A { Slot::B } else { Slot::A };
             out.commands.push(Command::Assign(slot, entry.id.clone()));
         }
@@ -264,7 +263,7 @@ fn entry_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out
     }
 }
 
-/// The button that opens the drawer, where the library is one.
+/// Draws the button that opens the library where it is a drawer.
 pub(crate) fn library_button_ui(state: &mut UiState, ui: &mut Ui) {
     if kit::button_ui(
         Button::new(text::LIBRARY).icon(Icon::Folder).selected(state.library_open),

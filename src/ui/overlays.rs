@@ -1,4 +1,4 @@
-//! What lies over the whole page: notices, the list of shortcuts, the field for files that hang
+//! Overlays of the whole page: notices, the list of shortcuts, and the hint while files are held
 //! over the window.
 
 use super::commands;
@@ -11,7 +11,7 @@ use super::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{self, Align2, Grid, RichText, Stroke, StrokeKind, Ui};
 use segue_session::{Command, FileCommand, Level, Session};
 
-/// All of them.
+/// Draws the overlays.
 pub(crate) fn overlays_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     notices_ui(session, state, out, ui);
     if state.help_open {
@@ -39,7 +39,7 @@ fn notices_ui(session: &Session, state: &UiState, out: &mut Out, ui: &mut Ui) {
             },
         })
         .collect();
-    // Above the numbers: they are what one looks at.
+    // Notices are above the metrics, which stay visible.
     let free = state.stage.with_max_y(state.numbers_top.max(state.stage.center().y));
     if let Some((index, event)) = kit::toasts_ui(&notices, free, ui)
         && let Some(notice) = list.get(index)
@@ -79,7 +79,7 @@ fn help_ui(state: &mut UiState, ui: &mut Ui) {
     state.help_open &= open;
 }
 
-/// While files hang over the window, the whole page says that they may be dropped.
+/// Draws the hint over the whole page while files are held over the window.
 fn drop_ui(state: &UiState, ui: &Ui) {
     if ui.input(|input| input.raw.hovered_files.is_empty()) {
         return;

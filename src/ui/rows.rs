@@ -18,7 +18,8 @@ use eframe::egui::{self, Ui};
 use segue_motion::transition::has_legs;
 use segue_session::{Command, Entry, Key, Mark, NoResult, PARAMS, Session, Slot, split_reference};
 use segue_text::{Message, msg};
-/// The foot lock, how feet are read where they are held, and why they are not.
+/// Draws the rows of the foot lock, those about reading contacts, and why the feet cannot be
+/// locked.
 pub(crate) fn foot_rows_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
     if session.params().is_on(Key::FootLock)
@@ -43,7 +44,7 @@ pub(crate) fn foot_rows_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     });
 }
 
-/// Keeps the result, or saves it; which one, where several stand side by side.
+/// Draws the rows that keep or save the result, with a choice of the pane where there are several.
 pub(crate) fn save_result_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let panes = session.panes();
     state.saved_pane = state.saved_pane.min(panes.len().saturating_sub(1));
@@ -63,7 +64,7 @@ pub(crate) fn save_result_ui(session: &Session, state: &mut UiState, out: &mut O
     });
 }
 
-/// Keeps the result of a pane. Where there is none, it says why.
+/// Draws the button that keeps the result of a pane, or why there is none.
 pub(crate) fn keep_ui(pane: usize, session: &Session, out: &mut Out, ui: &mut Ui) {
     let missing = session.panes().get(pane).and_then(|pane| pane.result().err());
     let button = Button::new(text::KEEP).icon(Icon::Plus).outlined();
@@ -72,15 +73,15 @@ pub(crate) fn keep_ui(pane: usize, session: &Session, out: &mut Out, ui: &mut Ui
         out.commands.push(Command::Keep(pane));
     }
     match missing {
-        // The sentence stands on the stage.
+        // The reason is shown on the stage.
         Some(NoResult::Refused(_)) => kit::note_ui(text::NOTHING_TO_KEEP, palette_of(ui).muted, ui),
         Some(NoResult::Awaited) => kit::note_ui(text::STILL_COMPUTED, palette_of(ui).muted, ui),
         None => {}
     }
 }
 
-/// The two clips, and what is done to B where it moves another skeleton. Returns the frame rate of
-/// what is made of them.
+/// Draws the choices of both clips, and what was done to B for another skeleton or frame rate.
+/// Returns the frame rate of the result.
 pub(crate) fn pair_ui(session: &Session, out: &mut Out, ui: &mut Ui) -> f64 {
     slot_row_ui(Slot::A, session, out, ui);
     slot_row_ui(Slot::B, session, out, ui);
@@ -106,8 +107,8 @@ pub(crate) fn pair_ui(session: &Session, out: &mut Out, ui: &mut Ui) -> f64 {
     outcome.map_or(60.0, |outcome| outcome.motion.clip().fps())
 }
 
-/// Where A is left and B entered, in seconds or in frames of each clip. How that was found is one
-/// thing for both: it is said once, below the second row, or below the one that is left to Segue.
+/// Draws the rows of where A is left and B entered, in seconds or in frames of each clip. Both were
+/// found together, so that this is said once: below the second row, or below the automatic one.
 pub(crate) fn place_rows_ui(keys: [Key; 2], session: &Session, out: &mut Out, ui: &mut Ui) {
     let automatic = keys.map(|key| session.params().optional(key).is_none());
     let said_below = usize::from(automatic != [true, false]);
@@ -139,7 +140,7 @@ pub(crate) fn place_rows_ui(keys: [Key; 2], session: &Session, out: &mut Out, ui
     }
 }
 
-/// How the place was found, with its distance where that is known.
+/// Returns how the place was found, with its distance where that is known.
 fn found_sentence(session: &Session, automatic: [bool; 2]) -> Message {
     if session.jobs().iter().any(|job| job.task.is_none()) {
         return "Finding the best match…".into();
@@ -150,7 +151,7 @@ fn found_sentence(session: &Session, automatic: [bool; 2]) -> Message {
     }
 }
 
-/// Which clip is in a slot, to be chosen anew.
+/// Draws the choice of the clip in a slot.
 pub(crate) fn slot_row_ui(slot: Slot, session: &Session, out: &mut Out, ui: &mut Ui) {
     let chosen = session.params().text(slot.key());
     if let Some(id) = clip_choice_ui(Word::new(slot.label()), chosen, session, ui) {
@@ -158,7 +159,7 @@ pub(crate) fn slot_row_ui(slot: Slot, session: &Session, out: &mut Out, ui: &mut
     }
 }
 
-/// A clip of the library to choose; the id of the one that was.
+/// Draws a choice of the library's clips. Returns the id of a new choice.
 pub(crate) fn clip_choice_ui<'a>(
     label: impl Into<Text<'a>>,
     chosen: &str,
@@ -170,7 +171,7 @@ pub(crate) fn clip_choice_ui<'a>(
     let found = found.and_then(|entry| entries.iter().position(|other| other.id == entry.id));
     let missing = (found.is_none() && !chosen.is_empty())
         .then(|| (usize::MAX, text::missing(split_reference(chosen).0)));
-    // The one that is not here cannot be chosen, only seen.
+    // A clip that is missing is shown, but cannot be chosen.
     let named: Vec<(usize, Message)> =
         entries.iter().map(|entry| entry.title()).enumerate().chain(missing).collect();
     let options: Vec<(usize, &Message)> =
@@ -198,7 +199,8 @@ pub(crate) fn add_clip_ui(
     Some(entries.get(picked?)?.id.clone())
 }
 
-/// The experiment of the course. The rows of what is compared have the way back.
+/// Draws the button that compares the full value, a half and a third of it. The rows of the
+/// compared values have the way back.
 pub(crate) fn compare_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
     let on = session.compare().is_some_and(|compare| compare.key == key);
     if !on

@@ -1,4 +1,4 @@
-//! What the interface remembers between frames.
+//! The state of the interface between frames.
 
 use super::labs::states::LabStates;
 use super::language::Language;
@@ -8,7 +8,7 @@ use segue_scene::Camera;
 use segue_session::StorageState;
 use segue_session::export::ExportOptions;
 
-/// How much room there is.
+/// The layouts of the page, by the room that there is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Layout {
     /// Everything side by side.
@@ -20,12 +20,12 @@ pub(crate) enum Layout {
 }
 
 impl Layout {
-    /// The layout for a window of that width, points; `scale` is the theme's.
+    /// Returns the layout for a window of that width, points; `scale` is the theme's.
     pub(crate) fn of(width: f32, scale: f32) -> Self {
         if width < 640.0 * scale {
             Self::Phone
         } else if width < 960.0 * scale * scale {
-            // Larger type also makes every panel wider, so that it takes its toll twice.
+            // Larger type also makes every panel wider, hence the square.
             Self::Tablet
         } else {
             Self::Desk
@@ -33,7 +33,7 @@ impl Layout {
     }
 }
 
-/// Something of a clip that is being typed.
+/// A text about a clip that is being typed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Typing {
     /// The clip's id.
@@ -42,18 +42,18 @@ pub(crate) struct Typing {
     pub(crate) text: String,
 }
 
-/// Pictures and films of what is seen: whether they can be made here, and the one under way.
+/// The availability of pictures and videos, and the video under way.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Filming {
-    /// A picture can be saved.
+    /// Whether a picture can be saved.
     pub(crate) pictures: bool,
-    /// A film can be made.
+    /// Whether a video can be recorded.
     pub(crate) films: bool,
-    /// How long the film under way is by now, seconds.
+    /// The length of the video under way so far, seconds.
     pub(crate) secs: Option<f64>,
 }
 
-/// What a gamepad asks for: sticks from -1 to 1, to the right and up.
+/// The input of a gamepad: sticks from -1 to 1, to the right and up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Gamepad {
     /// The left stick.
@@ -70,13 +70,13 @@ pub(crate) struct Gamepad {
 #[derive(Clone, Debug)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a thing of its own that is open or not")]
 pub(crate) struct UiState {
-    /// The drawer with the library is open, where it is one.
+    /// Whether the drawer with the library is open.
     pub(crate) library_open: bool,
-    /// The list of bundled takes is open.
+    /// Whether the list of bundled takes is open.
     pub(crate) samples_open: bool,
-    /// The list of shortcuts is open.
+    /// Whether the list of shortcuts is open.
     pub(crate) help_open: bool,
-    /// The parameters are in front of the lesson, where they share one place.
+    /// Whether the parameters are in front of the lesson, where they share a place.
     pub(crate) lesson_behind: bool,
     /// The lesson whose answer is shown.
     pub(crate) answered: Option<String>,
@@ -88,37 +88,39 @@ pub(crate) struct UiState {
     pub(crate) typed_fps: Option<Typing>,
     /// The clip whose details are open.
     pub(crate) details: Option<String>,
-    /// A tree of joints was shown in the last frame: the chosen one is marked on the stage.
+    /// Whether a tree of joints was shown in the last frame: the chosen joint is then marked on the
+    /// stage.
     pub(crate) joints_open: bool,
-    /// What the labs remember.
+    /// The state of the labs.
     pub(crate) labs: LabStates,
-    /// A gamepad that is there.
+    /// The input of the gamepad; `None` without one.
     pub(crate) gamepad: Option<Gamepad>,
     /// The cameras of all panes as they were drawn last.
     pub(crate) cameras: Vec<Option<Camera>>,
-    /// The line that is drawn on the ground, (x, z) in metres; none while nobody draws.
+    /// The line that is being drawn on the ground, (x, z) in metres; `None` while none is.
     pub(crate) drawing: Option<Vec<DVec2>>,
-    /// How much room there is.
+    /// The layout of the page.
     pub(crate) layout: Layout,
-    /// How motions are saved.
+    /// The options for saving motions.
     pub(crate) export: ExportOptions,
     /// The pane whose result is saved.
     pub(crate) saved_pane: usize,
     /// The language of the interface.
     pub(crate) language: Language,
-    /// What pictures can be taken here.
+    /// The pictures and videos that can be taken here.
     pub(crate) filming: Filming,
-    /// The line that says what to look at; gone once somebody touched something.
+    /// Whether the hint over the stage is shown, until the first input.
     pub(crate) hint: bool,
-    /// Where the stage was drawn, points.
+    /// The place of the stage, points.
     pub(crate) stage: Rect,
     /// The upper edge of the panes' numbers on the stage, points.
     pub(crate) numbers_top: f32,
-    /// Files on their way, with how much of each is there, 0 to 1, where that is known.
+    /// Files that are being fetched, with the share of each that has arrived, 0 to 1, where it is
+    /// known.
     pub(crate) fetching: Vec<(String, Option<f64>)>,
     /// Whether a page around this one can use what is opened here.
     pub(crate) host_reads: bool,
-    /// How far the work is stored; none where nothing is stored.
+    /// How far the work is stored; `None` where it is not stored at all.
     pub(crate) stored: Option<StorageState>,
 }
 

@@ -1,8 +1,8 @@
-//! How Segue looks: colours, one type scale, one grid. Nothing else in the app writes down a colour
-//! or a size of text.
+//! The look of Segue: colours, one type scale, one grid. No other file of the app has a colour or a
+//! size of text.
 //!
-//! [`Theme::install`] gives a context the fonts and the style once, and again whenever the theme
-//! changes. Widgets read the theme back with [`theme_of`]; it costs one look-up.
+//! [`Theme::install`] gives a context the fonts and the style, at the start and whenever the theme
+//! changes. Widgets read the theme with [`theme_of`], by one look-up.
 
 mod palette;
 
@@ -15,19 +15,19 @@ use std::sync::Arc;
 
 pub(crate) use palette::Palette;
 
-/// Distances, in points. Everything sits on multiples of four.
+/// Distances, in points, on a grid of four.
 pub(crate) mod space {
-    /// Between things that belong together: an icon and its word.
+    /// Between parts of a widget, such as an icon and its text.
     pub(crate) const XS: f32 = 4.0;
-    /// Between neighbours: two buttons.
+    /// Between neighbours, such as two buttons.
     pub(crate) const S: f32 = 8.0;
-    /// Between rows of one group.
+    /// Between the rows of a group.
     pub(crate) const M: f32 = 12.0;
-    /// From the edge of a panel, and between groups.
+    /// At the edge of a panel, and between groups.
     pub(crate) const L: f32 = 16.0;
 }
 
-/// Corners, in points.
+/// Radii of corners, in points.
 pub(crate) mod radius {
     /// Chips inside controls, badges, the bars of the timeline.
     pub(crate) const S: u8 = 4;
@@ -37,10 +37,10 @@ pub(crate) mod radius {
     pub(crate) const L: u8 = 10;
 }
 
-/// The least height, in points, of anything one presses.
+/// The least height of a target for pointer or finger, points.
 pub(crate) const HIT: f32 = 24.0;
 
-/// The theme in use: dark or light, for a desk or for a projector.
+/// A theme: dark or light, for a desk or for a projector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Theme {
     /// Light on dark.
@@ -55,47 +55,47 @@ impl Default for Theme {
     }
 }
 
-/// The type scale. Figures are tabular in all of it, so changing numbers hold still.
+/// The type scale. Figures are tabular in all of it, so that changing numbers do not move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Type {
-    /// The one difference of a pane; a dialog's heading.
+    /// Titles of panes, and headings of dialogs.
     Title,
-    /// Sentences, and what stands on buttons.
+    /// Sentences and buttons.
     Body,
-    /// Names: a clip, the chosen tab.
+    /// Names, such as that of a clip or of the chosen tab.
     Strong,
-    /// The heading of a page that is read.
+    /// Headings of pages of text.
     Heading,
-    /// Text that is read, not looked up.
+    /// Running text.
     Reading,
-    /// What is firm in it.
+    /// Bold words in running text.
     ReadingStrong,
     /// Labels of parameters.
     Label,
     /// The value of a parameter.
     Number,
-    /// A measured number under a pane.
+    /// Metrics under a pane.
     Metric,
     /// Help, units under metrics, second lines.
     Small,
-    /// Small and firm: chips, letters on badges, names on bars.
+    /// Small and semi-bold: chips, letters on badges, names on bars.
     SmallStrong,
-    /// Headings of sections, set in capitals.
+    /// Headings of sections, in capitals.
     Caps,
 }
 
 impl Theme {
-    /// The colours of this theme.
+    /// Returns the colours of this theme.
     pub(crate) fn palette(self) -> &'static Palette {
         if self.dark { &palette::DARK } else { &palette::LIGHT }
     }
 
-    /// How much larger everything is than at a desk.
+    /// Returns the scale of sizes, 1 at a desk.
     pub(crate) fn scale(self) -> f32 {
         if self.projector { 1.25 } else { 1.0 }
     }
 
-    /// The font of one step of the type scale.
+    /// Returns the font of a step of the type scale.
     pub(crate) fn font(self, step: Type) -> FontId {
         let (size, strong) = match step {
             Type::Heading => (19.0, true),
@@ -115,19 +115,19 @@ impl Theme {
         )
     }
 
-    /// The height of a row that one presses: at least [`HIT`], more on a projector.
+    /// Returns the height of a row that can be pressed: at least [`HIT`], more on a projector.
     pub(crate) fn row_height(self) -> f32 {
         (28.0 * self.scale()).max(HIT).round()
     }
 
-    /// The width of hairlines and outlines.
+    /// Returns the width of hairlines and outlines.
     pub(crate) fn hairline(self) -> f32 {
         if self.projector { 1.5 } else { 1.0 }
     }
 
-    /// The fonts of the app. Set once per context; [`Self::install`] does.
+    /// Returns the fonts of the app, which [`Self::install`] sets once per context.
     ///
-    /// A face that cannot be read would leave a context without text, so both are compiled in.
+    /// They are compiled in: a context without a font would show no text.
     pub(crate) fn fonts() -> FontDefinitions {
         let mut fonts = FontDefinitions::empty();
         let faces: [(&str, &'static [u8]); 2] = [
@@ -136,8 +136,8 @@ impl Theme {
         ];
         for (name, bytes) in faces {
             let mut face = FontData::from_static(bytes);
-            // A glyph is drawn once and not for four fractions of a pixel: sharper, and a good part
-            // of the first frame's time.
+            // Each glyph is rasterised once, not for four fractions of a pixel, which is sharper
+            // and saves much of the first frame's time.
             face.tweak.subpixel_binning = Some(false);
             fonts.font_data.insert(name.to_owned(), Arc::new(face));
         }
@@ -150,7 +150,7 @@ impl Theme {
         fonts
     }
 
-    /// Makes a context look like this theme: fonts (the first time only) and the style of both of
+    /// Applies the theme to a context: the fonts (the first time only), and the style of both of
     /// egui's themes.
     pub(crate) fn install(self, ctx: &Context) {
         let fonts_id = Id::unique("segue fonts");
@@ -165,7 +165,8 @@ impl Theme {
         ctx.set_style_of(egui::Theme::Light, style);
     }
 
-    /// egui's style for this theme, for the few widgets of egui that the kit uses as they are.
+    /// Returns egui's style for this theme, for the few widgets of egui that the kit uses
+    /// unchanged.
     pub(crate) fn style(self) -> Style {
         let mut style = Style {
             text_styles: [
@@ -194,7 +195,7 @@ impl Theme {
         style
     }
 
-    /// Draws with this theme on a page that has another.
+    /// Draws with this theme, on a page that may have another.
     pub(crate) fn within<R>(self, ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
         let page = theme_of(ui);
         if page == self {
@@ -254,8 +255,7 @@ impl Theme {
     }
 }
 
-/// Adds a face that stands in for the letters that the others lack. It can be written with from the
-/// next frame on.
+/// Adds a face for letters that the others lack. It is used from the next frame on.
 pub(crate) fn add_face(name: &str, mut face: FontData, ctx: &Context) {
     face.tweak.subpixel_binning = Some(false);
     let families = [FontFamily::Proportional, FontFamily::Monospace, strong_family()]
@@ -271,12 +271,12 @@ fn theme_id() -> Id {
     Id::unique("segue theme")
 }
 
-/// The theme that was installed in this context; the default where none was.
+/// Returns the theme of a context; the default where none was installed.
 pub(crate) fn theme_of(ui: &Ui) -> Theme {
     ui.ctx().data(|data| data.get_temp(theme_id())).unwrap_or_default()
 }
 
-/// The colours of the installed theme.
+/// Returns the colours of the installed theme.
 pub(crate) fn palette_of(ui: &Ui) -> &'static Palette {
     theme_of(ui).palette()
 }

@@ -1,4 +1,4 @@
-//! Text with bold and slanted words, formulas and links.
+//! Running text with bold and italic words, formulas and links.
 
 use crate::ui::out::{Action, Out};
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
@@ -7,7 +7,7 @@ use eframe::egui::{Align, CursorIcon, Frame, Label, Margin, Sense, Stroke, Ui};
 use segue_session::Command;
 use segue_session::lesson::{Block, Span, Target, host_of};
 
-/// Blocks of a text, one below the other.
+/// Draws the blocks of a text, one below the other.
 pub(super) fn blocks_ui(blocks: &[Block], step: Type, out: &mut Out, ui: &mut Ui) {
     ui.spacing_mut().item_spacing.y = space::S;
     for block in blocks {
@@ -17,7 +17,7 @@ pub(super) fn blocks_ui(blocks: &[Block], step: Type, out: &mut Out, ui: &mut Ui
                 let format = format(&Span::plain(words.as_str()), Type::Strong, false, ui);
                 ui.label(LayoutJob::single_section(words.clone(), format));
             }
-            // A formula that stands alone.
+            // A displayed formula.
             Block::Paragraph(spans) if spans.iter().all(|span| span.code) => {
                 formula_ui(
                     &spans.iter().map(|span| span.text.as_str()).collect::<String>(),
@@ -41,7 +41,7 @@ pub(super) fn blocks_ui(blocks: &[Block], step: Type, out: &mut Out, ui: &mut Ui
     }
 }
 
-/// Lines on a ground of their own.
+/// Draws lines of a formula on a ground of their own.
 fn formula_ui(lines: &str, step: Type, ui: &mut Ui) {
     let frame = Frame::new().fill(palette_of(ui).panel_raised).corner_radius(radius::S);
     frame.inner_margin(Margin::symmetric(10, 6)).show(ui, |ui| {
@@ -50,8 +50,8 @@ fn formula_ui(lines: &str, step: Type, ui: &mut Ui) {
     });
 }
 
-/// One paragraph. A link to a state sets it, one to the web opens another window, and its host
-/// stands beside it.
+/// Draws one paragraph. A link to a state sets it. A link to the web opens another window, and has
+/// its host beside it.
 pub(super) fn spans_ui(spans: &[Span], step: Type, muted: bool, out: &mut Out, ui: &mut Ui) {
     let job_of = |spans: &[Span], ui: &Ui| {
         let mut job = LayoutJob::default();
@@ -85,7 +85,7 @@ pub(super) fn spans_ui(spans: &[Span], step: Type, muted: bool, out: &mut Out, u
                     if clicked {
                         out.actions.push(Action::OpenPage(address.clone()));
                     }
-                    // Words may say anything, also another address.
+                    // The text of a link may be another address.
                     if run.iter().map(|span| span.text.as_str()).collect::<String>() != *address {
                         let host = Span::plain(format!(" ({})", host_of(address)));
                         ui.label(LayoutJob::single_section(
@@ -108,8 +108,7 @@ fn format(span: &Span, step: Type, muted: bool, ui: &Ui) -> TextFormat {
         _ => step,
     });
     let line_height = (font.size * 1.42).round();
-    // Letters that Inter does not have come in one weight and upright: colour says there what
-    // stands out.
+    // Letters that Inter lacks have one weight and no italics: colour marks emphasis there.
     let is_in_one_weight = span.text.chars().any(|letter| letter >= '\u{2e80}');
     let color = if span.target.is_some() || ((span.strong || span.emphasis) && is_in_one_weight) {
         palette.accent_ink

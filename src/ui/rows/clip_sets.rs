@@ -1,4 +1,4 @@
-//! The row of a lab that says whose motion it works with.
+//! The row of a lab with the sets of clips that it can work with.
 
 use crate::ui::kit::{self, Button};
 use crate::ui::out::Out;
@@ -7,7 +7,7 @@ use crate::ui::theme::space;
 use eframe::egui::{Ui, vec2};
 use segue_session::{ClipSet, Command, Session};
 
-/// One button for each set of clips that there is, the one in use marked.
+/// Draws a button for each available set of clips, the one in use marked.
 pub(crate) fn clip_sets_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(space::XS, space::XS);

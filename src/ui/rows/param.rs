@@ -11,20 +11,20 @@ use segue_session::Mark::{InSeconds, PlaceInA, PlaceInB};
 use segue_session::{Command, Compare, Key, Kind, Session, Slot, Value, decimals_of};
 use segue_text::{Message, msg};
 
-/// What a panel knows about a parameter beyond the table.
+/// Details of a parameter's row beyond the table.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Detail {
-    /// A narrower upper end, where the clips allow no more.
+    /// A lower upper end, where the clips allow no more.
     pub(crate) max: Option<f64>,
-    /// What is used in place of the value that is set, where the clips allow no more.
+    /// The value that is used in place of the one that is set, where the clips allow no more.
     pub(crate) used: Option<f64>,
-    /// A sentence in place of the table's.
+    /// A help text in place of the table's.
     pub(crate) help: Option<Message>,
     /// Marks on the track, besides those of a comparison.
     pub(crate) marks: Vec<Mark>,
 }
 
-/// The row of a parameter: a slider, a switch or a choice, as the table has it.
+/// Draws the row of a parameter: a slider, a switch or a choice, by its kind.
 pub(crate) fn param_row_ui(
     key: Key,
     detail: &Detail,
@@ -69,14 +69,14 @@ pub(crate) fn param_row_ui(
         Kind::Character => character_ui(key, session, out, ui),
         Kind::Clip | Kind::Text | Kind::List(_) | Kind::Compare => {}
     });
-    // A slider has its sentence below it.
+    // A slider has its help below it.
     if matches!(param.kind, Kind::Switch | Kind::Choice(_)) {
         row.response.on_hover_text(say(Word::new(param.help), ui));
     }
 }
 
-/// A body part to choose. A joint that is named in the link and is no body part keeps its place
-/// until another is chosen.
+/// Draws a choice of body parts. A joint that the link names and that is no body part stays an
+/// option until another is chosen.
 fn joint_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
     let chosen = session.params().text(key);
     let mut options: Vec<(&str, Text<'_>)> =
@@ -90,8 +90,8 @@ fn joint_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
     }
 }
 
-/// The characters that files brought, and the body that is made around the bones. Nothing where no
-/// file brought one.
+/// Draws a choice of the characters of files and of the body around the bones; nothing where no
+/// file has a character.
 fn character_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
     let brought = session.library().entries().iter().filter(|entry| entry.mesh.is_some());
     let brought: Vec<(&str, Message)> =
@@ -147,7 +147,7 @@ fn number_ui(key: Key, detail: &Detail, session: &Session, out: &mut Out, ui: &m
     if let Some(compare) = compare {
         return compared_ui(compare, session.range_of(key), &row, &in_seconds, help, out, ui);
     }
-    // What was set for another motion is brought to what this one can do.
+    // A value that was set for another motion is clamped to the range of this one.
     let value = given.or_else(|| session.automatic_value(key)).unwrap_or(default);
     let value = session.range_of(key).map_or(value, |(min, max)| value.clamp(min, max));
     let value = detail.used.unwrap_or(value);
@@ -180,7 +180,7 @@ fn end_of_clip(key: Key, session: &Session) -> Option<f64> {
     ends.min_by(f64::total_cmp)
 }
 
-/// Returns the frame rate of what is shown, or of the clips that it is to be made from.
+/// Returns the frame rate of the result, or of the clips for it.
 fn frame_rate(session: &Session) -> f64 {
     let shown = session.main_outcome().map(|outcome| outcome.motion.clip().fps());
     let of_graph = || session.graph_clips().map(|graph_clips| graph_clips.set().fps());
@@ -188,7 +188,7 @@ fn frame_rate(session: &Session) -> f64 {
     shown.or_else(of_graph).or_else(of_map).unwrap_or(60.0)
 }
 
-/// What follows a drag is one thing to undo.
+/// Ends the step of undo when a drag ends, or after any other change.
 fn settle(response: &SliderResponse, out: &mut Out) {
     if response.drag_ended || (response.changed.is_some() && !response.response.dragged()) {
         out.commands.push(Command::Settle);
@@ -202,8 +202,7 @@ fn number_of(value: &Value) -> Option<f64> {
     }
 }
 
-/// A number that differs from pane to pane: a slider for each of them, so that what is dragged is
-/// what one sees.
+/// Draws a number that differs from pane to pane: a slider for each pane.
 fn compared_ui(
     compare: &Compare,
     range: Option<(f64, f64)>,
@@ -233,12 +232,12 @@ fn compared_ui(
     panes_ui(compare, range, out, ui);
 }
 
-/// The label of a parameter's row for one of several panes.
+/// Returns the label of a parameter's row for one of several panes.
 fn label_of(label: &'static str, pane: usize) -> Message {
     msg!("{label} · {number}", label, number = pane + 1)
 }
 
-/// A choice that differs from pane to pane: a row for each of them.
+/// Draws a choice that differs from pane to pane: a row for each pane.
 fn compared_choices_ui(
     compare: &Compare,
     options: &[(&'static str, Word)],
@@ -261,13 +260,13 @@ fn compared_choices_ui(
     panes_ui(compare, None, out, ui);
 }
 
-/// One pane more, one fewer, or one alone.
+/// Draws the buttons that add a pane, remove one, and go back to one pane.
 fn panes_ui(compare: &Compare, range: Option<(f64, f64)>, out: &mut Out, ui: &mut Ui) {
     let mut panes = compare.clone();
     ui.horizontal(|ui| {
         let more = Button::icon_only(Icon::Plus, text::PANE_MORE);
         let has_room = compare.with_one_more(range) != *compare;
-        // Dimmed it keeps its place: the next button must not come under the pointer.
+        // A disabled button keeps its place: the next one must not come under the pointer.
         if ui.add_enabled_ui(has_room, |ui| kit::button_ui(more, ui)).inner.clicked() {
             out.compare(Some(compare.with_one_more(range)));
         }
@@ -286,14 +285,14 @@ fn panes_ui(compare: &Compare, range: Option<(f64, f64)>, out: &mut Out, ui: &mu
     });
 }
 
-/// One pane, as the first one is: its value is the parameter's own again.
+/// Goes back to one pane, with the value of the first one.
 fn keep_first(compare: &Compare, out: &mut Out) {
     let own = compare.values.first().map(|value| (compare.key, value.clone()));
     let alone = (Key::Compare, Value::Compare(None));
     out.commands.push(Command::Set(own.into_iter().chain([alone]).collect()));
 }
 
-/// Which parameter of those that have a row stands side by side with other values of itself.
+/// Draws the choice of the parameter that is compared, among those with a row.
 pub(crate) fn compare_choice_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let compared = session.compare().map(|compare| compare.key);
     let mut keys = std::mem::take(&mut out.rows);

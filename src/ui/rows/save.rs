@@ -1,4 +1,4 @@
-//! Saving a motion as a file: which kind, and how.
+//! The rows that save a motion as a file: its format and options.
 
 use crate::ui::kit::{self, Button, Icon};
 use crate::ui::language::{Text, Word};
@@ -11,11 +11,11 @@ use eframe::egui::{Rect, Ui};
 use segue_formats::bvh::RotationOrder;
 use segue_session::export::{ExportBody, ExportFormat};
 
-/// What files are saved in, with its name.
+/// Metres per unit of length of saved files, with the name of the unit.
 const UNITS: [(Option<f64>, Word); 3] =
     [(None, text::AS_FILE), (Some(1.0), Word::new("m")), (Some(0.01), Word::new("cm"))];
 
-/// Whose body a file has.
+/// The body in a saved file.
 const BODIES: [(ExportBody, Word); 2] =
     [(ExportBody::Character, text::BODY_CHARACTER), (ExportBody::Plain, text::BODY_PLAIN)];
 
@@ -36,8 +36,8 @@ const RATES: [(Option<f64>, Word); 4] = [
     (Some(120.0), Word::new("120 fps")),
 ];
 
-/// One row to save a motion, and its options, folded. `which` is a clip's id, or `result:1` for the
-/// second pane.
+/// Draws the row that saves a motion, and its options, folded. `which` is a clip's id, or
+/// `result:1` for the second pane.
 pub(crate) fn save_rows_ui(which: &str, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let theme = theme_of(ui);
     let rect = kit::paint::full_width((30.0 * theme.scale()).round(), ui);

@@ -2,18 +2,18 @@
 
 use eframe::egui::Color32;
 
-/// The colours of one theme, named for what they say.
+/// The colours of one theme, named by meaning.
 ///
-/// A is warm, B is cool, what comes out of both is the accent. For each of them there is a *fill*
-/// (bars, curves, handles), an *ink* (the same hue, dark or light enough to be read as text on
-/// panels), and the text that stands on the fill.
+/// A is warm, B is cool, and their result has the accent. For each of them there is a *fill* (bars,
+/// curves, handles), an *ink* (the same hue, dark or light enough to be read as text on panels),
+/// and a colour of text on the fill.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Palette {
-    /// Behind everything, and behind the stage.
+    /// The ground of the page and of the stage.
     pub(crate) ground: Color32,
     /// The panels: top bar, library, parameters, timeline.
     pub(crate) panel: Color32,
-    /// Controls that lie on a panel: buttons, wells of segmented controls, menus.
+    /// Controls on a panel: buttons, wells of segmented controls, menus.
     pub(crate) panel_raised: Color32,
     /// A raised control, or a row of a list, under the pointer.
     pub(crate) hover: Color32,
@@ -21,14 +21,14 @@ pub(crate) struct Palette {
     pub(crate) pressed: Color32,
     /// Hairlines between panels and rows, and the outline of controls.
     pub(crate) line: Color32,
-    /// An outline that is the control itself: the dashed drop zone, an unset switch, a mark on a
-    /// track.
+    /// Outlines that are the control itself: the dashed drop zone, a switch that is off, a mark on
+    /// a track.
     pub(crate) line_strong: Color32,
     /// The empty part of a slider's or a progress bar's track.
     pub(crate) track: Color32,
-    /// Text that is read first.
+    /// Primary text.
     pub(crate) text: Color32,
-    /// Units, help and second lines. Still AA on every panel.
+    /// Units, help and second lines; AA on every panel.
     pub(crate) muted: Color32,
     /// The first clip: warm.
     pub(crate) a: Color32,
@@ -42,7 +42,7 @@ pub(crate) struct Palette {
     pub(crate) b_ink: Color32,
     /// Text on [`Self::b`].
     pub(crate) on_b: Color32,
-    /// The result, and what is set: curves, the filled part of a slider, the focus ring.
+    /// The result and values that are set: curves, the filled part of a slider, the focus ring.
     pub(crate) accent: Color32,
     /// The accent as text on a panel.
     pub(crate) accent_ink: Color32,
@@ -52,39 +52,39 @@ pub(crate) struct Palette {
     pub(crate) accent_text: Color32,
     /// The accent as a quiet ground: chips, the transition across the timeline. Translucent.
     pub(crate) accent_wash: Color32,
-    /// What went well, as text: the best of several.
+    /// Success, as text: the best of several.
     pub(crate) good: Color32,
-    /// What went wrong, as text: the worst of several, an error.
+    /// Failure, as text: the worst of several, an error.
     pub(crate) bad: Color32,
     /// [`Self::bad`] as a quiet ground. Translucent.
     pub(crate) bad_wash: Color32,
-    /// What deserves a look, as text and icon: odd input that was read anyway.
+    /// A warning, as text and icon: unusual input that was read.
     pub(crate) warning: Color32,
     /// [`Self::warning`] as a quiet ground. Translucent.
     pub(crate) warning_wash: Color32,
     /// The round handle of a slider and the play button.
     pub(crate) handle: Color32,
-    /// The sign on [`Self::handle`].
+    /// The icon on [`Self::handle`].
     pub(crate) on_handle: Color32,
-    /// Those who play along: neither A, B nor the result.
+    /// Extra characters: neither A, B nor the result.
     pub(crate) others: [Color32; 4],
-    /// Under raised things. Translucent.
+    /// Shadows. Translucent.
     pub(crate) shadow: Color32,
-    /// Distances, from alike to far apart: what is alike has the ground's colour, so that curves
-    /// stand out in the valleys.
+    /// Distances, from near to far. The nearest have the ground's colour, so that curves stand out
+    /// in the valleys.
     pub(crate) heat: [Color32; 5],
-    /// How much of a ghost's colour covers what is behind it, 0..=1.
+    /// The opacity of a ghost, 0..=1.
     pub(crate) ghost_alpha: f32,
-    /// Colours of the 3D stage that are not those of a panel.
+    /// Colours of the 3D stage that panels do not have.
     pub(crate) stage: StagePalette,
 }
 
-/// The colours of the stage, as the interface writes them (sRGB).
+/// The colours of the stage (sRGB).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct StagePalette {
     /// The background at the top of a pane.
     pub(crate) sky: Color32,
-    /// The background where it is lightest, behind the body.
+    /// The lightest part of the background, behind the body.
     pub(crate) horizon: Color32,
     /// The ground plane near the body.
     pub(crate) ground: Color32,
@@ -96,17 +96,18 @@ pub(crate) struct StagePalette {
     pub(crate) clay: Color32,
     /// The line around each limb.
     pub(crate) clay_outline: Color32,
-    /// How dark the body's shadow makes the ground, 0..=1.
+    /// The darkness of the body's shadow on the ground, 0..=1.
     pub(crate) shadow_alpha: f32,
 }
 
-/// `0xrrggbb`
+/// Returns an opaque colour of `0xrrggbb`.
 const fn hex(rgb: u32) -> Color32 {
     let [_, r, g, b] = rgb.to_be_bytes();
     Color32::from_rgb(r, g, b)
 }
 
-/// `0xrrggbb` with an opacity out of 255, premultiplied in gamma space as egui blends.
+/// Returns a colour of `0xrrggbb` with an opacity out of 255, premultiplied in gamma space
+/// as egui blends.
 const fn wash(rgb: u32, alpha: u8) -> Color32 {
     let [_, r, g, b] = rgb.to_be_bytes();
     let alpha_wide = alpha as u16;
@@ -118,7 +119,7 @@ const fn wash(rgb: u32, alpha: u8) -> Color32 {
     )
 }
 
-/// Light on dark: the usual one.
+/// Light on dark, the usual palette.
 pub(crate) const DARK: Palette = Palette {
     ground: hex(0x0f_1115),
     panel: hex(0x15_181e),
@@ -214,7 +215,7 @@ pub(crate) const LIGHT: Palette = Palette {
 mod tests {
     use super::*;
 
-    /// Relative luminance, WCAG 2.2.
+    /// Returns the relative luminance, WCAG 2.2.
     fn luminance(color: Color32) -> f64 {
         let channel = |value: u8| {
             let value = f64::from(value) / 255.0;
@@ -223,13 +224,13 @@ mod tests {
         0.2126 * channel(color.r()) + 0.7152 * channel(color.g()) + 0.0722 * channel(color.b())
     }
 
-    /// Contrast ratio of two opaque colours, WCAG 2.2: 1 (none) to 21 (black on white).
+    /// Returns the contrast ratio of two opaque colours, WCAG 2.2: 1 (none) to 21 (black on white).
     fn contrast(one: Color32, other: Color32) -> f64 {
         let (one, other) = (luminance(one), luminance(other));
         (one.max(other) + 0.05) / (one.min(other) + 0.05)
     }
 
-    /// What a translucent colour looks like on an opaque one, as egui blends (premultiplied, in
+    /// Returns a translucent colour blended onto an opaque one, as egui does (premultiplied, in
     /// gamma space).
     fn over(top: Color32, under: Color32) -> Color32 {
         under.blend(top)
@@ -292,7 +293,7 @@ mod tests {
 
     #[test]
     fn controls_stand_out_from_panels() {
-        // WCAG 1.4.11: what one must see to use a control reaches 3.
+        // WCAG 1.4.11: the parts that identify a control reach a contrast of 3.
         for (theme, p) in themes() {
             for (name, fill) in [
                 ("accent", p.accent),
