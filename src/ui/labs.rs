@@ -1,5 +1,5 @@
-//! What each lab has on the page: its panel, the titles of its panes, what its comparison begins
-//! with.
+//! The parts of the page of each lab: its panel, the titles of its panes, the start of its
+//! comparison.
 
 mod blend;
 mod break_it;
@@ -53,8 +53,8 @@ fn of(lab: LabId) -> &'static LabUi {
     }
 }
 
-/// Opens "full, half, third" of the lab's first number, or what else the lab has to compare, or
-/// goes back to one pane.
+/// Opens "full, half, third" of the lab's first number, or the lab's own comparison, or goes back
+/// to one pane.
 pub(crate) fn toggle_compare(session: &Session, out: &mut Out) {
     if session.panes().len() > 1 {
         out.compare(None);
@@ -106,9 +106,9 @@ fn group_ui(title: Word, group: Group, session: &Session, out: &mut Out, ui: &mu
     });
 }
 
-/// The parameters that an embedding page wants its readers to try: those that its link names,
-/// whatever they are by now, and those of the lab that were changed since. Looking around and
-/// playing have controls of their own.
+/// Returns the parameters that an embedding page offers: those that its link names, whatever their
+/// values by now, and those of the lab that were changed since. Camera and playback have controls
+/// of their own.
 fn named_params(session: &Session) -> impl Iterator<Item = Key> + '_ {
     let compared = session.compare().map(|compare| compare.key);
     PARAMS.iter().map(|param| param.key).filter(move |&key| {
@@ -124,12 +124,12 @@ fn named_params(session: &Session) -> impl Iterator<Item = Key> + '_ {
     })
 }
 
-/// Whether the link names a parameter of the lab.
+/// Returns whether there are parameters for an embedding page to offer.
 pub(crate) fn has_named_params(session: &Session) -> bool {
     named_params(session).next().is_some()
 }
 
-/// Their rows.
+/// Draws the rows of the parameters that an embedding page offers.
 pub(crate) fn named_params_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     for key in named_params(session) {
         match key {

@@ -1,4 +1,4 @@
-//! The page: where its panels lie, at a desk, on a phone, and inside another page.
+//! The page: the layout of its panels, at a desk, on a phone, and inside another page.
 
 use super::commands;
 use super::kit;
@@ -55,15 +55,15 @@ fn panel_frame(ui: &Ui, horizontal: f32, vertical: f32) -> Frame {
         .inner_margin(Margin::symmetric(horizontal as i8, vertical as i8))
 }
 
-/// The frame of a panel that scrolls: at its right edge there is room for the bar, so that it does
-/// not lie on numbers and units.
+/// Returns the frame of a panel that scrolls, with room for the scroll bar at the right edge, so
+/// that it does not cover numbers and units.
 fn scrolling_frame(ui: &Ui, horizontal: f32, vertical: f32) -> Frame {
     let mut frame = panel_frame(ui, horizontal, vertical);
     frame.inner_margin.right = BAR_MARGIN as i8;
     frame
 }
 
-/// What scrolls inside of a [`scrolling_frame`], as wide as in a panel that does not.
+/// Draws the scrolled content of a [`scrolling_frame`], as wide as in a panel that does not scroll.
 fn scrolled_ui(horizontal: f32, ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let margin = Margin { right: (horizontal - BAR_MARGIN) as i8, ..Margin::ZERO };
@@ -71,9 +71,9 @@ fn scrolled_ui(horizontal: f32, ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// From this width on the map of a graph has room beside the stage, points.
+/// The least width of the page with room for the map of a graph beside the stage, points.
 const MAP_ROOM: f32 = 1000.0;
-/// Between the bar of a panel that scrolls and the panel's edge, points.
+/// The gap between a scroll bar and the edge of its panel, points.
 const BAR_MARGIN: f32 = 3.0;
 
 fn desk_ui(
@@ -112,7 +112,7 @@ fn desk_ui(
                 lessons_panel::lessons_panel_ui(session, state, out, ui);
             });
     }
-    // A lesson, and the map of the graph, take the library's room.
+    // A lesson and the map of the graph leave no room for the library.
     let drawer = layout == Layout::Tablet || lesson || labs::has_side_panel(session);
     if state.library_open || !drawer {
         Panel::left("library").exact_size(244.0 * scale).frame(side(ui)).resizable(false).show(
@@ -123,7 +123,7 @@ fn desk_ui(
             },
         );
     }
-    // A lesson that has no place of its own shares that of the parameters.
+    // A lesson without a panel of its own shares that of the parameters.
     let shared = lesson && layout == Layout::Tablet;
     Panel::right("lab")
         .exact_size(if shared { 340.0 } else { 288.0 } * scale)
@@ -232,7 +232,7 @@ fn phone_ui(
                     state.library_open = false;
                 }
             } else {
-                // On so small a stage it would lie on what it speaks of.
+                // On a small stage the hint would cover the motion.
                 if let Some(hint) = labs::welcome(session) {
                     kit::note_ui(hint, palette_of(ui).muted, ui);
                     ui.add_space(space::M);

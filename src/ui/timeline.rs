@@ -1,4 +1,4 @@
-//! The bottom panel: what happens in time.
+//! The bottom panel: the timeline.
 
 mod curves;
 mod events;
@@ -74,8 +74,8 @@ pub(crate) fn timeline_panel_ui(
             },
             CurveOf::Pane(index, _) => Series {
                 name: of.name(),
-                // The first is the result that everything else on the page shows; two more are told
-                // apart by light, the last by a colour that neither clip has.
+                // The first result, which the rest of the page shows, has the accent; two more
+                // differ in lightness, the last has a colour that neither clip has.
                 color: [palette.accent, palette.text, palette.muted, palette.others[1]][index % 4],
                 ink: [palette.accent_ink, palette.text, palette.muted, palette.others[1]]
                     [index % 4],
@@ -100,7 +100,7 @@ pub(crate) fn timeline_panel_ui(
     let made = in_time::made_name(made_from);
     let round = round_name(outcome, &names);
     let tracks = if outcome.registered().is_some() {
-        // The feet of both say more than their bars.
+        // The stances of both clips take the place of their bars.
         Vec::new()
     } else if let Some(made) = &made {
         vec![whole_track(Part::Result, made, outcome)]
@@ -128,7 +128,7 @@ pub(crate) fn timeline_panel_ui(
         stripes: &stripes,
         transition: outcome.transition.map(|transition| transition.start_secs..transition.end_secs),
         transition_editable: session.panes().len() == 1 && outcome.walk().is_none(),
-        // Left to Segue they stand at the ends, to be taken hold of.
+        // Without marks the handles are at the ends.
         in_point: Some(params.optional(Key::In).unwrap_or(0.0)),
         out_point: Some(params.optional(Key::Out).unwrap_or(session.duration_secs())),
         moments: &seams,

@@ -1,4 +1,4 @@
-//! The bar at the top: which lab, and what concerns the whole page.
+//! The bar at the top: the labs, and the commands for the whole page.
 
 use super::commands::{UiCommand, command_button_ui, command_icon_ui, command_item_ui};
 use super::kit::{self, Button, Icon};
@@ -11,7 +11,7 @@ use eframe::egui::{Align, Layout as Flow, RectAlign, RichText, Sense, Ui, vec2};
 use segue_session::{Key, Kind, Session, Value};
 use segue_text::msg;
 
-/// The whole bar.
+/// Draws the bar.
 pub(crate) fn top_bar_ui(
     session: &Session,
     layout: Layout,
@@ -60,8 +60,8 @@ fn lab_tabs_ui(session: &Session, ui: &mut Ui) -> Option<&'static str> {
     )
 }
 
-/// From right to left: the link, the theme, and what the width leaves room for; the rest is in a
-/// menu.
+/// Draws the buttons, from right to left: the link, the theme, and others as the width allows. On a
+/// phone they are in a menu.
 fn actions_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let link = if layout == Layout::Phone { text::LINK } else { text::COPY_LINK };
     let button = Button::new(link).primary().icon(Icon::Link);
@@ -89,7 +89,7 @@ fn actions_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut 
     command_button_ui(UiCommand::ToggleLessons, lessons, session, state, out, ui);
 }
 
-/// The menu of a phone: what there is no room for in the bar.
+/// Draws the menu of a phone, with the commands that have no room in the bar.
 fn page_menu_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     for command in [
         UiCommand::OpenLibrary,

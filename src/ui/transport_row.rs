@@ -1,4 +1,4 @@
-//! Play, step, speed and time: the row that every bottom panel begins with.
+//! The row of playback at the top of every bottom panel.
 
 use super::kit::{self, Transport, TransportEvent};
 use super::language::Text;
@@ -8,16 +8,16 @@ use eframe::egui::{Response, Ui};
 use segue_session::{Command, Key, PlaybackCommand, Session, Value};
 use segue_text::Message;
 
-/// Where the playhead is.
+/// The position of the playhead.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Playhead {
     pub(super) secs: f64,
     pub(super) frame: usize,
-    /// Frames in all.
+    /// The number of frames.
     pub(super) frames: usize,
 }
 
-/// The row, with a caption at its end where there is room.
+/// Draws the row, with a caption at its end where there is room.
 pub(super) fn transport_row_ui(
     playhead: Playhead,
     caption: &Message,

@@ -1,4 +1,4 @@
-//! The classic mistakes of the Transition lab: one at a time, and what each of them looks like.
+//! The classic mistakes of the Transition lab, one at a time, with a description of each.
 
 use crate::ui::kit::{self, Button};
 use crate::ui::language::say;
@@ -10,7 +10,8 @@ use eframe::egui::{RichText, Ui};
 use segue_session::choices::{Mistake, TransitionMethod};
 use segue_session::{Compare, Key, Session, mistake_shows};
 
-/// The choice, a sentence for every mistake that is on the stage, and the right way beside it.
+/// Draws the choice, a sentence for every mistake on the stage, and the button that compares with
+/// the right way.
 pub(super) fn break_it_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     param_row_ui(Key::Mistake, &Detail::default(), session, out, ui);
     let params = session.params();
@@ -44,7 +45,7 @@ pub(super) fn break_it_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     }
 }
 
-/// Whether the method gives this mistake an opportunity.
+/// Returns whether the mistake can be made with the method.
 fn shows(mistake: Mistake, session: &Session) -> bool {
     let mut params = session.params().clone();
     params.set(Key::Mistake, mistake.into()).is_ok() && mistake_shows(&params)

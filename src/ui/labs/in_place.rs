@@ -1,4 +1,4 @@
-//! The In place lab: a clip, and what becomes of its way over the ground.
+//! The In place lab: a clip, and the treatment of its root motion.
 
 use crate::ui::kit;
 use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
@@ -26,7 +26,7 @@ fn title(shown: &Shown<'_>) -> Title {
     Title { strong: shown.name(Key::A), secondary: shown.spoken(Key::RootWay), ..Title::default() }
 }
 
-/// All rows of the lab.
+/// Draws the rows of the lab.
 fn in_place_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(lab_label(session), ui);
     kit::note_ui(text::IN_PLACE_ABOUT, palette_of(ui).muted, ui);
@@ -44,7 +44,7 @@ fn in_place_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut U
     save_result_ui(session, state, out, ui);
 }
 
-/// Both ways side by side, or back to one pane.
+/// Opens both ways side by side, or goes back to one pane.
 fn compare_ways(session: &Session, out: &mut Out) {
     let on = session.compare().is_some_and(|compare| compare.key == Key::RootWay);
     let query = if on { "" } else { "root_way:take_out,put_back" };

@@ -1,4 +1,5 @@
-//! What single labs have in time: strips in place of the timeline, and what its handles set.
+//! The parts of single labs in the bottom panel: strips in place of the timeline, and the
+//! parameters that its handles set.
 
 use super::lab_ui::Edge;
 use super::{blend, graph, make, match_, register, transition};
@@ -9,7 +10,7 @@ use segue_session::{Key, Kind, Outcome, Params, Session, Walk};
 use segue_text::Message;
 use std::sync::Arc;
 
-/// Steers what is driven by keys, stick and gamepad.
+/// Steers the driven character by keys, stick and gamepad.
 pub(crate) fn steer(session: &Session, state: &mut UiState, out: &mut Out, ctx: &Context) {
     match_::steer(session, state, out, ctx);
 }

@@ -12,11 +12,11 @@ use segue_text::Message;
 pub(crate) struct LabUi {
     /// The rows of its panel.
     pub(crate) panel_ui: fn(&Session, &mut UiState, &mut Out, &mut Ui),
-    /// What its comparison begins with.
+    /// The start of its comparison.
     pub(crate) compares: Compares,
     /// The title of a pane.
     pub(crate) title: fn(&Shown<'_>) -> Title,
-    /// What to look at on the stage, in one line.
+    /// The hint over the stage.
     pub(crate) hint: fn(&Session) -> Option<Word>,
     /// Takes a line that was drawn over the ground; `None` where none can be drawn.
     pub(crate) take_line: Option<TakeLine>,
@@ -25,7 +25,7 @@ pub(crate) struct LabUi {
 /// Takes a line over the ground, x and z in metres.
 pub(crate) type TakeLine = fn(&[DVec2], &Session, &mut UiState, &mut Out);
 
-/// What a comparison begins with.
+/// The start of a comparison.
 pub(crate) enum Compares {
     /// A parameter: the value that is set, and others.
     Key(Key),
@@ -33,7 +33,7 @@ pub(crate) enum Compares {
     Own(fn(&Session, &mut Out)),
 }
 
-/// What a pane shows.
+/// The content of a pane.
 pub(crate) struct Shown<'a> {
     pub(crate) pane: &'a Pane,
     /// The parameters of the result on the stage; without one, the present ones.
@@ -69,8 +69,8 @@ pub(crate) struct Title {
 /// An end of the transition on the timeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Edge {
-    /// Where it begins.
+    /// The start.
     Start,
-    /// Where it ends.
+    /// The end.
     End,
 }

@@ -1,4 +1,4 @@
-//! The Layers lab: which part of the body is B's, how much of it, and when.
+//! The Layers lab: the part of the body that is B's, its weight and its timing.
 
 use crate::ui::kit;
 use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
@@ -31,7 +31,7 @@ fn title(shown: &Shown<'_>) -> Title {
     }
 }
 
-/// All rows of the lab.
+/// Draws the rows of the lab.
 pub(super) fn layers_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(lab_label(session), ui);
     pair_ui(session, out, ui);

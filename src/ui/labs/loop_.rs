@@ -1,4 +1,4 @@
-//! The Loop lab: a cycle and how its ends are brought together.
+//! The Loop lab: a cycle, and the method that closes it.
 
 use crate::ui::kit::{self, Button};
 use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
@@ -31,11 +31,11 @@ fn title(shown: &Shown<'_>) -> Title {
     }
 }
 
-/// Ends that are farther apart than this hardly repeat each other, centimetres: as the default
-/// threshold of the motion graph.
+/// The distance above which the ends of a cycle hardly match, centimetres: the default threshold of
+/// the motion graph.
 const POOR_ENDS_CM: f64 = 8.0;
 
-/// A clip that becomes a cycle.
+/// Draws the rows of the lab.
 pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(lab_label(session), ui);
     kit::note_ui(text::LOOP_ABOUT, palette_of(ui).muted, ui);
@@ -54,7 +54,7 @@ pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         help: Some(match (automatic(key), said_below) {
             (false, _) => text::BY_HAND.into(),
             (true, true) => Message::default(),
-            // Said in a warning below.
+            // A warning below says it.
             (true, false) if poor && automatic(Key::LoopFrom) => Message::default(),
             (true, false) => found_sentence(cycle),
         }),
@@ -68,7 +68,7 @@ pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         kit::note_ui(&text::poor_ends(distance_cm), palette_of(ui).warning, ui);
     }
     param_row_ui(Key::LoopMethod, &Detail::default(), session, out, ui);
-    // With several methods side by side, what any of them has to set is there.
+    // With several methods side by side, the parameters of all of them are shown.
     let methods: Vec<LoopMethod> = session.choices();
     if let [method] = methods.as_slice() {
         kit::note_ui(text::loop_method(*method), palette_of(ui).muted, ui);
@@ -91,14 +91,14 @@ pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     save_result_ui(session, state, out, ui);
 }
 
-/// Several methods side by side, or back to one pane.
+/// Opens several methods side by side, or goes back to one pane.
 pub(super) fn compare_loops(session: &Session, out: &mut Out) {
     let on = session.compare().is_some_and(|compare| compare.key == Key::LoopMethod);
     let query = if on { "" } else { text::LOOP_SHOOT_OUT_QUERY };
     out.compare(Compare::parse(query).ok());
 }
 
-/// How the ends were found, and how well they fit.
+/// Returns how the ends were found, and their distance.
 fn found_sentence(cycle: Option<Cycle>) -> Message {
     match cycle.map(|cycle| cycle.made) {
         Some(CycleMade::Cut { distance_cm, .. }) => text::ends_found(distance_cm),

@@ -30,8 +30,8 @@ fn action(params: &Params) -> Message {
     params.choice::<MadeAction>().word().into()
 }
 
-/// Returns what a motion that was made from these parameters is called; `None` for a result of
-/// another lab.
+/// Returns the name of a motion that was made from these parameters; `None` for a result of another
+/// lab.
 pub(crate) fn made_name(params: &Params) -> Option<Message> {
     (params.lab() == LabId::Make).then(|| action(params))
 }
@@ -39,7 +39,7 @@ pub(crate) fn made_name(params: &Params) -> Option<Message> {
 pub(super) fn make_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(lab_label(session), ui);
     for param in PARAMS.iter().filter(|param| param.group == Group::Lab(LabId::Make)) {
-        // What the chosen motion does not have is not offered.
+        // Parameters that the chosen motion does not have are left out.
         if session.made_motion_has(param.key) {
             param_row_ui(param.key, &Detail::default(), session, out, ui);
         }
@@ -52,7 +52,8 @@ pub(super) fn make_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     save_result_ui(session, state, out, ui);
 }
 
-/// What of a made motion is compared: standing and turning on the spot have no speed.
+/// Returns the parameter of a made motion that is compared: standing and turning on the spot have
+/// no speed.
 pub(crate) fn made_number(session: &Session) -> Key {
     if session.made_motion_has(Key::GaitSpeed) { Key::GaitSpeed } else { Key::BodyHeight }
 }

@@ -1,5 +1,5 @@
-//! What single labs have on the stage: handles, lines that are drawn over the ground, controls,
-//! notes, and what they highlight.
+//! The parts of single labs on the stage: handles, lines that are drawn over the ground, controls,
+//! notes and highlights.
 
 use super::path::ground_line::{GroundLine, ground_line};
 use super::path::hand::path_of;
@@ -13,12 +13,12 @@ use segue_scene::{Highlights, PathMarks};
 use segue_session::{CycleMade, Pane, Session};
 use segue_text::Message;
 
-/// Returns what to look at, in one line.
+/// Returns the hint over the stage.
 pub(crate) fn hint(session: &Session) -> Option<Word> {
     (of(session.params().lab()).hint)(session)
 }
 
-/// Forgets what was pointed at in the last frame.
+/// Clears the items under the pointer of the last frame.
 pub(crate) fn begin_frame(session: &Session, state: &mut UiState) {
     state.labs.register.hovered_pair = None;
     state.labs.graph.last_jump = state.labs.graph.hovered_jump.take();
@@ -54,7 +54,7 @@ pub(crate) fn takes_drag(
     takes_drag
 }
 
-/// Shows what can be taken hold of in the panes.
+/// Shows the handles in the panes.
 pub(crate) fn handles_ui(
     session: &Session,
     shown: &[(usize, Rect)],
@@ -80,7 +80,7 @@ pub(crate) fn controls_ui(
     match_::stick_on_stage_ui(session, stage, layout, state, ui);
 }
 
-/// Returns what a lab says about the last thing that was done on the stage.
+/// Returns a lab's note on the last action on the stage.
 pub(crate) fn note(session: &Session, state: &UiState) -> Option<Message> {
     path::is_open(session).then(|| path::stage::note(state)).flatten()
 }
@@ -88,7 +88,7 @@ pub(crate) fn note(session: &Session, state: &UiState) -> Option<Message> {
 /// Returns a warning about the result of a pane, in a word.
 pub(crate) fn warning(session: &Session, pane: &Pane) -> Option<Word> {
     let cycle = pane.outcome.as_ref().and_then(|outcome| outcome.cycle);
-    // A gait was asked for a speed that neither clip nor anything between them has.
+    // The requested speed lies outside the speeds of both clips.
     let is_beyond = matches!(
         cycle.map(|cycle| cycle.made),
         Some(CycleMade::Gait { facts, .. }) if facts.extrapolated || facts.limited
@@ -103,7 +103,7 @@ pub(crate) fn warning(session: &Session, pane: &Pane) -> Option<Word> {
     }
 }
 
-/// Returns what the pointer highlights on the stage.
+/// Returns the highlights under the pointer on the stage.
 pub(crate) fn highlights(session: &Session, state: &UiState) -> Highlights {
     Highlights {
         joint: state.joints_open,
@@ -114,7 +114,7 @@ pub(crate) fn highlights(session: &Session, state: &UiState) -> Highlights {
     }
 }
 
-/// Returns what is pointed at, held and drawn of a path.
+/// Returns the parts of a path that are hovered, held and drawn.
 fn path_marks(session: &Session, state: &UiState) -> PathMarks {
     let is_open = path::is_open(session);
     let drawn = state.drawing.clone().unwrap_or_default();

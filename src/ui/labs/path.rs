@@ -1,4 +1,4 @@
-//! The panel of the Path lab: how the path is fitted, what stays, and what is done to the whole
+//! The panel of the Path lab: the fit of the path, the quantities that stay, and edits of the whole
 //! path.
 
 pub(crate) mod ground_line;
@@ -42,19 +42,19 @@ fn title(shown: &Shown<'_>) -> Title {
     }
 }
 
-/// Whether the lab is open.
+/// Returns whether the lab is open.
 pub(crate) fn is_open(session: &Session) -> bool {
     session.params().lab() == LabId::Path
 }
 
 /// A turn of the whole path, degrees.
 const TURN_DEG: f64 = 15.0;
-/// How much larger the whole path becomes.
+/// The factor by which the whole path becomes larger.
 const LARGER: f64 = 1.1;
 /// More warnings would be a list that nobody reads.
 const MOST_WARNINGS: usize = 3;
 
-/// All rows of the lab.
+/// Draws the rows of the lab.
 pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let palette = palette_of(ui);
     kit::section_header_ui(lab_label(session), ui);
@@ -116,7 +116,7 @@ pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     save_result_ui(session, state, out, ui);
 }
 
-/// What is done with single points.
+/// Draws the buttons for single points.
 fn points_ui(path: &PathFacts, session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(space::XS, space::XS);
@@ -156,7 +156,7 @@ fn points_ui(path: &PathFacts, session: &Session, state: &mut UiState, out: &mut
     kit::note_ui(&words, palette_of(ui).muted, ui);
 }
 
-/// What is done with the whole path.
+/// Draws the buttons for the whole path.
 fn whole_ui(path: &PathFacts, session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     ui.label(RichText::new(say(text::WHOLE_PATH, ui)).font(theme_of(ui).font(Type::Label)));
     let turn = |degrees: f64| PathEdit::Rotate { radians: degrees.to_radians() };
@@ -190,7 +190,7 @@ fn whole_ui(path: &PathFacts, session: &Session, state: &mut UiState, out: &mut 
     ui.add_space(space::XS);
 }
 
-/// Where the path asks for more than the motion can.
+/// Draws warnings where the path turns harder than the motion can.
 fn warnings_ui(path: &PathFacts, ui: &mut Ui) {
     let fps = path.fitted.motion().clip().fps();
     let warning = palette_of(ui).warning;
@@ -203,11 +203,11 @@ fn warnings_ui(path: &PathFacts, ui: &mut Ui) {
     }
 }
 
-/// How the path is fitted to the motion, and how well.
+/// Draws the rows of the fit and its error.
 fn fit_ui(path: Option<&PathFacts>, session: &Session, out: &mut Out, ui: &mut Ui) {
     ui.label(RichText::new(say(text::FIT, ui)).font(theme_of(ui).font(Type::Strong)));
     let on = session.compare().is_some_and(|compare| compare.key == Key::ControlPoints);
-    // The rows of what is compared have the way back.
+    // The rows of the compared values have the way back.
     if !on && kit::button_ui(Button::new(text::FOUR_EIGHT_SIXTEEN), ui).clicked() {
         compare_points(session, out);
     }
@@ -225,14 +225,14 @@ fn fit_ui(path: Option<&PathFacts>, session: &Session, out: &mut Out, ui: &mut U
     kit::note_ui(&words, palette_of(ui).muted, ui);
 }
 
-/// Few and many control points side by side, or back to one pane.
+/// Opens few and many control points side by side, or goes back to one pane.
 pub(super) fn compare_points(session: &Session, out: &mut Out) {
     let on = session.compare().is_some_and(|compare| compare.key == Key::ControlPoints);
     let query = if on { "" } else { text::FOUR_EIGHT_SIXTEEN_QUERY };
     out.compare(Compare::parse(query).ok());
 }
 
-/// Who else is on the stage.
+/// Draws the list of extra characters.
 fn company_ui(
     has_result: bool,
     session: &Session,

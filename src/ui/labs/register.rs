@@ -1,4 +1,4 @@
-//! The Register lab: the map of distances with the path on it, and what is made along it.
+//! The Register lab: the map of distances with the path on it, and the parameters of the result.
 
 use crate::ui::kit::{
     self, Button, Feet, HeatMap, HeatMapEvent, Icon, MapCurve, SliderRow, WeightCurveEvent,
@@ -45,7 +45,7 @@ pub(super) fn edge_value(
 ) -> Option<(Key, f64)> {
     match edge {
         Edge::Start => Some((Key::WarpFrom, secs.max(0.0))),
-        // The end is a time of A, whose clock is bent until then.
+        // The end is a time of A, which is warped until then.
         Edge::End => {
             let frame_pair = registered.frame_pair_at(secs)?;
             Some((Key::WarpTo, (frame_pair.frames[0] / fps).max(0.0)))
@@ -67,10 +67,10 @@ fn title(shown: &Shown<'_>) -> Title {
     Title { strong: shown.name(Key::A), text, secondary: shown.spoken(Key::WarpWith) }
 }
 
-/// How much of a clip there is that has just joined a blend.
+/// The weight of a clip that is added to a blend.
 const FIRST_SHARE: f64 = 0.25;
 
-/// All rows of the lab.
+/// Draws the rows of the lab.
 pub(super) fn register_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(lab_label(session), ui);
     kit::note_ui(text::REGISTER_ABOUT, palette_of(ui).muted, ui);
@@ -111,7 +111,7 @@ pub(super) fn register_ui(session: &Session, state: &mut UiState, out: &mut Out,
     save_result_ui(session, state, out, ui);
 }
 
-/// One weight, or a curve of weights.
+/// Draws one weight, or a curve of weights.
 fn weight_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let keys = session.params().weight_curve();
     if keys.is_empty() {
@@ -153,7 +153,7 @@ fn weight_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     }
 }
 
-/// The weight over time as it begins: that of B grows all the way.
+/// The initial curve of weights: that of B grows all the way.
 const FIRST_WEIGHTS: [(usize, usize); 2] = [(0, 0), (100, 100)];
 
 /// Returns pairs in the order of the first, each once.
@@ -163,7 +163,7 @@ fn in_order(mut pairs: Vec<(usize, usize)>) -> Vec<(usize, usize)> {
     pairs
 }
 
-/// The further clips of a blend, each with its weight.
+/// Draws the further clips of a blend, each with its weight.
 fn also_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let also = session.params().weighted_clips();
     let set = |also: Vec<(String, f64)>, out: &mut Out| {
@@ -215,7 +215,7 @@ fn also_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         )
         .clicked()
     {
-        // The first that is not in it yet, if there is one.
+        // The first clip that is not in the blend yet, if there is one.
         let params = session.params();
         let is_in = |id: &str| {
             [Key::A, Key::B].iter().any(|key| params.text(*key) == id)
@@ -229,15 +229,15 @@ fn also_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     }
 }
 
-/// The timewarp beside none, or back to one pane.
+/// Opens the result with and without the time warp side by side, or goes back to one pane.
 pub(super) fn compare_warps(session: &Session, out: &mut Out) {
     let on = session.compare().is_some_and(|compare| compare.key == Key::WarpWith);
     let query = if on { "" } else { "warp_with:registered,plain" };
     out.compare(Compare::parse(query).ok());
 }
 
-/// The map, its legend, and what is known of the pair under the pointer, else of the one that is
-/// shown.
+/// Draws the map, its legend, and the distance of the pair under the pointer, else of the one at
+/// the playhead.
 fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let palette = palette_of(ui);
     let job = session.jobs().into_iter().find(|job| job.kind == JobKind::Registering);
@@ -259,7 +259,7 @@ fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
         secs(map.pair_of((0, 0))),
         secs(map.pair_of((matrix.rows().saturating_sub(1), matrix.columns().saturating_sub(1)))),
     );
-    // A cell is as wide as the frames from one to the next.
+    // A cell is as wide as the stride of the matrix.
     let half = 0.5 * matrix.stride() as f64 / fps;
     let field = [0, 1].map(|clip| [first[clip] - half, last[clip] + half]);
     let feet = [0, 1].map(|clip: usize| feet_of(map, clip));
@@ -287,7 +287,7 @@ fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
         pins: &pin_secs,
         now: now.filter(inside).map(secs),
     };
-    // All of it should be in sight at once.
+    // The whole map should be in sight at once.
     let room = 0.85 * ui.clip_rect().height();
     for event in kit::heat_map_ui(&view, room, ui) {
         map_event(event, map, registered.first().copied(), pins, state, out);
@@ -383,10 +383,11 @@ impl Line {
     }
 }
 
-/// Points of a curve: as many as a map is wide.
+/// Points of a curve, about one for each point of the map's width.
 const CURVE_POINTS: usize = 300;
 
-/// The path of the first pane, and what every pane follows: its timewarp, or none.
+/// Returns the path of the first pane, and for each pane its time warp, or the plain line without
+/// one.
 fn lines(registered: &[&RegistrationFacts], palette: &Palette) -> Vec<Line> {
     let mut lines = Vec::new();
     let Some(first) = registered.first() else {
@@ -437,7 +438,7 @@ fn lines(registered: &[&RegistrationFacts], palette: &Palette) -> Vec<Line> {
     lines
 }
 
-/// The colours of the map, on the graphics card.
+/// The texture of the map.
 #[derive(Clone)]
 struct Picture {
     map: Arc<DistanceMap>,
@@ -450,11 +451,11 @@ struct Picture {
 /// More texels than a map has points only cost time.
 const MOST_TEXELS: usize = 512;
 
-/// Every so manieth cell is looked at to learn where the worst begin.
+/// One cell in so many is sampled for the upper end of the colours.
 const SAMPLED_CELLS: usize = 13;
 
-/// The picture of these distances, made when they or the theme have changed; none where there are
-/// none.
+/// Returns the picture of these distances, made anew when they or the theme have changed; `None`
+/// without distances.
 fn picture_of(map: &Arc<DistanceMap>, ui: &Ui) -> Option<Picture> {
     let heat = palette_of(ui).heat;
     let id = Id::unique("distances");
@@ -473,8 +474,8 @@ fn picture_of(map: &Arc<DistanceMap>, ui: &Ui) -> Option<Picture> {
         return None;
     }
     let low = pooled.rms_m().iter().copied().fold(f32::INFINITY, f32::min);
-    // The few worst pairs would take all contrast from the others. Where they begin a part of the
-    // cells tells well enough.
+    // The few worst pairs would leave no contrast for the others. A sample of the cells is enough
+    // to find where they begin.
     let mut some: Vec<f32> = pooled.rms_m().iter().copied().step_by(SAMPLED_CELLS).collect();
     let worst = (some.len() - 1) * 98 / 100;
     let (_, &mut high, _) = some.select_nth_unstable_by(worst, f32::total_cmp);

@@ -1,4 +1,4 @@
-//! The Speed lab: two cycles at a speed.
+//! The Speed lab: two cycles blended to a speed.
 
 use crate::ui::kit::{self, Button, Mark, Part};
 use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
@@ -25,8 +25,8 @@ pub(super) const LAB: LabUi = LabUi {
 };
 
 fn title(shown: &Shown<'_>) -> Title {
-    // The speed that was reached, as the numbers have it: a cycle of whole frames is not always as
-    // fast as was asked.
+    // The speed of the result, as in the metrics: a cycle of whole frames does not always have the
+    // requested speed.
     let outcome = shown.pane.outcome.as_ref();
     let reached = outcome.and_then(|outcome| outcome.metric(MetricId::Speed)?.value);
     Title {
@@ -38,10 +38,10 @@ fn title(shown: &Shown<'_>) -> Title {
 
 /// The upper end of the slider before the clips are known, metres per second.
 const SLIDER_MPS: f64 = 6.0;
-/// And how far it goes beyond the faster clip.
+/// The upper end of the slider as a multiple of the faster clip's speed.
 const SLIDER_BEYOND: f64 = 1.6;
 
-/// Two gaits at a speed.
+/// Draws the rows of the lab.
 pub(super) fn speed_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(lab_label(session), ui);
     kit::note_ui(text::SPEED_ABOUT, palette_of(ui).muted, ui);
@@ -64,7 +64,7 @@ pub(super) fn speed_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
         kit::note_ui(&warning, palette.warning, ui);
     }
     let on = session.compare().is_some_and(|compare| compare.key == Key::Speed);
-    // The rows of what is compared have the way back.
+    // The rows of the compared values have the way back.
     if !on && kit::button_ui(Button::new(text::THREE_SPEEDS), ui).clicked() {
         compare_speeds(session, out);
     }
@@ -76,7 +76,7 @@ pub(super) fn speed_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
     save_result_ui(session, state, out, ui);
 }
 
-/// The speed of A, that of B, and the one between them side by side, or back to one pane.
+/// Opens the speed of A, that of B and the one between them side by side, or goes back to one pane.
 pub(super) fn compare_speeds(session: &Session, out: &mut Out) {
     let on = session.compare().is_some_and(|compare| compare.key == Key::Speed);
     let made = session.main_outcome().and_then(|outcome| outcome.cycle).map(|cycle| cycle.made);

@@ -1,50 +1,50 @@
-//! What the labs remember between frames.
+//! The state of the labs between frames.
 
 use super::path::hand::PathHand;
 use crate::ui::kit::Chosen;
 use eframe::egui::Vec2;
 use segue_motion::graph::Place;
 
-/// What each lab remembers.
+/// The state of each lab.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LabStates {
-    /// Of the Graph lab.
+    /// The state of the Graph lab.
     pub(crate) graph: GraphState,
-    /// Of the Match lab.
+    /// The state of the Match lab.
     pub(crate) match_: MatchState,
-    /// Of the Path lab.
+    /// The state of the Path lab.
     pub(crate) path: PathHand,
-    /// Of the Register lab.
+    /// The state of the Register lab.
     pub(crate) register: RegisterState,
 }
 
-/// What the Graph lab remembers.
+/// The state of the Graph lab.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct GraphState {
     /// The transition that the pointer is at, on the map of distances or on an arc.
     pub(crate) hovered_jump: Option<[Place; 2]>,
     /// The transition that the pointer was at in the frame before.
     pub(crate) last_jump: Option<[Place; 2]>,
-    /// Where the walk was when a single transition was opened, seconds.
+    /// The playhead of the walk when a single transition was opened, seconds.
     pub(crate) walk_secs: f64,
-    /// The map has a panel of its own; elsewhere it stands among the parameters.
+    /// Whether the map has a panel of its own; otherwise it is among the parameters.
     pub(crate) has_map_panel: bool,
 }
 
-/// What the Match lab remembers: how the character is driven, and what is chosen.
+/// The state of the Match lab: the input of the stick, and the choices.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct MatchState {
-    /// What the stick on the screen asks for; `None` while it is let go.
+    /// The push of the stick on the screen; `None` while it is released.
     pub(crate) stick: Option<Vec2>,
-    /// The stick on the screen runs.
+    /// Whether the stick on the screen makes the character run.
     pub(crate) runs: bool,
-    /// Where keys, stick and gamepad push now, for the eye.
+    /// The present push of keys, stick and gamepad, for display.
     pub(crate) pushed: Vec2,
-    /// The candidate that is shown on the stage, by its place in the list.
+    /// The candidate on the stage, by its index.
     pub(crate) chosen: Option<usize>,
     /// The stretch of a clip that is to be tagged.
     pub(crate) stretch: Option<Chosen>,
-    /// The word of one's own that is being typed for it.
+    /// The custom tag that is being typed for it.
     pub(crate) word: String,
     /// The candidate under the pointer.
     pub(crate) hovered: Option<usize>,
@@ -57,7 +57,7 @@ impl MatchState {
     }
 }
 
-/// What the Register lab remembers.
+/// The state of the Register lab.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RegisterState {
     /// The pair of frames of A and B, at A's rate, that the pointer is at on the map of distances.

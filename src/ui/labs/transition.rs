@@ -1,4 +1,4 @@
-//! The Transition lab: the methods and what each of them has to set.
+//! The Transition lab: the methods and their parameters.
 
 use super::break_it::break_it_ui;
 use crate::ui::kit::{self, Button};
@@ -69,13 +69,13 @@ pub(super) fn edge_value(
     })
 }
 
-/// What the methods of the lab have to set, and what they share.
+/// Draws the parameters of the methods, and those that they share.
 pub(super) fn transition_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(lab_label(session), ui);
     let fps = pair_ui(session, out, ui);
     let params = session.params();
     param_row_ui(Key::Method, &Detail::default(), session, out, ui);
-    // With several methods side by side, what each of them has to set is there.
+    // With several methods side by side, the parameters of all of them are shown.
     let methods: Vec<TransitionMethod> = session.choices();
     let any = |of: &[TransitionMethod]| methods.iter().any(|method| of.contains(method));
     if any(&[TransitionMethod::Inertialize]) {
@@ -115,7 +115,7 @@ pub(super) fn transition_ui(session: &Session, state: &mut UiState, out: &mut Ou
     save_result_ui(session, state, out, ui);
 }
 
-/// How long a half-life really lasts, and the dissolve that feels alike.
+/// Draws the times after which shares of the offset remain, and the equivalent dissolve.
 fn half_life_ruler_ui(half_life_secs: f64, fps: f64, ui: &mut Ui) {
     for (label, share) in
         [(text::HALF_LEFT, 0.5), (text::TENTH_LEFT, 0.1), (text::HUNDREDTH_LEFT, 0.01)]

@@ -1,4 +1,4 @@
-//! The View lab: a clip, what is known of it, and where it stands.
+//! The View lab: a clip, its details, and its place.
 
 use crate::ui::clip_panel::clip_panel_ui;
 use crate::ui::kit::{self, Button};
@@ -29,7 +29,7 @@ fn title(shown: &Shown<'_>) -> Title {
     Title { strong: shown.name(Key::A), ..Title::default() }
 }
 
-/// Opens two clips as they are, side by side: a reference, and what somebody made after it.
+/// Opens two unchanged clips side by side: a reference, and the one to compare with it.
 pub(crate) fn compare_clips(reference: &str, other: &str, out: &mut Out) {
     let values = [reference, other].map(|id| Value::Text(id.to_owned())).to_vec();
     let compare = Compare { key: Key::A, values };
@@ -57,7 +57,7 @@ pub(super) fn view_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     }
 }
 
-/// The clip, or those that stand side by side.
+/// Draws the choice of the clip, or of the compared ones.
 fn compared_clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let compare = session.compare().filter(|compare| compare.key == Key::A);
     let label = if let Some(compare) = compare {

@@ -1,4 +1,4 @@
-//! The curves of a joint: kept while nothing changes, and the menu that chooses them.
+//! The curves of a joint, cached, and the menu that chooses them.
 
 use crate::ui::kit::{self, MenuItem, Part};
 use crate::ui::language::{Text, Word, say};
@@ -14,8 +14,7 @@ use segue_session::{
 use segue_text::Message;
 use std::sync::Arc;
 
-/// The curves of the chosen joint, of every pane over each other, kept until a result or the choice
-/// changes.
+/// The curves of the chosen joint for all panes, kept until a result or the choice changes.
 #[derive(Debug, Default)]
 pub(crate) struct CurveCache {
     panes: Vec<(Message, Arc<Outcome>)>,
@@ -30,7 +29,7 @@ pub(super) struct Curve {
     pub(super) points: Vec<[f64; 2]>,
 }
 
-/// Whose curve it is.
+/// The owner of a curve.
 #[derive(Debug)]
 pub(super) enum CurveOf {
     /// One of the clips that a result was made from.
@@ -39,7 +38,7 @@ pub(super) enum CurveOf {
     Pane(usize, Message),
 }
 
-/// Points of a curve, at most: no screen shows more.
+/// The greatest number of points of a curve: no screen shows more.
 const MAX_CURVE_POINTS: usize = 900;
 
 impl CurveOf {
@@ -53,7 +52,7 @@ impl CurveOf {
 }
 
 impl CurveCache {
-    /// Computes the curves anew where a result or the choice has changed.
+    /// Recomputes the curves if a result or the choice has changed.
     pub(super) fn update(
         &mut self,
         main: &Arc<Outcome>,
@@ -209,7 +208,7 @@ mod tests {
         let results = &cache.lines[2..];
         let length = |line: &Curve| line.points.len();
         assert!(results.iter().all(|line| length(line) > 100));
-        // They part in the transition, and nowhere before.
+        // They differ in the transition, and not before.
         assert_eq!(results[0].points[..20], results[1].points[..20]);
         assert!(
             results[0]

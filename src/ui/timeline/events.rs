@@ -1,11 +1,11 @@
-//! What the handles of the timeline do.
+//! The input to the handles of the timeline.
 
 use crate::ui::kit::TimelineEvent;
 use crate::ui::labs::in_time;
 use crate::ui::out::Out;
 use segue_session::{Command, Key, Outcome, PlaybackCommand, Session, Value};
 
-/// Carries out what was asked of the timeline.
+/// Turns the user's input to the timeline into commands.
 pub(super) fn timeline_event(
     event: TimelineEvent,
     session: &Session,
@@ -27,7 +27,7 @@ pub(super) fn timeline_event(
         event => event,
     };
     match event {
-        // At the ends the flags mark nothing.
+        // A flag at an end is no mark.
         TimelineEvent::SetIn(secs) if at_end(0.0, secs) => out.set(Key::In, Value::Auto),
         TimelineEvent::SetOut(secs) if at_end(session.duration_secs(), secs) => {
             out.set(Key::Out, Value::Auto);
@@ -49,7 +49,7 @@ pub(super) fn timeline_event(
     }
 }
 
-/// Sets a number, where there is one to set.
+/// Sets a number, if there is one to set.
 fn set_number(value: Option<(Key, f64)>, out: &mut Out) {
     if let Some((key, value)) = value {
         out.set(key, Value::Number(value));

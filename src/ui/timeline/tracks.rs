@@ -1,4 +1,4 @@
-//! What the timeline shows of the results: tracks, stripes, moments, and their names.
+//! The content of the timeline from the results: tracks, stripes, moments, and their names.
 
 use crate::ui::kit::{Moment, Part, Stripe, Track};
 use crate::ui::language::Text;
@@ -10,7 +10,7 @@ use segue_session::{CycleMade, Outcome, Pane, Session, Slot};
 use segue_text::{Message, msg};
 use std::sync::Arc;
 
-/// Returns the name of what goes round.
+/// Returns the name of the cycle that loops.
 pub(super) fn round_name(outcome: &Outcome, [a, b]: &[Message; 2]) -> Message {
     match outcome.cycle.map(|cycle| cycle.made) {
         Some(CycleMade::Gait { facts, .. }) => {
@@ -121,7 +121,7 @@ pub(super) fn tracks<'a>(outcome: &Outcome, names: &'a [Message; 2]) -> Vec<Trac
     ]
 }
 
-/// Returns the results of all panes, with what tells them apart.
+/// Returns the results of all panes, with the names that tell them apart.
 pub(super) fn named_outcomes(session: &Session) -> Vec<(Message, &Arc<Outcome>)> {
     let named = session.panes().iter().filter_map(|pane| {
         let name = session.variant_name(pane).unwrap_or_else(|| text::RESULT.into());

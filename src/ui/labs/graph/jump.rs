@@ -1,4 +1,4 @@
-//! A single transition of the graph: played, pointed at, described.
+//! A single transition of the graph: played, under the pointer, and in words.
 
 use crate::ui::out::Out;
 use crate::ui::state::UiState;
@@ -62,7 +62,7 @@ pub(super) fn jump_words(
     Some(text::jump_in_words(ends, jump.distance_cm, probability))
 }
 
-/// Shows both poses of a transition that is pointed at, unless it is the one that plays.
+/// Shows both poses of a transition under the pointer, unless it is the one that plays.
 pub(super) fn point_at(ends: [Place; 2], walk: Option<&Walk>, state: &mut UiState) {
     let jump = walk.filter(|walk| walk.is_jump);
     let seam = jump.and_then(|walk| walk.passed.get(1)?.seam);

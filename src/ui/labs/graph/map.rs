@@ -15,12 +15,12 @@ use segue_text::Message;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Of the room beside the parameters, how much is the map's.
+/// Returns the map's share of the room beside the parameters.
 pub(crate) fn map_share(session: &Session) -> f32 {
     if session.panes().len() > 1 { 0.38 } else { 0.52 }
 }
 
-/// The map beside the stage, and the numbers of several panes below it.
+/// Draws the map beside the stage, and the numbers of several panes below it.
 pub(crate) fn map_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let several = session.panes().len() > 1;
     let (room, below) = (ui.available_height(), 60.0 * theme_of(ui).scale());
@@ -33,7 +33,7 @@ pub(crate) fn map_panel_ui(session: &Session, state: &mut UiState, out: &mut Out
     });
 }
 
-/// What is drawn of a graph, by the indices of the whole graph's transitions.
+/// The drawn parts of a graph, by the indices of the whole graph's transitions.
 pub(crate) struct Drawn {
     built: Arc<BuiltGraph>,
     choices: Option<Arc<Choices>>,
@@ -44,7 +44,7 @@ pub(crate) struct Drawn {
 }
 
 impl Drawn {
-    /// Made anew when the graph or its probabilities have changed.
+    /// Returns the parts, made anew when the graph or its probabilities have changed.
     pub(super) fn of(built: &Arc<BuiltGraph>, walk: Option<&Walk>, ui: &Ui) -> Arc<Self> {
         let id = Id::unique("graph drawn");
         let choices = walk.filter(|walk| Arc::ptr_eq(&walk.built, built)).map(|walk| &walk.choices);
@@ -112,7 +112,7 @@ impl Drawn {
         }
     }
 
-    /// The transition that is pointed at, else the one that plays.
+    /// Returns the transition under the pointer, else the one that plays.
     pub(super) fn pointed_or_lit(
         &self,
         pointed: Option<[Place; 2]>,
@@ -123,7 +123,7 @@ impl Drawn {
         pointed.or_else(|| self.lit(walk, secs))
     }
 
-    /// The transition that plays now, or the one that is shown alone.
+    /// Returns the transition that plays now, or the one that is shown alone.
     fn lit(&self, walk: Option<&Walk>, secs: f64) -> Option<usize> {
         let walk = walk.filter(|walk| Arc::ptr_eq(&walk.built, &self.built))?;
         let at = walk.at(secs)?;
@@ -136,7 +136,7 @@ impl Drawn {
     }
 }
 
-/// The map, what is under the pointer in words, and what the colours mean.
+/// Draws the map, the legend, and the transition or the windows under the pointer in words.
 pub(crate) fn map_ui(
     session: &Session,
     most_height: f32,
@@ -214,19 +214,19 @@ struct Tiles {
     field: Arc<DistanceField>,
     heat: [Color32; 5],
     made: Vec<(Tile, TextureHandle)>,
-    /// A tile that is computed over several frames, and whether it is still seen.
+    /// A tile that is computed over several frames, and whether it is still in sight.
     begun: Option<(Tile, Arc<DistanceDetail>, bool)>,
-    /// The distance at the far end of the colours, centimetres.
+    /// The distance at the upper end of the colours, centimetres.
     high_cm: f64,
-    /// Cells that may still be looked at in this frame.
+    /// Cells that may still be read in this frame.
     budget: usize,
 }
 
 /// Tiles on the graphics card at once, 256 KB each.
 const MOST_TILES: usize = 128;
-/// Cells that may be looked at in a frame.
+/// Cells that may be read in a frame.
 const PER_FRAME: usize = 500_000;
-/// Cells that could be looked at while 256 × 256 of them are computed.
+/// The cost of computing 256 × 256 cells, in cells that are read.
 const COMPUTED: usize = 250_000;
 
 impl Tiles {
@@ -243,7 +243,7 @@ impl Tiles {
         let counts = field.histogram();
         let all: u64 = counts.iter().map(|&count| u64::from(count)).sum();
         let mut before = 0;
-        // The few worst pairs would take all contrast from the others.
+        // The few worst pairs would leave no contrast for the others.
         let bin = counts.iter().position(|&count| {
             before += u64::from(count);
             before * 100 >= all * 95
@@ -264,7 +264,7 @@ impl Tiles {
         ctx: &eframe::egui::Context,
     ) -> Option<eframe::egui::TextureId> {
         if let Some(at) = self.made.iter().position(|(known, _)| *known == tile) {
-            // What is used last goes last.
+            // The tile that was used last is removed last.
             let used = self.made.remove(at);
             let id = used.1.id();
             self.made.push(used);
@@ -317,8 +317,8 @@ impl Tiles {
         Some(id)
     }
 
-    /// A tile that nobody knows yet: a piece of it in this frame. One tile after the other, so that
-    /// there is soon something to see.
+    /// Computes a part of a new tile in this frame; returns its distances when it is complete. One
+    /// tile follows the other, so that the first is soon in sight.
     fn computed(
         &mut self,
         tile: Tile,
@@ -340,19 +340,19 @@ impl Tiles {
             self.begun = Some((tile, detail, true));
             return None;
         }
-        // What cannot be computed stays empty.
+        // A tile that cannot be computed stays empty.
         Some(detail.picture().to_vec())
     }
 
     fn keep(mut self, ui: &Ui) {
-        // One that is not seen any more makes room for another.
+        // A tile out of sight makes room for another.
         self.begun =
             self.begun.filter(|(.., seen)| *seen).map(|(tile, detail, _)| (tile, detail, false));
         ui.data_mut(|data| data.insert_temp(kit::tiles_id(), self));
     }
 }
 
-/// Whether the lab is the Graph lab.
+/// Returns whether the lab is open.
 pub(crate) fn is_open(session: &Session) -> bool {
     session.params().lab() == LabId::Graph
 }

@@ -1,4 +1,4 @@
-//! The Graph lab: the clips and what is set of graph and walk, the picture of all distances, the
+//! The Graph lab: the clips and the parameters of graph and walk, the picture of all distances, the
 //! graph as bars and arcs, and the table of numbers.
 
 mod jump;
@@ -44,7 +44,7 @@ fn title(shown: &Shown<'_>) -> Title {
 /// Lets the walk follow the line that was drawn, from its beginning.
 fn take_line(points: &[DVec2], _: &Session, _: &mut UiState, out: &mut Out) {
     if points.len() > 1 {
-        // To the centimetre: what the link says is what is followed.
+        // Rounded to the centimetre, as in the link.
         let points = points.iter().map(|point| (point * 100.0).round() / 100.0).collect();
         out.set_once(Key::WalkPath, List::GroundPath(points).into());
         out.commands.push(Command::Playback(PlaybackCommand::Seek(0.0)));

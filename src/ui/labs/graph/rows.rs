@@ -1,4 +1,4 @@
-//! What is set of graph and walk.
+//! The parameters of graph and walk.
 
 use super::jump::{close_jump, no_way, shows_jump};
 use super::{map, table};
@@ -21,7 +21,7 @@ use segue_session::{BuiltGraph, Command, Key, List, Session, Value, graph_of, li
 use segue_text::{Message, ToMessage, msg};
 use std::sync::Arc;
 
-/// All rows of the lab.
+/// Draws the rows of the lab.
 pub(crate) fn graph_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let palette = palette_of(ui);
     kit::section_header_ui(lab_label(session), ui);
@@ -74,7 +74,7 @@ fn progress_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     }
 }
 
-/// The clips, one to add, one to take out.
+/// Draws the clips, with buttons to remove one and a menu to add one.
 fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let ids = session.graph_clip_ids();
@@ -126,7 +126,7 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     }
 }
 
-/// Another set of clips.
+/// Sets the clips of the graph.
 fn set_clips(ids: &[String], out: &mut Out) {
     out.commands.push(Command::Set(graph_of(ids)));
     out.commands.push(Command::Settle);
@@ -195,7 +195,7 @@ fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     param_row_ui(Key::MostWaysOut, &Detail::default(), session, out, ui);
 }
 
-/// What the seed does here.
+/// Returns the help of the seed in this lab.
 pub(crate) fn seed_detail(session: &Session) -> Detail {
     let is_graph = session.params().lab() == LabId::Graph;
     Detail { help: is_graph.then(|| text::GRAPH_SEED_HELP.into()), ..Detail::default() }
@@ -235,7 +235,7 @@ fn walk_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     param_row_ui(Key::WalkSeconds, &plain, session, out, ui);
 }
 
-/// Where the walk is sent: to a clip, or along a line.
+/// Draws the rows that send the walk to a clip, or along a path.
 fn ways_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let palette = palette_of(ui);
     let visits = session.graph_visits();
@@ -262,7 +262,7 @@ fn ways_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let draw = Button::new(text::DRAW_PATH).selected(state.drawing.is_some());
     if kit::button_ui(draw, ui).clicked() && state.drawing.take().is_none() {
         state.drawing = Some(Vec::new());
-        // From above, and far enough away for a path.
+        // The camera looks from above, far enough away for a path.
         out.commands.push(Command::Set(vec![
             (Key::Camera, choices::Camera::Top.into()),
             (Key::Follow, choices::Follow::Off.into()),
@@ -287,14 +287,13 @@ fn ways_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     }
 }
 
-/// The clips that the walk can go to from where it is; none before there is a walk.
+/// Returns which clips the walk can reach from its present place; empty without a walk.
 fn reached(session: &Session, ui: &Ui) -> Arc<Vec<bool>> {
     let at = session.graph_walk().and_then(|walk| Some((walk, walk.at(session.now_secs())?.place)));
     let Some((walk, place)) = at.filter(|(walk, _)| !walk.is_jump) else {
         return Arc::default();
     };
-    // All that can be reached from a stretch can be reached from all of it, and to find it takes a
-    // while in a large graph.
+    // All frames of a stretch reach the same clips, and the search takes long in a large graph.
     let node = walk.built.graph().node_at(place);
     let id = Id::unique("graph reached");
     let known: Option<Reached> = ui.data(|data| data.get_temp(id));
@@ -317,7 +316,7 @@ struct Reached {
     clips: Arc<Vec<bool>>,
 }
 
-/// The walk sets off for a clip where it is now; what was to come later is given up.
+/// Sends the walk to a clip from its present place. Later visits are dropped.
 pub(crate) fn go_to(clip: usize, session: &Session, out: &mut Out) {
     let now = session.now_secs();
     let mut visits = session.graph_visits();
@@ -347,7 +346,7 @@ fn experiments_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     }
 }
 
-/// "Full, half, third" of the blend window, or back to one pane.
+/// Compares the blend window with a half and a third of it.
 pub(crate) fn compare_windows(out: &mut Out) {
     if let Some(experiment) = text::GRAPH_EXPERIMENTS.first() {
         out.commands.push(Command::Set(link::read(experiment.query).values));

@@ -1,4 +1,4 @@
-//! Below the stage: the walk in time, and the graph as bars and arcs.
+//! The bottom panel: the walk in time, and the graph as bars and arcs.
 
 use super::jump::{jump_words, named, no_way, open_jump, point_at};
 use super::map::Drawn;
@@ -18,10 +18,10 @@ use std::sync::Arc;
 /// More seams than these are no marks any more.
 const MOST_SEAMS: usize = 160;
 
-/// How long one is told that there is no way, seconds of the walk.
+/// The time for which a visit that failed is explained, seconds of the walk.
 const TOLD_SECS: f64 = 5.0;
 
-/// The whole panel of a walk.
+/// Draws the panel of a walk.
 pub(crate) fn walk_panel_ui(
     session: &Session,
     walk: &Arc<Walk>,
@@ -43,7 +43,7 @@ pub(crate) fn walk_panel_ui(
     strip_ui(session, walk, state, out, ui);
 }
 
-/// Scrubbing, and where the walk goes from clip to clip.
+/// Draws the timeline, with a mark where the walk changes clips.
 fn time_ui(session: &Session, walk: &Walk, out: &mut Out, ui: &mut Ui) {
     let palette = palette_of(ui);
     let fps = walk.motion.clip().fps();
@@ -123,8 +123,8 @@ fn strip_ui(session: &Session, walk: &Arc<Walk>, state: &mut UiState, out: &mut 
     }
 }
 
-/// The transition under the pointer, else why it does not go to the clip that was pressed, else the
-/// transition that plays, else where the walk is.
+/// Returns the transition under the pointer, else why a visit failed, else the transition that
+/// plays, else the present frame.
 fn caption(session: &Session, walk: &Walk, state: &UiState) -> Message {
     let built = session.graph_built();
     let pointed =

@@ -1,4 +1,4 @@
-//! The numbers of all panes side by side, to be read and to be copied.
+//! The metrics of all panes side by side, and buttons that copy them.
 
 use crate::ui::kit::{self, Button};
 use crate::ui::language::{Word, say};
@@ -9,7 +9,7 @@ use eframe::egui::{Grid, RichText, Ui};
 use segue_session::{NumberTable, Session, digits};
 use segue_text::Message;
 
-/// The table, and two buttons that copy it.
+/// Draws the table, and two buttons that copy it.
 pub(crate) fn table_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let table = NumberTable::of(session);

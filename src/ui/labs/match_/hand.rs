@@ -1,4 +1,4 @@
-//! Keys, the stick on the screen and a gamepad become what the character is asked for.
+//! The input of keys, the stick on the screen and a gamepad to the character.
 
 use super::present::{is_open, shown};
 use crate::ui::kit::{self, Button};
@@ -11,11 +11,11 @@ use glam::DVec2;
 use segue_motion::matching::{Control, Place};
 use segue_session::{Command, DriveCommand, Key, Session, Value};
 
-/// A stick that is pushed by less rests.
+/// The push below which a stick is at rest.
 const DEAD: f32 = 0.18;
-/// Height of a row of numbers below the stick, points at a desk.
+/// Height of a row of metrics below the stick at scale 1, points.
 const NUMBERS: f32 = 36.0;
-/// How fast a gamepad turns the camera, degrees per second.
+/// The speed at which a gamepad turns the camera, degrees per second.
 const TURN_DPS: f64 = 130.0;
 
 /// Returns the frame that is shown as a ghost.
@@ -28,7 +28,7 @@ pub(crate) fn candidate(session: &Session, state: &UiState) -> Option<Place> {
     Some(search.candidates.get(state.hovered.or(state.chosen)?)?.place)
 }
 
-/// Asks the character for what the hands do, where that is something else than before.
+/// Steers the character when the input has changed.
 pub(crate) fn steer(session: &Session, state: &mut UiState, out: &mut Out, ctx: &Context) {
     if !session.is_driven() {
         state.labs.match_.stick = None;
@@ -63,14 +63,14 @@ pub(crate) fn steer(session: &Session, state: &mut UiState, out: &mut Out, ctx: 
         live(state.labs.match_.stick.unwrap_or_default()),
         live(Vec2::from(pad.walk)),
     ];
-    // The hand that pushes hardest.
+    // The strongest push counts.
     let push = pushes.into_iter().fold(Vec2::ZERO, |most, push| {
         if push.length_sq() > most.length_sq() { push } else { most }
     });
     let runs = shift || pad.run || (state.labs.match_.runs && state.labs.match_.stick.is_some());
     let speed = params.number(if runs { Key::RunSpeed } else { Key::WalkSpeed });
     let yaw = params.number(Key::CameraYaw).to_radians();
-    // Over the ground: away from the camera, and to its right.
+    // Directions over the ground: away from the camera, and to its right.
     let ahead = DVec2::new(-yaw.sin(), -yaw.cos());
     let right = DVec2::new(-ahead.y, ahead.x);
     let velocity = (right * f64::from(push.x) + ahead * f64::from(push.y)) * speed;
@@ -92,7 +92,7 @@ pub(crate) fn steer(session: &Session, state: &mut UiState, out: &mut Out, ctx: 
     }
 }
 
-/// The stick over the lower left of the stage, above its numbers.
+/// Draws the stick over the lower left of the stage, above its metrics.
 pub(crate) fn stick_on_stage_ui(
     session: &Session,
     stage: Rect,
@@ -105,11 +105,11 @@ pub(crate) fn stick_on_stage_ui(
         return;
     }
     let size = kit::stick_size(ui);
-    // It must not move under the thumb when a number comes or goes.
+    // The stick must not move under the thumb when a metric appears or disappears.
     let numbers = if layout == Layout::Phone { 2.0 } else { 1.0 } * NUMBERS + 2.0 * space::M;
     let bottom = stage.bottom() - numbers * theme_of(ui).scale() - space::S;
     let center = pos2(stage.left() + space::L + 0.5 * size, bottom - 0.5 * size);
-    // Where there is no room for it, keys and gamepad are left.
+    // Without room for the stick, keys and gamepad remain.
     if center.y - 0.5 * size < stage.top() + 40.0 {
         return;
     }

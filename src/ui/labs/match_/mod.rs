@@ -1,5 +1,5 @@
-//! The Match lab: the hand that drives, what is set, why a frame was chosen, and all clips in a
-//! strip.
+//! The Match lab: the input that drives the character, the parameters, why a frame was chosen, and
+//! all clips in a strip.
 
 mod hand;
 mod present;

@@ -1,4 +1,4 @@
-//! What the Match lab shows now.
+//! The present state of the Match lab.
 
 use segue_session::{DriveHistory, DriveMoment, LabId, Session};
 use std::sync::Arc;

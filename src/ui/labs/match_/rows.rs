@@ -1,4 +1,4 @@
-//! What is set in the Match lab.
+//! The parameters of the Match lab.
 
 use super::present::shown;
 use super::tags::tags_ui;
@@ -18,7 +18,7 @@ use segue_session::choices;
 use segue_session::{Command, Compare, DriveCommand, Key, List, Selected, Session, Value};
 use segue_text::{Message, ToMessage};
 
-/// All rows of the lab.
+/// Draws the rows of the lab.
 pub(crate) fn drive_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let palette = palette_of(ui);
     kit::section_header_ui(lab_label(session), ui);
@@ -83,7 +83,7 @@ fn heading_ui(words: Word, ui: &mut Ui) {
     ui.label(RichText::new(say(words, ui)).font(theme_of(ui).font(Type::Strong)));
 }
 
-/// What is done with the input: from the start, again, or by hand.
+/// Draws the buttons that start over, replay, and take control.
 fn input_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let muted = palette_of(ui).muted;
     if session.is_driven() {
@@ -145,7 +145,7 @@ fn hysteresis_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     }
 }
 
-/// Which clip is preferred while the input is still.
+/// Draws the choice of the clip that is preferred while the input is constant.
 fn preferred_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let Some((driven, _)) = shown(session) else {
         return;
@@ -176,7 +176,7 @@ fn preferred_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     }
 }
 
-/// Ways to hold on side by side, or back to one pane.
+/// Opens kinds of hysteresis side by side, or goes back to one pane.
 pub(crate) fn compare_hysteresis(session: &Session, out: &mut Out) {
     let on = session.compare().is_some_and(|compare| compare.key == Key::Hysteresis);
     let query = if on { "" } else { text::HYSTERESES_QUERY };
@@ -203,7 +203,7 @@ fn going_over_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     row(Key::PlantFeet, session, out, ui);
 }
 
-/// The clips that frames are chosen from, and how many characters choose.
+/// Draws the clips of the database, and the number of characters.
 fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let ids = session.params().clip_ids(Key::MatchClips);

@@ -1,4 +1,4 @@
-//! Below the stage: the clips with the place that plays jumping on them, and the costs over time.
+//! The bottom panel: the clips with the current frame jumping on them, and the costs over time.
 
 use super::present::shown;
 use crate::ui::kit::{
@@ -15,14 +15,14 @@ use segue_motion::matching::{Database, Place, RATE, Tag};
 use segue_session::{Command, DriveHistory, Key, Outcome, PlaybackCommand, Session, Value};
 use segue_text::Message;
 
-/// A jump is seen for so long, seconds.
+/// The time for which a jump is shown, seconds.
 const JUMP_SECS: f64 = 0.8;
 /// More jumps than these are no marks any more.
 const MOST_MARKS: usize = 160;
-/// Clips in the strip, at most: more would have no width.
+/// The greatest number of clips in the strip: more would have no width.
 const MOST_BARS: usize = 300;
 
-/// The whole panel.
+/// Draws the panel.
 pub(crate) fn drive_panel_ui(
     session: &Session,
     outcome: &Outcome,
@@ -43,7 +43,7 @@ pub(crate) fn drive_panel_ui(
     transport_row_ui(playhead, &caption, layout, session, out, ui);
     let scale = theme_of(ui).scale();
     let rows = if driven.database.options().mirrored { 2.0 } else { 1.0 };
-    // The curves below it need room, too.
+    // The curves below the strip need room as well.
     let most = if layout == Layout::Phone { 1.0 } else { 0.4 } * ui.available_height();
     let height = ((rows * 20.0 + 16.0) * scale).min(most);
     strip_ui(session, driven, now, height, state, ui);
@@ -53,13 +53,13 @@ pub(crate) fn drive_panel_ui(
     }
 }
 
-/// What the last search came to, in a few words.
+/// Returns the outcome of the last search, in a few words.
 fn caption(session: &Session, driven: &DriveHistory) -> Message {
     let search = shown(session).and_then(|(_, moment)| moment.search.as_ref());
     search.map_or_else(Message::default, |search| text::outcome_of_search(search, driven.is_live))
 }
 
-/// The costs of going on and of the best frame; a mark where it jumped.
+/// Draws the costs of continuing and of the best frame, with a mark at each jump.
 fn time_ui(
     session: &Session,
     outcome: &Outcome,
@@ -134,7 +134,7 @@ fn time_ui(
     }
 }
 
-/// The colour of a tag.
+/// Returns the colour of a tag.
 fn tag_color(tag: Tag, palette: &Palette) -> Color32 {
     match tag {
         Tag::Walk => palette.b,
@@ -208,8 +208,8 @@ fn strip_ui(
     }
 }
 
-/// Where a frame lies in the strip. A clip's mirror image follows it, so that half of the number of
-/// a motion is the number of its clip.
+/// Returns the place of a frame in the strip. A clip's mirror image follows it, so that half the
+/// index of a motion is the index of its clip.
 pub(crate) fn strip_place(database: &Database, place: Place) -> Option<StripPlace> {
     let motion = database.motion(place.motion)?;
     let bar = if database.options().mirrored { place.motion / 2 } else { place.motion };

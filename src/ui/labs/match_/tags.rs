@@ -1,4 +1,4 @@
-//! Stretches of clips that are tagged by hand, and which tags are asked for.
+//! Tags that are set by hand on stretches of clips, and the tags of the search.
 
 use super::present::shown;
 use super::strip::strip_place;
@@ -13,10 +13,10 @@ use segue_motion::matching::{Database, DatabaseClip, RATE, Tag};
 use segue_session::{HandTag, Key, List, Session, Value, own_words};
 use segue_text::Message;
 
-/// What "what plays now" reaches to either side, frames.
+/// The reach of "Select what is playing" to either side, frames.
 const AROUND: usize = 15;
 
-/// All rows of the section.
+/// Draws the rows of the section.
 pub(crate) fn tags_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let muted = palette_of(ui).muted;
     let tags = session.params().tags();
@@ -83,7 +83,7 @@ pub(crate) fn tags_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     let add = |word: &str, takes_away: bool, out: &mut Out| {
         let tag = HandTag {
             clip: clip.to_owned(),
-            // To hundredths, as the rows say it.
+            // Rounded to hundredths, as in the rows.
             secs: [from, to].map(|frame| (secs(frame) * 100.0).round() / 100.0),
             word: word.to_owned(),
             takes_away,
@@ -98,7 +98,7 @@ pub(crate) fn tags_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
                 .any(|range| range.tag == tag && range.frames.start < to && from < range.frames.end)
         };
         for tag in Tag::FIXED {
-            // What is there is taken away, what is not is put.
+            // A tag that is there is removed, one that is not is set.
             let takes_away = has(tag);
             if kit::button_ui(Button::new(&text::tag_as(tag.name(), takes_away)), ui).clicked() {
                 add(tag.name(), takes_away, out);
@@ -121,13 +121,13 @@ fn set(tags: Vec<HandTag>, out: &mut Out) {
     out.set_once(Key::Tags, List::Tags(tags).into());
 }
 
-/// The clip of a bar in the strip.
+/// Returns the clip of a bar in the strip.
 fn motion_of(database: &Database, bar: usize) -> Option<&DatabaseClip> {
     let originals = database.motions().iter().filter(|motion| !motion.is_mirrored());
     originals.map(|motion| &**motion).nth(bar)
 }
 
-/// Which tag is asked for, or forbidden.
+/// Draws the choice of a tag that is required, or forbidden.
 fn wanted_ui(
     key: Key,
     none: &'static str,

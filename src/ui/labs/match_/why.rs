@@ -1,4 +1,4 @@
-//! Why this frame: what the last search found, with its cost by feature block.
+//! Why this frame: the candidates of the last search, with their costs by feature block.
 
 use super::present::shown;
 use crate::ui::kit::{self, CostBars, CostRow};
@@ -13,12 +13,12 @@ use segue_motion::matching::{Block, Candidate, Database};
 use segue_session::{Key, Session};
 use segue_text::Message;
 
-/// The colours of the blocks, in their order.
+/// Returns the colours of the feature blocks, in their order.
 pub(crate) fn block_colors(palette: &Palette) -> [Color32; Block::COUNT] {
     [palette.a, palette.warning, palette.others[0], palette.others[1], palette.others[2]]
 }
 
-/// A frame in words: its clip and its time.
+/// Returns a frame in words: its clip and its time.
 pub(crate) fn place_name(database: &Database, candidate: &Candidate, session: &Session) -> Message {
     let place = candidate.place;
     let Some(motion) = database.motion(place.motion) else {
@@ -31,7 +31,7 @@ pub(crate) fn place_name(database: &Database, candidate: &Candidate, session: &S
     )
 }
 
-/// The rows.
+/// Draws the rows of the section.
 pub(crate) fn why_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     state.labs.match_.hovered = None;
     let palette = palette_of(ui);
@@ -64,7 +64,7 @@ pub(crate) fn why_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: 
     let parts: Vec<(Word, Color32)> =
         Block::ALL.iter().map(|block| text::block(*block)).zip(colors).collect();
     let response = kit::cost_bars_ui(&CostBars { rows: &rows, parts: &parts }, ui);
-    // The first row is what was left: it has no ghost.
+    // The first row is the frame that was left: it has no ghost.
     state.labs.match_.hovered = response.hovered.and_then(|row| row.checked_sub(1));
     if let Some(clicked) = response.clicked {
         let clicked = clicked.checked_sub(1);

@@ -1,17 +1,17 @@
-//! A line drawn by hand on the ground: a path for the Path lab, a way for a walk of the Graph lab.
+//! A line drawn by hand on the ground: a path for the Path lab, or for a walk of the Graph lab.
 
 use crate::ui::state::UiState;
 use eframe::egui::{CursorIcon, InputState, PointerButton, Pos2, Rect, Response, Ui, vec2};
 use glam::DVec2;
 use segue_scene::Camera;
 
-/// Drawn points are at least this far apart, metres.
+/// The least distance between drawn points, metres.
 const STEP_M: f64 = 0.02;
-/// The ground is drawn on up to here, in distances of the camera from what it looks at: near the
-/// horizon a hair's breadth is a mile.
+/// The greatest distance of drawn points from the target, in distances of the camera from it: near
+/// the horizon, a pixel is very long.
 const FARTHEST: f32 = 6.0;
 
-/// A pane as its camera sees it.
+/// A pane with its camera.
 pub(crate) struct View<'a> {
     pub(crate) camera: &'a Camera,
     pub(crate) rect: Rect,
@@ -22,14 +22,14 @@ impl View<'_> {
         glam::Vec2::new(self.rect.width(), self.rect.height())
     }
 
-    /// Where a point of the ground is on the page.
+    /// Returns the place of a point of the ground on the page.
     pub(crate) fn on_page(&self, point: DVec2) -> Option<Pos2> {
         let world = glam::Vec3::new(point.x as f32, 0.0, point.y as f32);
         let at = self.camera.project(world, self.size())?;
         Some(self.rect.min + vec2(at.x, at.y))
     }
 
-    /// The place on the ground under a point of the page.
+    /// Returns the place on the ground under a point of the page.
     pub(crate) fn on_ground(&self, pos: Pos2) -> Option<DVec2> {
         let pixel = pos - self.rect.min;
         let hit = self.camera.ray(glam::Vec2::new(pixel.x, pixel.y), self.size()).ground_hit()?;
@@ -38,17 +38,17 @@ impl View<'_> {
     }
 }
 
-/// What the stage's drag is.
+/// The meaning of a drag over the stage.
 pub(crate) enum GroundLine {
-    /// It is the camera's.
+    /// It moves the camera.
     None,
-    /// It belongs to a line that goes on, or waits to be begun.
+    /// It draws a line, which may not have begun.
     Drawing,
-    /// The line is done: (x, z) in metres.
+    /// It has finished a line: (x, z) in metres.
     Done(Vec<DVec2>),
 }
 
-/// Draws the line that is wanted now, if one is.
+/// Continues the line that is being drawn, if there is one.
 pub(crate) fn ground_line(
     shown: &[(usize, Rect)],
     response: &Response,
@@ -75,7 +75,7 @@ pub(crate) fn ground_line(
             let camera = state.cameras.get(index)?.as_ref()?;
             Some(View { camera, rect })
         });
-        // A drag is one only after some points of way: its beginning counts.
+        // A drag is recognised only after some points: its origin is part of the line.
         let from = Some(origin).filter(|_| drawn.is_empty());
         let places = from.into_iter().chain([pos]).filter_map(|pos| view.as_ref()?.on_ground(pos));
         for place in places {

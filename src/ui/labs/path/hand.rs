@@ -1,4 +1,4 @@
-//! What a hand does with a path: which control point it holds, and what comes of it.
+//! The editing of a path by hand: its control points and edits.
 
 use crate::ui::out::Out;
 use crate::ui::text;
@@ -10,29 +10,29 @@ use segue_session::LabId;
 use segue_session::{Command, Key, List, Pane, PathFacts, Session, Value, spline_ends};
 use segue_text::{Message, ToMessage};
 
-/// The hand on the path, remembered between frames.
+/// The state of the editing between frames.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PathHand {
-    /// The chosen control point: what keys and buttons work on.
+    /// The chosen control point, for keys and buttons.
     pub(crate) chosen: Option<usize>,
     /// The control point under the pointer.
     pub(crate) hovered: Option<usize>,
     /// The place on the path under the pointer, and its parameter.
     pub(crate) place: Option<(DVec2, f64)>,
-    /// The point that is dragged.
+    /// The control point that is dragged.
     pub(crate) held: Option<Held>,
     /// Why the last edit was not made.
     pub(crate) said: Option<Message>,
-    /// The camera was put where the whole path is in sight; with these values.
+    /// The values that the camera got when the whole path was brought into sight; `None` before.
     pub(crate) framed: Option<Vec<(Key, Value)>>,
 }
 
-/// A control point in the hand.
+/// A control point that is dragged.
 #[derive(Clone, Debug)]
 pub(crate) struct Held {
-    /// Which.
+    /// Its index.
     pub(crate) index: usize,
-    /// The pane that it was taken in.
+    /// The pane in which it was taken.
     pub(crate) pane: usize,
     /// The path when it was taken.
     pub(crate) start: GroundSpline,
@@ -42,13 +42,13 @@ pub(crate) struct Held {
 
 /// A curve whose ends are nearer to each other than this share of its length is a loop.
 const LOOP_SHARE: f64 = 0.12;
-/// A drawn curve is followed as closely as a hand is steady.
+/// The smoothing of a drawn curve, about the unsteadiness of a hand.
 const DRAWN_SMOOTHING: f64 = 1e-3;
-/// A loop has at least so many control points.
+/// The least number of control points of a loop.
 const LOOP_POINTS: usize = 6;
 
 impl PathHand {
-    /// Edits a path, and says why where that is not possible. The caller ends the step.
+    /// Edits a path, or stores why that is not possible. The caller ends the step of undo.
     pub(crate) fn edit(
         &mut self,
         from: &GroundSpline,
@@ -60,7 +60,7 @@ impl PathHand {
         self.take(edited, session, out)
     }
 
-    /// The same as one step of undo.
+    /// Edits a path, as one step of undo.
     pub(crate) fn edit_once(
         &mut self,
         from: &GroundSpline,
@@ -79,7 +79,7 @@ impl PathHand {
         session: &Session,
         out: &mut Out,
     ) -> bool {
-        // What the link can hold is what is shown.
+        // The path is rounded as in the link.
         let edited = edited.and_then(|spline| spline.rounded()).and_then(ArcLengthPath::new);
         match edited {
             Ok(curve) => {
@@ -96,7 +96,7 @@ impl PathHand {
         }
     }
 
-    /// Makes a path of what was drawn.
+    /// Makes a path of a drawn line.
     pub(crate) fn take_drawn(&mut self, drawn: &[DVec2], session: &Session, out: &mut Out) {
         let length: f64 = drawn.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
         let gap =
@@ -118,7 +118,7 @@ impl PathHand {
         out.commands.push(Command::Settle);
     }
 
-    /// One more control point: behind the chosen one, or where there is most room.
+    /// Adds a control point: behind the chosen one, or in the widest gap.
     pub(crate) fn add_point(&mut self, path: &PathFacts, session: &Session, out: &mut Out) {
         let spline = path.curve.spline();
         let ends = spline.with_ends(SplineEnds::Clamped).greville();
@@ -127,7 +127,7 @@ impl PathHand {
             .max_by(|a, b| (a.1[1] - a.1[0]).total_cmp(&(b.1[1] - b.1[0])))
             .map_or(0, |(gap, _)| gap);
         let gap = self.chosen.filter(|&chosen| chosen + 1 < ends.len()).unwrap_or(widest);
-        // A knot may lie in the middle: then beside it.
+        // If a knot is in the middle, the point is added beside it.
         let middle = |share: f64| ends[gap] + (ends[gap + 1] - ends[gap]) * share;
         for share in [0.5, 0.4, 0.6, 0.3, 0.7] {
             if self.edit(spline, &PathEdit::Insert { at: middle(share) }, session, out) {
@@ -138,7 +138,7 @@ impl PathHand {
         out.commands.push(Command::Settle);
     }
 
-    /// Takes the chosen control point away.
+    /// Removes the chosen control point.
     pub(crate) fn remove_point(&mut self, path: &PathFacts, session: &Session, out: &mut Out) {
         let Some(index) = self.chosen else {
             self.said = Some(text::CHOOSE_POINT.into());
@@ -151,18 +151,18 @@ impl PathHand {
     }
 }
 
-/// Which ends stay.
+/// Returns which ends are pinned.
 fn pins(session: &Session) -> Pins {
     Pins { start: session.params().is_on(Key::PinStart), end: session.params().is_on(Key::PinEnd) }
 }
 
-/// The path of a pane, if there is one to be edited: not while its lab has nothing to show.
+/// Returns the path of a pane, if it can be edited: not while the lab has no result.
 pub(crate) fn path_of<'a>(session: &Session, pane: &'a Pane) -> Option<&'a PathFacts> {
     let is_open = session.params().lab() == LabId::Path && pane.problem.is_none();
     pane.outcome.as_ref()?.path().map(|fact| &**fact).filter(|_| is_open)
 }
 
-/// A place on the grid, if there is one.
+/// Returns a place snapped to the grid, if there is one.
 pub(crate) fn snapped(place: DVec2, session: &Session) -> DVec2 {
     let grid = session.params().number(Key::PathGrid);
     if grid > 0.0 { (place / grid).round() * grid } else { place }

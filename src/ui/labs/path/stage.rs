@@ -1,4 +1,4 @@
-//! The path on the stage: its control points are taken with mouse, finger or keys.
+//! The path on the stage: its control points under mouse, finger and keys.
 
 use crate::ui::kit;
 use crate::ui::labs::path::ground_line::View;
@@ -21,14 +21,14 @@ use segue_text::Message;
 /// Side of the square in which a control point is taken hold of, points: fingers need more than the
 /// standard's 24.
 const GRIP: f32 = 30.0;
-/// The path is pointed at within this distance, points.
+/// The distance within which the pointer is on the path, points.
 const REACH: f32 = 12.0;
-/// An arrow key moves a point by this, metres; with Shift by five times as much.
+/// The step of an arrow key, metres; with Shift it is five times as far.
 const KEY_STEP_M: f64 = 0.05;
-/// From how high the camera looks when the lab opens, degrees.
+/// The pitch of the camera when the lab opens, degrees.
 const PITCH_DEG: f64 = 34.0;
 
-/// The control points of one pane, and the place on the path that the pointer is at.
+/// Draws the control points of one pane, and handles the pointer on them and on the path.
 pub(crate) fn handles_ui(
     session: &Session,
     pane: usize,
@@ -123,7 +123,7 @@ impl Handle<'_> {
         }
     }
 
-    /// Arrows move the point as it is seen, Delete takes it away.
+    /// Moves the point with arrows, as seen by the camera, and removes it with Delete.
     fn keys(&self, session: &Session, state: &mut UiState, out: &mut Out, ui: &Ui) {
         let Self { index, point, view, path, response, .. } = *self;
         let filter = EventFilter {
@@ -146,8 +146,8 @@ impl Handle<'_> {
         if steps != DVec2::ZERO {
             let grid = session.params().number(Key::PathGrid);
             let step = if grid > 0.0 { grid } else { KEY_STEP_M };
-            // On the axis of the ground that is nearest to where it is seen to go, so that a key
-            // and its opposite undo each other.
+            // The point moves along the axis of the ground that is nearest to the key's direction
+            // on the screen, so that a key and its opposite undo each other.
             let quarter = std::f64::consts::FRAC_PI_2;
             let yaw = (f64::from(view.camera.yaw) / quarter).round() * quarter;
             let (sin, cos) = yaw.sin_cos();
@@ -211,8 +211,8 @@ pub(crate) fn note(state: &UiState) -> Option<Message> {
     state.labs.path.said.clone().or_else(draws)
 }
 
-/// When the lab opens, the whole path comes into sight, unless somebody has put the camera
-/// elsewhere; when it is left, the camera is as before.
+/// Brings the whole path into sight when the lab opens, unless the camera was moved before, and
+/// restores the camera when the lab is left.
 pub(crate) fn frame_once(session: &Session, state: &mut UiState, out: &mut Out) {
     let is_open = session.params().lab() == LabId::Path;
     let untouched = || session.params().changed().all(|(param, _)| param.group != Group::Camera);
