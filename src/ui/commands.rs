@@ -151,7 +151,7 @@ impl UiCommand {
         match self {
             Self::Undo => session.can_undo(),
             Self::Redo => session.can_redo(),
-            // Where a character is driven, the arrows drive it.
+            // A driven character is steered by the arrows.
             Self::StepBack | Self::StepOn | Self::TenBack | Self::TenOn => !session.is_driven(),
             Self::ToggleStrafe => session.is_driven(),
             _ => true,

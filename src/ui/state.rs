@@ -118,7 +118,7 @@ pub(crate) struct UiState {
     /// Files that are being fetched, with the share of each that has arrived, 0 to 1, where it is
     /// known.
     pub(crate) fetching: Vec<(String, Option<f64>)>,
-    /// Whether a page around this one can use what is opened here.
+    /// Whether a page around this one can read the files that are opened here.
     pub(crate) host_reads: bool,
     /// How far the work is stored; `None` where it is not stored at all.
     pub(crate) stored: Option<StorageState>,

@@ -141,7 +141,7 @@ pub(super) fn key_ui(curves: &Curves<'_>, area: Rect, ui: &Ui) {
             }));
         }
         let names = line_of(&runs, area.width(), ui);
-        // The last one may hang into the time's axis, which begins beside it.
+        // The last one may overlap the height of the time's axis, which begins beside it.
         if top > area.bottom() + space::XS {
             break;
         }

@@ -15,7 +15,7 @@ use egui_kittest::{
 };
 use segue_text::Message;
 
-/// What the mock remembers between frames: enough to be played with.
+/// The state of the mock between frames.
 #[derive(Clone, Debug)]
 #[expect(
     clippy::struct_excessive_bools,
@@ -380,7 +380,7 @@ fn stage_ui(mock: &Mock, phone: bool, ui: &mut Ui) {
     }
 }
 
-/// Something like ground and body, to judge the overlays against.
+/// Draws a rough ground and body below the overlays.
 fn mock_picture(pane: Rect, ui: &Ui) {
     let stage = &palette_of(ui).stage;
     let painter = ui.painter().with_clip_rect(pane);

@@ -15,7 +15,7 @@ use segue_text::Message;
 pub(crate) const TILE: usize = 256;
 /// The distance within which the pointer reaches a mark, points.
 const REACH: f32 = 9.0;
-/// Of what is in view, more marks than these are points that nobody can tell apart.
+/// The greatest number of marks in view: more could not be told apart.
 const MOST_MARKS: usize = 2_500;
 
 /// A tile of the picture. A texel is a square of cells, `factor` to a side.

@@ -80,7 +80,7 @@ pub(crate) struct StripResponse {
 const GAP: f32 = 4.0;
 /// The distance within which the pointer reaches an arc, points.
 const REACH: f32 = 5.0;
-/// More arcs than these are a thicket: the most probable are drawn.
+/// The greatest number of arcs: the most probable ones are drawn.
 const MOST_ARCS: usize = 500;
 /// Straight pieces by which the distance to an arc is measured.
 const PIECES: usize = 20;

@@ -12,7 +12,7 @@ use eframe::egui::{
     WidgetInfo, vec2,
 };
 
-/// Fewer tabs than this beside a menu are not worth the line: the chosen one alone is clearer.
+/// The least number of tabs beside a menu: with fewer, the chosen one alone is clearer.
 const LEAST_TABS: usize = 3;
 
 /// Draws tabs in one line, `width` points at most. Those without room are in a menu at the right

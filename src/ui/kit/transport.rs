@@ -98,7 +98,7 @@ pub(crate) fn transport_ui(transport: &Transport<'_>, ui: &mut Ui) -> Option<Tra
             runs.push(Run::new(Text::Data(&frame), Type::Body, palette.muted).after(space::M));
         }
         let galley = line_of(&runs, f32::INFINITY, ui);
-        // As wide as the widest it becomes, so that what follows holds still.
+        // Tabular figures keep the width, so that the widgets behind it do not move.
         let (id, rect) = ui.allocate_space(vec2(galley.size().x, height));
         readable_ui(&format!("{time}, {frame}"), rect, id, ui);
         put(ui.painter(), rect.left_center(), Align2::LEFT_CENTER, galley);

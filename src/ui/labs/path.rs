@@ -51,7 +51,7 @@ pub(crate) fn is_open(session: &Session) -> bool {
 const TURN_DEG: f64 = 15.0;
 /// The factor by which the whole path becomes larger.
 const LARGER: f64 = 1.1;
-/// More warnings would be a list that nobody reads.
+/// The greatest number of warnings that are listed.
 const MOST_WARNINGS: usize = 3;
 
 /// Draws the rows of the lab.

@@ -448,7 +448,7 @@ struct Picture {
     range_cm: [f64; 2],
 }
 
-/// More texels than a map has points only cost time.
+/// The greatest number of texels along a side: a map has no more points.
 const MOST_TEXELS: usize = 512;
 
 /// One cell in so many is sampled for the upper end of the colours.

@@ -15,7 +15,7 @@ use segue_session::{Command, Key, PlaybackCommand, Session, Value, Walk, frame_a
 use segue_text::Message;
 use std::sync::Arc;
 
-/// More seams than these are no marks any more.
+/// The greatest number of marks: more could not be told apart.
 const MOST_SEAMS: usize = 160;
 
 /// The time for which a visit that failed is explained, seconds of the walk.

@@ -17,7 +17,7 @@ use segue_text::Message;
 
 /// The time for which a jump is shown, seconds.
 const JUMP_SECS: f64 = 0.8;
-/// More jumps than these are no marks any more.
+/// The greatest number of marks: more could not be told apart.
 const MOST_MARKS: usize = 160;
 /// The greatest number of clips in the strip: more would have no width.
 const MOST_BARS: usize = 300;
