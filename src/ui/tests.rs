@@ -1,5 +1,4 @@
-//! What the panels show and ask for. With `SEGUE_GALLERY` set to a folder, pictures of them are
-//! written there.
+//! Tests of the panels. With `SEGUE_GALLERY` set to a folder, pictures of them are written there.
 
 use super::out::Out;
 use super::theme::{Theme, palette_of, space};
@@ -48,14 +47,14 @@ struct Page {
     curves: CurveCache,
     director: Director,
     out: Out,
-    /// Where the stage was drawn last.
+    /// The last place of the stage.
     stage: Rect,
-    /// Commands are carried out, as the app does; otherwise they are only kept.
+    /// Whether commands are carried out, as in the app; otherwise they are only kept.
     obeys: bool,
 }
 
 impl Page {
-    /// Puts the cameras where the app would.
+    /// Sets the cameras as the app does.
     fn aim(&mut self, places: &[(usize, Rect)]) {
         let viewport = |rect: Rect| Viewport {
             x: 0,
@@ -127,13 +126,13 @@ fn harness(size: Vec2, theme: Theme, page: Page) -> Harness<'static, Page> {
     harness
 }
 
-/// One frame with these events.
+/// Runs one frame with these events.
 fn step(events: Vec<egui::Event>, harness: &mut Harness<'_, Page>) {
     harness.input_mut().events.extend(events);
     harness.step();
 }
 
-/// A press or a release of the first button.
+/// Returns a press or a release of the primary button.
 fn button(pos: egui::Pos2, pressed: bool) -> egui::Event {
     egui::Event::PointerButton {
         pos,
@@ -143,7 +142,7 @@ fn button(pos: egui::Pos2, pressed: bool) -> egui::Event {
     }
 }
 
-/// Brings something into sight and presses it.
+/// Scrolls a widget into sight and presses it.
 fn press(label: &str, harness: &mut Harness<'_, Page>) {
     harness.get_by_label(label).scroll_to_me();
     harness.run();
@@ -151,8 +150,8 @@ fn press(label: &str, harness: &mut Harness<'_, Page>) {
     harness.run();
 }
 
-/// Writes a picture where pictures were asked for. They are to be looked at, not compared:
-/// rasterisers differ.
+/// Writes a picture if pictures are wanted. They are to be looked at, not compared: rasterisers
+/// differ.
 fn picture(name: &str, harness: &mut Harness<'_, Page>) {
     if let Some(folder) = std::env::var_os("SEGUE_GALLERY") {
         let image = harness.render().expect("a rasteriser");
@@ -162,7 +161,7 @@ fn picture(name: &str, harness: &mut Harness<'_, Page>) {
     }
 }
 
-/// The comparison as the link has it; nothing for one pane.
+/// Returns the comparison as in the link; empty for one pane.
 fn compared(harness: &Harness<'_, Page>) -> String {
     let compare = harness.state().session.compare();
     compare.map(ToString::to_string).unwrap_or_default()
@@ -200,8 +199,8 @@ fn outcome(page: &Page) -> &Outcome {
     page.session.main_outcome().expect("a page as the tests need it")
 }
 
-/// Inside another page no panel may cover another: the row with the play button stood half under
-/// the stage where the tracks need room.
+/// Inside another page no panel covers another: the row with the play button was half under the
+/// stage where tracks need room.
 #[test]
 fn an_embedded_page_shows_all_of_its_timeline() {
     for lab in ["blend", "transition", "loop", "register", "graph", "match"] {
@@ -229,8 +228,7 @@ fn an_embedded_page_shows_all_of_its_timeline() {
     }
 }
 
-/// One drags, and wants to see it play: Space is the motion's, unless the focus came by the
-/// keyboard.
+/// After a drag Space plays the motion, unless the focus came by the keyboard.
 #[test]
 fn space_plays_after_a_drag() {
     let mut harness = harness(DESK, DARK, page("lab=blend&play=off"));
@@ -245,7 +243,7 @@ fn space_plays_after_a_drag() {
     harness.key_press(egui::Key::Space);
     harness.run_steps(2);
     assert!(plays(&harness));
-    // By the keyboard a switch has the focus, and Space is its own.
+    // A switch that got the focus by the keyboard is turned by Space.
     harness.get_by_label("Align to A").focus();
     harness.run_steps(2);
     harness.key_press(egui::Key::Space);
@@ -253,8 +251,7 @@ fn space_plays_after_a_drag() {
     assert!(plays(&harness) && !harness.state().session.params().is_on(Key::Align));
 }
 
-/// What a first visitor drags is what the panes show: every pane of a comparison has its own
-/// slider.
+/// Every pane of a comparison has its own slider.
 #[test]
 fn values_side_by_side_are_dragged_one_by_one() {
     let mut harness = harness(DESK, DARK, page("compare=blend_window:30,15,10&play=off"));
@@ -266,7 +263,7 @@ fn values_side_by_side_are_dragged_one_by_one() {
     assert_eq!(compared(&harness), "blend_window:30,16,10");
     press(text::PANE_MORE.english(), &mut harness);
     assert_eq!(compared(&harness), "blend_window:30,16,10,8");
-    // There is no room for a fifth: the button keeps its place, and does nothing.
+    // There is no room for a fifth pane: the button keeps its place, disabled.
     press(text::PANE_MORE.english(), &mut harness);
     assert_eq!(compared(&harness), "blend_window:30,16,10,8");
     for _ in 0..3 {
@@ -295,8 +292,8 @@ fn choices_side_by_side_have_a_row_each() {
     assert_eq!(harness.state().session.params().choice::<choices::WeightLaw>().word(), "smooth");
 }
 
-/// Every row with a choice shows the value in force: as the text of its menu, or as the chosen one
-/// of its words.
+/// Every row with a choice shows the current value: as the text of its menu, or as the chosen
+/// option.
 #[test]
 fn choices_show_the_value_in_force() {
     let shows = |link: &str, label: &str, words: &[(&str, bool)]| {
@@ -348,7 +345,7 @@ fn an_embedded_page_keeps_the_rows_that_its_link_names() {
         harness.query_by_label("Blend window").is_some()
             && harness.query_by_label(Slot::A.label()).is_some()
     );
-    // At its default a parameter is still there to be tried.
+    // The row stays when the parameter is at its default.
     harness.state_mut().session.apply(Command::Reset(Key::BlendWindow)).unwrap();
     harness.run_steps(2);
     assert!(harness.query_by_label("Blend window").is_some());

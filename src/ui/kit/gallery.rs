@@ -1,5 +1,5 @@
-//! The kit laid out as a whole lab, to be looked at: with `SEGUE_GALLERY` set to a folder, the
-//! pictures are written there.
+//! The kit laid out as a whole lab. With `SEGUE_GALLERY` set to a folder, pictures are written
+//! there.
 
 use super::timeline::Moment;
 use super::*;
@@ -531,8 +531,8 @@ fn harness(size: Vec2, theme: Theme, mock: Mock) -> Harness<'static, Mock> {
         )
 }
 
-/// Writes a picture where pictures were asked for. They are to be looked at, not compared:
-/// rasterisers differ.
+/// Writes a picture if pictures are wanted. They are to be looked at, not compared: rasterisers
+/// differ.
 fn picture(name: &str, harness: &mut Harness<'_, Mock>) {
     if let Some(folder) = std::env::var_os("SEGUE_GALLERY") {
         let image = harness.render().expect("a rasteriser");
@@ -546,7 +546,7 @@ const DESK: Vec2 = vec2(1440.0, 900.0);
 const DARK: Theme = Theme { dark: true, projector: false };
 const LIGHT: Theme = Theme { dark: false, projector: false };
 
-/// Every named widget lies within the window: nothing is cut off at its sides.
+/// Checks that every named widget lies within the window.
 fn assert_nothing_sticks_out(size: Vec2, harness: &Harness<'_, Mock>) {
     let window = Rect::from_min_size(pos2(0.0, 0.0), size).expand(1.0);
     for name in ["Blend window", "Play", "Timeline", "Align to A", "dissolve"] {

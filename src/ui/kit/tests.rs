@@ -1,4 +1,4 @@
-//! What the widgets do when they are pressed, dragged, typed into and read aloud.
+//! Tests of the widgets: presses, drags, typing and screen readers.
 
 use super::notice::notice_ui;
 use super::*;
@@ -14,7 +14,7 @@ use egui_kittest::{
 };
 use segue_text::Message;
 
-/// A panel 300 points wide with one widget, and a record of what it returned.
+/// Returns a panel 300 points wide with one widget and a state.
 fn bench<S: 'static>(state: S, widget: impl Fn(&mut S, &mut Ui) + 'static) -> Harness<'static, S> {
     let builder = Harness::builder()
         .with_size(vec2(300.0, 240.0))
@@ -43,7 +43,7 @@ fn move_to<S>(harness: &mut Harness<'_, S>, pos: Pos2, modifiers: Modifiers) {
     harness.step();
 }
 
-/// A slider's value and what happened to it.
+/// A slider's value, and the input to it.
 #[derive(Default)]
 struct Slid {
     value: f64,
@@ -98,7 +98,7 @@ fn arrow_keys_step_a_slider_and_shift_steps_finely() {
 #[test]
 fn a_double_click_on_the_label_resets_a_slider() {
     let mut harness = slider(30.0, Source::ManualOverAuto);
-    // The label is a hidden target above the track; the track is what has the name.
+    // The label is a hidden target above the track; the track has the name.
     let track = harness.get_by_label("Blend window").rect();
     let label = pos2(track.left() + 20.0, track.top() - 6.0);
     for pressed in [true, false, true, false] {
@@ -112,22 +112,22 @@ fn a_double_click_on_the_label_resets_a_slider() {
 fn dragging_a_slider_is_one_gesture_and_the_handle_does_not_jump() {
     let mut harness = slider(50.0, Source::Manual);
     let track = harness.get_by_label("Blend window").rect();
-    // A little off the middle of the handle: the value stays, for it is held where it is.
+    // A press beside the middle of the handle keeps the value.
     let start = pos2(track.center().x + 5.0, track.bottom() - 9.0);
     press(&mut harness, start, true);
     assert_eq!((harness.state().value, harness.state().started), (50.0, 1));
     let tenth = (track.width() - 14.0) / 10.0;
     move_to(&mut harness, start + vec2(tenth, 0.0), Modifiers::NONE);
     assert_eq!(harness.state().value, 60.0);
-    // With shift, a tenth of the way, and in fine steps.
+    // With Shift, a drag moves a tenth of the way, in fine steps.
     move_to(&mut harness, start + vec2(2.0 * tenth, 0.0), Modifiers::SHIFT);
     assert!((harness.state().value - 61.0).abs() < 0.11, "{}", harness.state().value);
-    // Far beyond the end it is the end; the way back is as long as the way there.
+    // Beyond the end the value is the end; the way back is as long as the way there.
     move_to(&mut harness, start + vec2(30.0 * tenth, 0.0), Modifiers::NONE);
     assert_eq!(harness.state().value, 100.0);
     press(&mut harness, start + vec2(30.0 * tenth, 0.0), false);
     assert_eq!((harness.state().started, harness.state().ended), (1, 1));
-    // Pressed elsewhere on the track, it jumps there.
+    // A press elsewhere on the track moves the value there.
     press(&mut harness, pos2(track.left() + 7.0 + 2.0 * tenth, start.y), true);
     assert_eq!((harness.state().value, harness.state().started), (20.0, 2));
 }
@@ -144,7 +144,7 @@ fn a_value_can_be_typed_and_escape_leaves_it() {
     ] {
         harness.get_by_label(value).click();
         harness.run();
-        // The field replaces the number with all of it selected: typing overwrites.
+        // The field has the number selected: typing overwrites it.
         harness.event(Event::Text(typed.to_owned()));
         harness.step();
         harness.key_press(key);
@@ -247,7 +247,7 @@ fn segments_are_chosen_by_click_and_by_arrows() {
     harness.get_by_label("inertialize").click();
     harness.run();
     assert_eq!(*harness.state(), (2, 1));
-    // Choosing what is chosen asks for nothing.
+    // Choosing the chosen option again changes nothing.
     harness.get_by_label("inertialize").click();
     harness.run();
     assert_eq!(*harness.state(), (2, 1));
@@ -346,7 +346,7 @@ fn notices_are_dismissed_and_acted_on_and_tasks_are_stopped() {
     assert_eq!(harness.get_by_label("Distance matrix").accesskit_node().numeric_value(), Some(0.5));
 }
 
-/// The timeline's state and what was asked of it.
+/// The timeline's state, and the input to it.
 struct Timed {
     now: f64,
     transition: (f64, f64),
@@ -410,7 +410,7 @@ fn the_timeline_seeks_scrubs_and_steps_by_frames() {
     assert_eq!(events.last(), Some(&TimelineEvent::ScrubEnded));
     assert_eq!(events.iter().filter(|event| !matches!(event, TimelineEvent::Seek(_))).count(), 2);
 
-    // From between two frames to a whole one, then by ten.
+    // A step goes from between two frames to a whole one, then by ten.
     harness.state_mut().now = 2.013;
     harness.get_by_label("Timeline").focus();
     harness.run();
@@ -543,7 +543,7 @@ fn of_many_tabs_those_without_room_stand_in_a_menu() {
     harness.get_by_label("Path").click();
     harness.run();
     assert_eq!(*harness.state(), 9);
-    // It has taken the place of the last that was there.
+    // It has taken the place of the last tab.
     harness.get_by_label("Path");
     harness.get_by_label("View").click();
     harness.run();

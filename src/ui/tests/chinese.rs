@@ -1,4 +1,4 @@
-//! The interface in Chinese: every lab, and what of it has stayed English.
+//! The interface in Chinese: every lab, and texts that have stayed English.
 
 use super::clips::{loaded, with_file};
 use super::*;
@@ -9,7 +9,7 @@ use std::fs;
 
 const HALL_SIZE: Vec2 = vec2(1280.0, 720.0);
 
-/// Names, units and keys that are written so in Chinese, too.
+/// Names, units and keys that are the same in Chinese.
 const AS_IT_IS: [&str; 38] = [
     "EN", "Enter", "Segue", "BVH", "ASF", "AMC", "GLB", "CSV", "CMU", "zip", "fps", "cm", "ms",
     "Aa", "Shift", "Ctrl", "Home", "Esc", "Delete", "Tab", "atan", "atan2", "exp", "json", "JSON",
@@ -25,12 +25,12 @@ fn pack() -> LanguagePack {
     LanguagePack::read(&file("zh-Hant.json"), Arc::from(file("zh-Hant.otf"))).expect("a language")
 }
 
-/// The language of the pack.
+/// Returns the language of the pack.
 fn language() -> Language {
     Language::of_tag("zh-Hant").expect("a language")
 }
 
-/// A page in Chinese.
+/// Returns a page in Chinese.
 fn chinese(size: Vec2, theme: Theme, link: &str, pack: &LanguagePack) -> Harness<'static, Page> {
     let mut page = page(link);
     page.state.language = language();
@@ -42,9 +42,9 @@ fn chinese(size: Vec2, theme: Theme, link: &str, pack: &LanguagePack) -> Harness
     harness
 }
 
-/// The words of a text that are neither Chinese nor written so everywhere.
+/// Returns the words of a text that are neither Chinese nor the same everywhere.
 fn english_in(text: &str) -> Vec<&str> {
-    // An example of what stands in a link, `0.3:run,0.2:walk`, is one word.
+    // An example of a link, `0.3:run,0.2:walk`, is one word.
     let words = text
         .split(|letter: char| !letter.is_ascii_graphic())
         .filter(|word| !word.contains([':', '=']));
@@ -114,8 +114,7 @@ fn the_switch_asks_for_the_other_language_and_screen_readers_hear_it() {
     );
 }
 
-/// The catalogue has rows for the words "Walk" and "walk": clips of these names are the user's all
-/// the same.
+/// The words "Walk" and "walk" have translations; names of the user's clips are not translated.
 #[test]
 fn name_of_a_users_clip_that_is_also_a_word_stays_as_it_is() {
     let pack = pack();
@@ -154,8 +153,7 @@ fn name_of_a_users_clip_that_is_also_a_word_stays_as_it_is() {
     }
 }
 
-/// What the catalogue and the lessons are written with can be set: the letters are in one of the
-/// fonts.
+/// The characters of the translations and of the lessons are in one of the fonts.
 #[test]
 fn every_character_is_in_the_fonts() {
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/");

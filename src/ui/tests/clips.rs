@@ -2,7 +2,8 @@
 
 use super::*;
 
-/// The built-in walk as a file, with a tail that no other skeleton has, and a T-pose in front.
+/// Returns the built-in walk as a file, with a tail that no other skeleton has, and a T-pose in
+/// front.
 pub(super) fn file(session: &Session) -> String {
     let motion = session
         .library()
@@ -42,7 +43,7 @@ pub(super) fn file(session: &Session) -> String {
     out
 }
 
-/// A page with that file as A.
+/// Returns a page with that file as A.
 pub(super) fn with_file(link: &str) -> Page {
     let mut page = page(link);
     page.session.make_all();
@@ -115,7 +116,7 @@ fn what_is_said_by_hand_reads_the_file_again() {
         matches!(command, Some(Command::File(FileCommand::Reimport(_, options))) if !options.drop_t_pose),
         "{command:?}"
     );
-    // A rate that is in no list is typed.
+    // A rate that the list lacks is typed.
     press("Frame rate", &mut harness);
     press("other…", &mut harness);
     harness.get_by_label("Frames per second").type_text("50");
@@ -150,7 +151,7 @@ fn a_joint_of_the_tree_is_chosen_by_pointer_and_by_keyboard() {
     harness.key_press(Keyboard::ArrowRight);
     harness.run();
     assert_eq!(chosen(&harness), "Tail");
-    // The last joint is brought into sight, and keeps the keyboard.
+    // The last joint is scrolled into sight, and keeps the focus.
     harness.key_press(Keyboard::End);
     harness.run();
     let last = chosen(&harness);

@@ -5,7 +5,7 @@ use eframe::egui::{Event, Modifiers};
 use segue_motion::matching::{Control, Place};
 use segue_session::{DriveCommand, DriveHistory, PlaybackCommand};
 
-/// A database that is built in a moment.
+/// A link with a small database.
 const SMALL: &str =
     "lab=match&mirrored=off&match_clips=idle,walk,walk_left,walk_right,walk(make_seconds:6)";
 
@@ -19,7 +19,7 @@ fn driven(harness: &Harness<'_, Page>) -> Arc<DriveHistory> {
     outcome(harness.state()).driven().cloned().expect("a drive")
 }
 
-/// Frames of the screen, in which time passes.
+/// Runs frames in which time passes.
 fn play(frames: usize, harness: &mut Harness<'_, Page>) {
     for _ in 0..frames {
         harness.state_mut().session.tick(1.0 / 60.0);
@@ -36,7 +36,7 @@ fn keys_drive_away_from_the_camera_and_are_let_go() {
     let mut harness = harness(DESK, DARK, page(&format!("{SMALL}&camera_yaw=180")));
     harness.key_down(Keyboard::W);
     play(2, &mut harness);
-    // The camera stands behind: away from it is +Z.
+    // The camera is behind the character: away from it is +Z.
     let velocity = control(&harness).velocity();
     assert!(velocity.distance(glam::DVec2::new(0.0, 1.4)) < 0.03, "{velocity}");
     play(60, &mut harness);
@@ -52,7 +52,7 @@ fn keys_drive_away_from_the_camera_and_are_let_go() {
     harness.key_up(Keyboard::D);
     play(2, &mut harness);
     assert_eq!(control(&harness), Control::default());
-    // Arrows drive, too, and Shift runs; the playhead has nothing to step.
+    // Arrows drive as well, and Shift runs; they do not step the playhead.
     harness.key_down(Keyboard::ArrowUp);
     play(1, &mut harness);
     step(vec![Event::ModifiersChanged(Modifiers::SHIFT)], &mut harness);
@@ -65,12 +65,12 @@ fn keys_drive_away_from_the_camera_and_are_let_go() {
     let stepped =
         |command: &Command| matches!(command, Command::Playback(PlaybackCommand::Step(_)));
     assert!(!harness.state().out.commands.iter().any(stepped));
-    // Q strafes: it faces where the camera looks, wherever it goes.
+    // Q strafes: the character faces away from the camera, wherever it goes.
     harness.key_press(Keyboard::Q);
     harness.key_down(Keyboard::A);
     play(2, &mut harness);
     assert!(control(&harness).facing().is_some_and(|yaw| yaw.abs() < 0.03));
-    // In another lab the same keys turn the camera, and drive nobody.
+    // In another lab the same keys turn the camera, and steer no character.
     harness.key_up(Keyboard::A);
     harness.key_press(Keyboard::Num1);
     play(2, &mut harness);

@@ -70,7 +70,7 @@ fn the_graph_lab_does_what_is_pressed() {
     press(text::BACK_TO_WALK.english(), &mut harness);
     done(&mut harness);
     assert!(harness.state().session.graph_walk().is_some_and(|walk| !walk.is_jump));
-    // Clips come and go.
+    // Clips are added and removed.
     press("Clips of the graph: 3", &mut harness);
     press("Remove Walk, turn left", &mut harness);
     done(&mut harness);
@@ -81,7 +81,7 @@ fn the_graph_lab_does_what_is_pressed() {
     press("Slow walk", &mut harness);
     done(&mut harness);
     assert_eq!(text_of(&harness, Key::Clips), "walk,walk_right,slow_walk");
-    // A line on the ground.
+    // A path is drawn on the ground.
     press(text::DRAW_PATH.english(), &mut harness);
     let stage = harness.state().state.stage;
     harness.drag_at(stage.center());
@@ -95,7 +95,7 @@ fn the_graph_lab_does_what_is_pressed() {
     assert!(harness.state().session.graph_walk().is_some_and(|walk| walk.followed.is_some()));
     press(text::REMOVE_PATH.english(), &mut harness);
     done(&mut harness);
-    // Files, and the table.
+    // Files and the table.
     press("JSON", &mut harness);
     press("DOT", &mut harness);
     for experiment in text::GRAPH_EXPERIMENTS {
@@ -193,8 +193,8 @@ fn the_distances_of_very_many_frames_are_seen_from_afar_and_nearby() {
     };
     let field = harness.get_by_label(text::ALL_DISTANCES.english()).rect();
     picture("graph-afar-dark", &mut harness);
-    // The wheel over a ring: it stays where it is, and the picture gets finer until there is
-    // nothing left to compute.
+    // The wheel over a ring keeps its place, and the picture gets finer until all of it is
+    // computed.
     let ring = field.min + mark * field.size();
     harness.hover_at(ring);
     for (name, turns) in
@@ -220,7 +220,7 @@ fn the_distances_of_very_many_frames_are_seen_from_afar_and_nearby() {
         }
         picture(name, &mut harness);
     }
-    // All of it again: the same ring is pressed.
+    // With the whole picture again, the same ring is pressed.
     assert!(frames as f32 / field.width() > 8.0);
     harness.get_by_label(text::ALL_DISTANCES.english()).focus();
     harness.run();
@@ -234,7 +234,7 @@ fn the_distances_of_very_many_frames_are_seen_from_afar_and_nearby() {
     harness.run();
     let jump = *harness.state().session.params().jump().unwrap();
     assert_eq!(jump, pointed);
-    // What plays is looked at itself, though the pointer still rests on its ring.
+    // The transition that plays has no preview, although the pointer is on its ring.
     while harness.state_mut().session.work() {}
     harness.run_steps(3);
     assert!(harness.state().session.graph_walk().unwrap().is_jump);

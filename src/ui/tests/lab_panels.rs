@@ -88,7 +88,7 @@ fn a_loop_says_where_it_was_cut_and_what_its_method_does() {
     assert_eq!(harness.state().session.panes().len(), 3);
     press("Compare methods", &mut harness);
     assert_eq!(harness.state().session.panes().len(), 1);
-    // The keys follow the tabs.
+    // The keys of the labs follow the tabs.
     harness.key_press(Keyboard::Num5);
     harness.run();
     assert_eq!(harness.state().session.params().lab().word(), "speed");
@@ -108,7 +108,7 @@ fn the_layers_lab_says_how_time_goes_and_where_the_layer_is() {
         assert_eq!(sentence.starts_with("There are no steps"), additive, "{sentence}");
         let mut harness = harness(size, theme, page);
         harness.get_by_label(&sentence);
-        // What does not concern the kind of layer is not offered.
+        // Parameters of another kind of layer are not shown.
         assert_eq!(harness.query_by_label("Keep B's posture").is_none(), additive);
         assert_eq!(harness.query_by_label("first frame").is_some(), additive);
         picture(name, &mut harness);
@@ -140,7 +140,7 @@ fn a_mistake_is_chosen_explained_and_held_against_the_right_way() {
     picture("break-compare-dark", &mut harness);
     press(text::RIGHT_AND_WRONG.english(), &mut harness);
     assert_eq!(harness.state().session.panes().len(), 1);
-    // A cut has nothing to be mixed wrongly, and that is said.
+    // For a cut, the panel says that the mistake has no effect.
     let cut =
         self::harness(DESK, LIGHT, page("lab=transition&method=cut&mistake=degrees&play=off"));
     cut.get_by_label(text::MISTAKE_IDLE.english());
@@ -177,7 +177,7 @@ fn hysteresis_shows_the_rows_of_its_choice() {
     }
 }
 
-/// The first frames of the built-in walk as a file.
+/// Returns the first frames of the built-in walk as a file.
 fn short_file(frames: usize) -> String {
     let walk = page("lab=view&a=walk").session.slot(Slot::A).and_then(|entry| entry.motion.clone());
     let options = segue_formats::bvh::WriteOptions::default();

@@ -5,7 +5,7 @@ use crate::ui::LanguagePack;
 use segue_session::Lesson;
 use segue_session::lesson::Source;
 
-/// Brings the texts that are asked for, from the project's folder.
+/// Hands over the requested texts, from the project's folder.
 fn deliver(session: &mut Session) {
     for request in session.take_requests() {
         if let segue_session::Request::Lesson(source) = request {
@@ -30,7 +30,7 @@ fn lesson(link: &str) -> Page {
     page
 }
 
-/// Presses something, and lets come what it asks for.
+/// Presses a widget, and hands over the texts that it requests.
 fn go(label: &str, harness: &mut Harness<'_, Page>) {
     press(label, harness);
     deliver(&mut harness.state_mut().session);
@@ -75,7 +75,7 @@ fn a_lesson_is_read_tried_and_left() {
     harness.key_press(Keyboard::N);
     harness.run();
     harness.get_by_label("3. The blend window");
-    // The list, the lesson, two ways, away and back again: each is a step.
+    // The list, the lesson, two pages, closing and undo: each is a step.
     for _ in 0..6 {
         harness.state_mut().session.apply(Command::Undo).expect("a step to take back");
     }
@@ -159,14 +159,13 @@ fn lessons_look_well_everywhere() {
     }
 }
 
-/// What a link says beside its lesson.
+/// Returns a link without its lesson.
 fn rest_of(link: &str) -> Vec<(Key, Value)> {
     let values = segue_session::link::read(link).values;
     values.into_iter().filter(|(key, _)| *key != Key::Lesson).collect()
 }
 
-/// The page in Chinese. Its letters come with the second frame; until then there is nothing to set
-/// with them.
+/// Shows the page in Chinese. Its font is available from the second frame on.
 fn harness_in_chinese(size: Vec2, theme: Theme, page: Page) -> Harness<'static, Page> {
     let file = |name: &str| {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/lang").join(name);
@@ -183,7 +182,7 @@ fn harness_in_chinese(size: Vec2, theme: Theme, page: Page) -> Harness<'static, 
     harness
 }
 
-/// Those of the Chinese lessons are looked for where the other words of that language are.
+/// The characters of the Chinese lessons are checked with the translations.
 #[test]
 fn every_letter_of_the_lessons_is_in_the_font() {
     let harness = harness(PHONE, DARK, page("lab=make&play=off"));

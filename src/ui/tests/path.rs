@@ -14,7 +14,7 @@ fn points(harness: &Harness<'_, Page>) -> Vec<DVec2> {
     path(harness).curve.spline().points().to_vec()
 }
 
-/// The page until the cameras of its panes are known, and the path is in sight.
+/// Returns a page whose cameras are set, with the path in sight.
 fn lab(size: Vec2, theme: Theme, link: &str) -> Harness<'static, Page> {
     let mut harness = harness(size, theme, page(link));
     harness.run_steps(4);
@@ -29,7 +29,7 @@ fn is_handle(node: &egui_kittest::Node<'_>) -> bool {
     node.accesskit_node().label().is_some_and(|label| label.starts_with("Control point "))
 }
 
-/// Takes what is under the pointer along these places and lets it go.
+/// Drags along these places.
 fn drag(way: &[Pos2], harness: &mut Harness<'_, Page>) {
     step(vec![Event::PointerMoved(way[0])], harness);
     step(vec![button(way[0], true)], harness);
@@ -107,7 +107,7 @@ fn a_point_is_dragged_with_the_result_under_the_hand() {
                 .enumerate()
                 .all(|(i, (a, b))| i == 3 || a.distance(*b) < 0.011)
         );
-        // One step.
+        // The edit is one step of undo.
         harness.state_mut().session.apply(Command::Undo).expect("a step");
         assert!(!path(&harness).is_edited, "{camera}");
     }
@@ -161,7 +161,7 @@ fn keys_move_a_point_go_to_the_next_and_take_one_out() {
     harness.key_press(Keyboard::Delete);
     harness.run_steps(2);
     assert_eq!(points(&harness).len(), 7);
-    // An end stays, and that is said.
+    // A pinned end stays, with a note.
     harness.get_by_label_contains("Control point 1 of").focus();
     harness.run_steps(2);
     harness.key_press(Keyboard::Delete);
@@ -211,7 +211,7 @@ fn a_path_is_drawn_by_hand() {
     harness.key_press(Keyboard::Escape);
     harness.run_steps(2);
     assert!(harness.state().state.drawing.is_none());
-    // A point that is no curve is not taken, and that is said.
+    // A single point is refused as a path, with a note.
     press(text::DRAW.english(), &mut harness);
     drag(&[stage.center(), stage.center() + vec2(7.0, 0.0)], &mut harness);
     assert!(harness.query_all_by_label_contains("has no direction").count() > 0);
@@ -252,7 +252,7 @@ fn the_camera_goes_back_where_it_was_when_the_lab_is_left() {
     assert_eq!(harness.state().session.params().choice::<choices::Follow>().word(), "off");
     press("View", &mut harness);
     assert_eq!(harness.state().session.params().choice::<choices::Follow>().word(), "result");
-    // A camera that somebody put somewhere stays there.
+    // A camera that was moved by hand stays.
     let harness = lab(DESK, DARK, "lab=path&a=walk&play=off&camera_yaw=10");
     assert_eq!(harness.state().session.params().choice::<choices::Follow>().word(), "result");
 }

@@ -56,7 +56,7 @@ fn a_weight_over_time_is_drawn_by_hand() {
     let at = |x: f32, y: f32| field.left_bottom() + vec2(x * field.width(), -y * field.height());
     harness.hover_at(at(0.5, 0.8));
     harness.run();
-    // Both clicks in one frame: frames of tests are too long for a double click.
+    // Both clicks are in one frame: frames of tests are too long for a double click.
     step(
         [true, false, true, false].map(|pressed| button(at(0.5, 0.8), pressed)).to_vec(),
         &mut harness,
@@ -96,7 +96,7 @@ fn the_map_is_pointed_at_pressed_and_pinned() {
         (a / fps - 0.5 * spans[0]).abs() < 0.02 && (b / fps - 0.5 * spans[1]).abs() < 0.02,
         "{a} {b}"
     );
-    // A click goes to the time at which the result comes nearest.
+    // A click goes to the nearest time of the result.
     let click = |harness: &mut Harness<'_, Page>, pos| {
         harness.drag_at(pos);
         harness.drop_at(pos);
@@ -130,7 +130,7 @@ fn the_map_is_pointed_at_pressed_and_pinned() {
         outcome(harness.state()).registered().unwrap().registration.warp().at(pin_a as f64);
     assert!((warped - pin_b as f64).abs() < 0.01, "{warped} {pin_b}");
     picture("register-pinned-dark", &mut harness);
-    // It is moved, and dragged out; each is one step.
+    // The pin is moved, and dragged out; each is one step of undo.
     drag(&mut harness, at(0.5, 0.45), at(0.5, 0.5));
     let moved = pins(&harness);
     assert!(moved.len() == 1 && moved[0] != (pin_a, pin_b), "{moved:?}");
@@ -144,7 +144,7 @@ fn the_map_is_pointed_at_pressed_and_pinned() {
     harness.run();
     press("Remove pins", &mut harness);
     assert_eq!(pins(&harness), []);
-    // What cannot be is said, and nothing stands for it.
+    // A pin that cannot be met is refused with a reason, without a result.
     let set = Command::Set(vec![(Key::Pins, List::Pins(vec![(100, 90), (120, 80)]).into())]);
     harness.state_mut().session.apply(set).unwrap();
     harness.run();

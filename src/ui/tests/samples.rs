@@ -3,7 +3,7 @@
 use super::*;
 use segue_session::{ClipSet, Request};
 
-/// Hands over the takes that are asked for, as the app does, and does all work.
+/// Hands over the requested takes, as the app does, and does all work.
 fn serve(harness: &mut Harness<'_, Page>) {
     harness.run();
     loop {
