@@ -298,7 +298,7 @@ mod tests {
     use segue_motion::skeleton::Joint;
 
     #[test]
-    fn channels_are_told_in_words() {
+    fn channels_are_described_in_words() {
         use Channel::{XPosition, XRotation, YPosition, YRotation, ZPosition, ZRotation};
         let joint = |parent, channels: &[Channel]| Joint {
             name: "j".into(),
@@ -328,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn a_typed_rate_is_a_number_that_can_be_played() {
+    fn typed_rate_out_of_range_is_refused() {
         assert_eq!(
             [" 119.88 ", "50 fps", "29,97"].map(rate_of),
             [Some(119.88), Some(50.0), Some(29.97)]

@@ -168,7 +168,7 @@ fn compared(harness: &Harness<'_, Page>) -> String {
 }
 
 #[test]
-fn the_stage_has_its_own_colours_and_rows() {
+fn stage_with_its_own_theme_has_its_colours_and_rows() {
     for (name, size) in [("stage-desk", vec2(1440.0, 900.0)), ("stage-phone", vec2(390.0, 844.0))] {
         let page = page("lab=view&a=walk&play=off&stage=paper&theme=dark");
         let mut harness = harness(size, Theme::default(), page);
@@ -202,7 +202,7 @@ fn outcome(page: &Page) -> &Outcome {
 /// Inside another page no panel covers another: the row with the play button was half under the
 /// stage where tracks need room.
 #[test]
-fn an_embedded_page_shows_all_of_its_timeline() {
+fn embedded_page_of_any_size_shows_the_whole_timeline() {
     for lab in ["blend", "transition", "loop", "register", "graph", "match"] {
         for (name, size) in
             [("phone", PHONE), ("desk", vec2(800.0, 500.0)), ("projector", vec2(1280.0, 720.0))]
@@ -230,7 +230,7 @@ fn an_embedded_page_shows_all_of_its_timeline() {
 
 /// After a drag Space plays the motion, unless the focus came by the keyboard.
 #[test]
-fn space_plays_after_a_drag() {
+fn space_after_a_drag_plays() {
     let mut harness = harness(DESK, DARK, page("lab=blend&play=off"));
     let plays = |harness: &Harness<'_, Page>| harness.state().session.params().is_on(Key::Play);
     let slider = harness.get_by_label("Blend window").rect();
@@ -253,7 +253,7 @@ fn space_plays_after_a_drag() {
 
 /// Every pane of a comparison has its own slider.
 #[test]
-fn values_side_by_side_are_dragged_one_by_one() {
+fn compared_values_have_a_slider_each() {
     let mut harness = harness(DESK, DARK, page("compare=blend_window:30,15,10&play=off"));
     picture("compare-rows", &mut harness);
     harness.get_by_label("Blend window · 2").focus();
@@ -276,7 +276,7 @@ fn values_side_by_side_are_dragged_one_by_one() {
 }
 
 #[test]
-fn choices_side_by_side_have_a_row_each() {
+fn compared_choices_have_a_row_each() {
     let mut harness = harness(DESK, DARK, page("compare=weight_law:smooth,linear&play=off"));
     picture("compare-choices", &mut harness);
     assert!(harness.query_by_label("Weight law").is_none());
@@ -295,7 +295,7 @@ fn choices_side_by_side_have_a_row_each() {
 /// Every row with a choice shows the current value: as the text of its menu, or as the chosen
 /// option.
 #[test]
-fn choices_show_the_value_in_force() {
+fn choice_shows_the_current_value() {
     let shows = |link: &str, label: &str, words: &[(&str, bool)]| {
         let mut harness = harness(DESK, DARK, page(&format!("{link}&play=off")));
         harness.run_steps(2);
@@ -314,7 +314,7 @@ fn choices_show_the_value_in_force() {
 }
 
 #[test]
-fn escape_closes_a_menu_and_nothing_behind_it() {
+fn escape_with_an_open_menu_closes_only_the_menu() {
     let mut harness = harness(DESK, DARK, page("lab=transition&play=off"));
     harness.state_mut().state.help_open = true;
     harness.run_steps(2);
@@ -331,13 +331,13 @@ fn escape_closes_a_menu_and_nothing_behind_it() {
 }
 
 #[test]
-fn the_first_visit_says_what_to_watch() {
+fn first_visit_has_a_hint() {
     assert!(labs::welcome(&Session::new()).is_some());
     assert!(labs::welcome(&page("lab=transition").session).is_none());
 }
 
 #[test]
-fn an_embedded_page_keeps_the_rows_that_its_link_names() {
+fn embedded_page_keeps_the_rows_of_its_link() {
     let link = "lab=blend&embed=1&blend_window=30&a=walk&look=both&play=off";
     let mut harness = harness(vec2(800.0, 500.0), DARK, page(link));
     harness.run_steps(2);
@@ -364,7 +364,7 @@ fn every_lab_has_a_key() {
 }
 
 #[test]
-fn notices_of_any_length_can_be_closed_one_after_the_other() {
+fn notice_of_any_length_can_be_closed() {
     for size in [DESK, PHONE] {
         let mut page = page("lab=view&play=off");
         for n in 0..6 {
@@ -399,7 +399,7 @@ fn notices_of_any_length_can_be_closed_one_after_the_other() {
 }
 
 #[test]
-fn notice_offers_to_mend_a_clip() {
+fn notice_about_a_damaged_clip_offers_to_correct_it() {
     let mut page = page("lab=view&play=off");
     page.obeys = false;
     let walk = page

@@ -317,7 +317,7 @@ mod tests {
     }
 
     #[test]
-    fn a_projector_makes_text_larger_and_keeps_the_order_of_the_scale() {
+    fn projector_theme_enlarges_text_in_the_same_order() {
         let (desk, hall) = (Theme::default(), Theme { projector: true, ..Theme::default() });
         for step in [Type::Title, Type::Body, Type::Small, Type::Caps] {
             assert!(hall.font(step).size > desk.font(step).size);

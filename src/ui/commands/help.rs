@@ -74,7 +74,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_line_of_the_list_names_its_keys() {
+    fn shortcut_list_names_the_keys_of_every_line() {
         let list: Vec<(String, &str)> =
             help().map(|(keys, what)| (keys.to_string(), what.english())).collect();
         let keys = |what: &str| {

@@ -563,7 +563,7 @@ fn assert_nothing_sticks_out(size: Vec2, harness: &Harness<'_, Mock>) {
 }
 
 #[test]
-fn a_lab_fits_desk_projector_and_phone() {
+fn lab_fits_desk_projector_and_phone() {
     let hall = Theme { dark: true, projector: true };
     let places = [
         ("desk-dark", DESK, DARK),
@@ -581,7 +581,7 @@ fn a_lab_fits_desk_projector_and_phone() {
 }
 
 #[test]
-fn menus_notices_and_hovers_are_to_be_seen() {
+fn menus_notices_and_hovers_are_drawn() {
     let mut harness =
         harness(DESK, DARK, Mock { notices: true, caption: false, ..Mock::default() });
     harness.run();

@@ -151,7 +151,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_line_is_never_at_the_edge() {
+    fn histogram_line_is_never_at_the_edge() {
         let counts = [1, 2, 3, 9, 40, 30, 20, 10, 5, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1];
         let of = |value| {
             shown_bins(&Histogram {

@@ -343,7 +343,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn all_of_it_stays_all_of_it_on_a_field_of_another_size() {
+    fn window_of_the_whole_stays_whole_on_another_size() {
         for side in [120.0, 317.0, 640.0] {
             let whole = Window::whole(1000.0, side);
             assert_eq!(Window::whole(1000.0, 500.0).on(500.0, side).bounded(1000.0, side), whole);
@@ -356,7 +356,7 @@ mod tests {
     }
 
     #[test]
-    fn whoever_comes_nearer_sees_the_marks_that_there_was_no_room_for() {
+    fn marks_in_view_grow_in_number_with_the_zoom() {
         // A hundred to a side, in falling importance from the top to the bottom.
         let marks: Vec<MatrixMark> = (0..10_000)
             .map(|index| MatrixMark {
@@ -395,7 +395,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_under_the_pointer_stays_there_and_nothing_lies_outside() {
+    fn zoom_keeps_the_point_under_the_pointer_and_the_bounds() {
         let window = Window::whole(1000.0, 500.0);
         let at = vec2(100.0, 400.0);
         let near = window.zoomed(4.0, at);

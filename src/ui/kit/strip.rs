@@ -242,7 +242,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_arc_is_felt_along_its_line() {
+    fn arc_distance_is_measured_to_its_line() {
         let points = [pos2(0.0, 100.0), pos2(0.0, 20.0), pos2(90.0, 20.0), pos2(90.0, 100.0)];
         assert!(distance(&points, pos2(45.0, 40.0)) < 0.5);
         assert!(distance(&points, pos2(45.0, 90.0)) > 30.0);

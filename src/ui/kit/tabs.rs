@@ -133,7 +133,7 @@ mod tests {
     use super::fitting;
 
     #[test]
-    fn the_chosen_tab_is_always_there() {
+    fn tabs_that_fit_include_the_chosen_one() {
         let widths = [50.0; 10];
         let all = 10.0 * 50.0 + 9.0 * 2.0;
         assert_eq!(fitting(&widths, 0, all, 30.0).len(), 10);

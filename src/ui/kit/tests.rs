@@ -70,7 +70,7 @@ fn slider(value: f64, source: Source) -> Harness<'static, Slid> {
 }
 
 #[test]
-fn arrow_keys_step_a_slider_and_shift_steps_finely() {
+fn slider_under_arrow_keys_steps_and_with_shift_finely() {
     let mut harness = slider(30.0, Source::Manual);
     harness.get_by_label("Blend window").focus();
     harness.run();
@@ -96,7 +96,7 @@ fn arrow_keys_step_a_slider_and_shift_steps_finely() {
 }
 
 #[test]
-fn a_double_click_on_the_label_resets_a_slider() {
+fn slider_double_clicked_on_its_label_is_reset() {
     let mut harness = slider(30.0, Source::ManualOverAuto);
     // The label is a hidden target above the track; the track has the name.
     let track = harness.get_by_label("Blend window").rect();
@@ -109,7 +109,7 @@ fn a_double_click_on_the_label_resets_a_slider() {
 }
 
 #[test]
-fn dragging_a_slider_is_one_gesture_and_the_handle_does_not_jump() {
+fn slider_dragged_by_its_handle_moves_in_one_gesture() {
     let mut harness = slider(50.0, Source::Manual);
     let track = harness.get_by_label("Blend window").rect();
     // A press beside the middle of the handle keeps the value.
@@ -133,7 +133,7 @@ fn dragging_a_slider_is_one_gesture_and_the_handle_does_not_jump() {
 }
 
 #[test]
-fn a_value_can_be_typed_and_escape_leaves_it() {
+fn slider_value_can_be_typed_and_escape_keeps_it() {
     let mut harness = slider(30.0, Source::Manual);
     let value = "Blend window: Click to type a value";
     for (typed, key, expected) in [
@@ -155,7 +155,7 @@ fn a_value_can_be_typed_and_escape_leaves_it() {
 }
 
 #[test]
-fn dragging_takes_over_an_automatic_value() {
+fn slider_dragged_from_automatic_is_set() {
     let mut harness = slider(50.0, Source::Auto);
     assert_eq!(harness.state().changes, 0);
     let track = harness.get_by_label("Blend window").rect();
@@ -166,7 +166,7 @@ fn dragging_takes_over_an_automatic_value() {
 }
 
 #[test]
-fn the_word_auto_gives_a_value_back_to_the_app() {
+fn slider_reset_by_auto_is_automatic() {
     let mut harness = slider(30.0, Source::ManualOverAuto);
     harness.get_by_label("Blend window: auto").click();
     harness.run();
@@ -180,7 +180,7 @@ fn the_word_auto_gives_a_value_back_to_the_app() {
 }
 
 #[test]
-fn a_text_field_is_finished_by_enter_and_not_by_escape() {
+fn text_field_is_finished_by_enter_and_not_by_escape() {
     let mut harness = bench((String::new(), 0), |(text, committed), ui| {
         *committed +=
             usize::from(text_field_ui(Word::new("Name"), Word::new("a name"), text, ui).committed);
@@ -200,7 +200,7 @@ fn a_text_field_is_finished_by_enter_and_not_by_escape() {
 }
 
 #[test]
-fn screen_readers_can_read_and_set_a_slider() {
+fn slider_can_be_read_and_set_by_screen_readers() {
     let mut harness = slider(30.0, Source::Manual);
     let node = harness.get_by_label("Blend window");
     assert_eq!(node.accesskit_node().numeric_value(), Some(30.0));
@@ -214,7 +214,7 @@ fn screen_readers_can_read_and_set_a_slider() {
 }
 
 #[test]
-fn a_switch_turns_by_click_and_by_key() {
+fn switch_turns_by_click_and_by_key() {
     let mut harness = bench(false, |on, ui| {
         if let Some(asked) = switch_row_ui(Word::new("Foot lock"), *on, ui) {
             *on = asked;
@@ -233,7 +233,7 @@ fn a_switch_turns_by_click_and_by_key() {
 }
 
 #[test]
-fn segments_are_chosen_by_click_and_by_arrows() {
+fn segment_is_chosen_by_click_and_by_arrows() {
     let mut harness = bench((0, 0), |(chosen, asked), ui| {
         if let Some(value) = segmented_ui(
             Word::new("Method"),
@@ -265,7 +265,7 @@ fn segments_are_chosen_by_click_and_by_arrows() {
 }
 
 #[test]
-fn a_choice_opens_and_closes_and_says_what_was_chosen() {
+fn choice_opens_closes_and_returns_the_option() {
     let mut harness = bench('a', |chosen, ui| {
         if let Some(value) = choice_row_ui(
             Word::new("Blend in"),
@@ -287,7 +287,7 @@ fn a_choice_opens_and_closes_and_says_what_was_chosen() {
 }
 
 #[test]
-fn a_clip_its_letter_and_its_actions_are_told_apart() {
+fn clip_row_tells_clicks_on_row_letter_and_actions_apart() {
     let mut harness = bench(Vec::new(), |done: &mut Vec<String>, ui| {
         let actions = [(Icon::Pencil, Word::new("Rename")), (Icon::Trash, Word::new("Remove"))];
         let row = ClipRow {
@@ -318,7 +318,7 @@ fn a_clip_its_letter_and_its_actions_are_told_apart() {
 }
 
 #[test]
-fn notices_are_dismissed_and_acted_on_and_tasks_are_stopped() {
+fn notice_and_task_report_their_buttons() {
     let mut harness = bench(
         (Vec::new(), false),
         |(events, stopped): &mut (Vec<NoticeEvent>, bool), ui| {
@@ -394,7 +394,7 @@ fn timeline() -> Harness<'static, Timed> {
 }
 
 #[test]
-fn the_timeline_seeks_scrubs_and_steps_by_frames() {
+fn timeline_seeks_scrubs_and_steps_by_frames() {
     let mut harness = timeline();
     let area = harness.get_by_label("Timeline").rect();
     let at = |time: f32| pos2(area.left() + time / 10.0 * area.width(), area.bottom() - 4.0);
@@ -429,7 +429,7 @@ fn the_timeline_seeks_scrubs_and_steps_by_frames() {
 }
 
 #[test]
-fn an_edge_of_the_transition_is_dragged_as_one_gesture() {
+fn transition_edge_is_dragged_in_one_gesture() {
     let mut harness = timeline();
     let area = harness.get_by_label("Timeline").rect();
     let edge = harness.get_by_label("Transition start").rect();
@@ -450,7 +450,7 @@ fn an_edge_of_the_transition_is_dragged_as_one_gesture() {
 }
 
 #[test]
-fn transport_asks_to_play_step_and_change_speed() {
+fn transport_reports_play_step_and_speed() {
     let mut harness = Harness::builder()
         .with_size(vec2(800.0, 400.0))
         .with_context_setup(|ctx| Theme::default().install(ctx))
@@ -486,7 +486,7 @@ fn transport_asks_to_play_step_and_change_speed() {
 }
 
 #[test]
-fn tabs_fold_into_a_menu_where_there_is_no_room() {
+fn tabs_without_room_fold_into_a_menu() {
     const LABS: [(usize, Word); 4] = [
         (0, Word::new("View")),
         (1, Word::new("Blend")),
@@ -515,7 +515,7 @@ fn tabs_fold_into_a_menu_where_there_is_no_room() {
 }
 
 #[test]
-fn of_many_tabs_those_without_room_stand_in_a_menu() {
+fn tabs_beyond_the_width_are_in_a_menu() {
     const NAMES: [&str; 10] = [
         "View",
         "Make",

@@ -234,7 +234,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn keys_move_between_their_neighbours() {
+    fn key_moves_between_its_neighbours() {
         let keys = [(0, 0), (50, 100), (100, 0)];
         let to = |index, key| match moved(&keys, index, key) {
             Some(WeightCurveEvent::Keys(keys)) => keys[index],

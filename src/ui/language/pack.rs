@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn pack_of_other_files_is_refused() {
+    fn language_pack_of_other_files_is_refused() {
         assert!(read(br#"{"words": {"left": "right"}}"#, b"OTTO").is_ok());
         assert!(matches!(read(b"<!doctype html>", b"OTTO"), Err(PackError::Texts)));
         assert!(matches!(read(br#"{"a": "b"}"#, b"OTTO"), Err(PackError::Texts)));

@@ -64,7 +64,7 @@ mod tests {
     use segue_session::{Command, Session};
 
     #[test]
-    fn panes_are_ranked_by_the_numbers_of_every_lab() {
+    fn panes_are_ranked_by_the_metrics_of_every_lab() {
         for (link, best, worst) in [
             ("compare=blend_window:30,15,10", 0, 2),
             ("lab=transition&compare=mistake:none,hemisphere", 0, 1),

@@ -95,7 +95,7 @@ fn every_lab_is_in_chinese() {
 }
 
 #[test]
-fn the_switch_asks_for_the_other_language_and_screen_readers_hear_it() {
+fn language_switch_asks_for_the_other_language() {
     let pack = pack();
     let mut harness = chinese(DESK, DARK, "lab=blend&play=off", &pack);
     harness.get_by_label("複製連結");
@@ -116,7 +116,7 @@ fn the_switch_asks_for_the_other_language_and_screen_readers_hear_it() {
 
 /// The words "Walk" and "walk" have translations; names of the user's clips are not translated.
 #[test]
-fn name_of_a_users_clip_that_is_also_a_word_stays_as_it_is() {
+fn name_of_a_users_clip_that_is_also_a_word_is_not_translated() {
     let pack = pack();
     for name in ["Walk", "walk"] {
         let mut page = with_file("lab=view&play=off");

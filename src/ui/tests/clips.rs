@@ -67,7 +67,7 @@ pub(super) fn loaded(page: &Page) -> &Entry {
 }
 
 #[test]
-fn the_clip_panel_tells_what_was_read() {
+fn clip_panel_shows_the_facts_of_the_file() {
     let page = with_file("lab=view&play=off");
     let entry = loaded(&page);
     assert!(entry.about.as_ref().unwrap().t_pose_first_row, "{:?}", entry.about);
@@ -95,7 +95,7 @@ fn the_clip_panel_tells_what_was_read() {
 }
 
 #[test]
-fn what_is_said_by_hand_reads_the_file_again() {
+fn correction_by_hand_reads_the_file_again() {
     let mut page = with_file("lab=view&play=off");
     page.obeys = false;
     let mut harness = harness(DESK, DARK, page);
@@ -131,7 +131,7 @@ fn what_is_said_by_hand_reads_the_file_again() {
 }
 
 #[test]
-fn a_joint_of_the_tree_is_chosen_by_pointer_and_by_keyboard() {
+fn joint_of_the_tree_is_chosen_by_pointer_and_by_keyboard() {
     let mut harness = harness(DESK, DARK, with_file("lab=view&play=off&joint=tail"));
     press("Joints", &mut harness);
     let chosen =
@@ -168,7 +168,7 @@ fn a_joint_of_the_tree_is_chosen_by_pointer_and_by_keyboard() {
 }
 
 #[test]
-fn the_library_opens_the_same_panel_under_the_row() {
+fn library_opens_the_clip_panel_under_the_row() {
     for (name, size, theme) in [
         ("details-desk-dark", DESK, DARK),
         ("details-projector", vec2(1280.0, 720.0), HALL),
@@ -186,7 +186,7 @@ fn the_library_opens_the_same_panel_under_the_row() {
 }
 
 #[test]
-fn the_library_tells_how_far_the_work_is_stored() {
+fn library_shows_how_far_the_work_is_stored() {
     let mut harness = harness(DESK, DARK, page("lab=view&play=off"));
     for words in [text::SAVED.english(), text::SAVING.english(), text::NOT_ALL_SAVED.english()] {
         assert!(harness.query_by_label(words).is_none(), "{words} where nothing is stored");
@@ -204,7 +204,7 @@ fn the_library_tells_how_far_the_work_is_stored() {
 }
 
 #[test]
-fn memory_in_use_is_shown_once_it_is_more_than_a_quarter() {
+fn memory_in_use_above_a_quarter_is_shown() {
     let mut harness = harness(DESK, DARK, page("lab=view&play=off"));
     for (bytes, is_shown) in [(750_000_000, false), (1_234_000_000, true)] {
         harness.state_mut().session.note_memory(PageMemory {
@@ -220,7 +220,7 @@ fn memory_in_use_is_shown_once_it_is_more_than_a_quarter() {
 }
 
 #[test]
-fn a_motion_is_saved_as_it_is_wanted() {
+fn motion_is_saved_with_the_chosen_options() {
     let mut harness = harness(DESK, DARK, page("compare=blend_window:30,15,10&play=off"));
     harness.state_mut().state.filming = Filming { pictures: true, films: true, secs: Some(67.4) };
     press("Result", &mut harness);
@@ -248,7 +248,7 @@ fn a_motion_is_saved_as_it_is_wanted() {
 }
 
 #[test]
-fn a_clip_without_a_motion_says_why() {
+fn clip_without_a_motion_has_a_status() {
     let mut page = page("lab=blend&play=off");
     let text = ":FULLY-SPECIFIED\n:DEGREES\n1\nroot 0 0 0 0 0 0\n";
     page.session.load("alone.amc", Arc::from(text.as_bytes())).unwrap();
@@ -274,7 +274,7 @@ fn a_clip_without_a_motion_says_why() {
 }
 
 #[test]
-fn a_clip_of_another_skeleton_is_said_to_be_moved() {
+fn clip_of_another_skeleton_has_a_note_on_retargeting() {
     let mut page = with_file("lab=graph&clips=walk,walk_left&walk_seconds=10&play=off");
     let id = loaded(&page).id.clone();
     page.session
@@ -294,7 +294,7 @@ fn a_clip_of_another_skeleton_is_said_to_be_moved() {
 }
 
 #[test]
-fn a_clip_that_is_not_here_is_named_where_it_is_missed() {
+fn missing_clip_is_named_in_its_menu() {
     for (name, size, theme) in [("missing-desk", DESK, LIGHT), ("missing-phone", PHONE, DARK)] {
         let mut harness = harness(
             size,

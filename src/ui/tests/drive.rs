@@ -32,7 +32,7 @@ fn control(harness: &Harness<'_, Page>) -> Control {
 }
 
 #[test]
-fn keys_drive_away_from_the_camera_and_are_let_go() {
+fn keys_drive_away_from_the_camera_until_released() {
     let mut harness = harness(DESK, DARK, page(&format!("{SMALL}&camera_yaw=180")));
     harness.key_down(Keyboard::W);
     play(2, &mut harness);
@@ -88,7 +88,7 @@ fn keys_drive_away_from_the_camera_and_are_let_go() {
 }
 
 #[test]
-fn the_stick_drives_while_it_is_held_and_leaves_the_camera() {
+fn stick_drives_while_held_and_leaves_the_camera() {
     let mut harness = harness(PHONE, DARK, page(&format!("{SMALL}&camera_yaw=180")));
     harness.run_steps(2);
     let stick = harness.get_by_label("Stick: drive the character").rect();
@@ -109,7 +109,7 @@ fn the_stick_drives_while_it_is_held_and_leaves_the_camera() {
 }
 
 #[test]
-fn a_gamepad_pushes_by_as_much_as_it_is_pushed() {
+fn gamepad_drives_in_proportion_to_its_push() {
     let mut harness = harness(DESK, DARK, page(&format!("{SMALL}&camera_yaw=180")));
     let mut pad = Gamepad { walk: [0.0, 0.1], ..Gamepad::default() };
     harness.state_mut().state.gamepad = Some(pad);
@@ -129,7 +129,7 @@ fn a_gamepad_pushes_by_as_much_as_it_is_pushed() {
 }
 
 #[test]
-fn a_search_tells_why_and_a_candidate_is_a_ghost() {
+fn candidate_under_the_pointer_is_shown_as_a_ghost() {
     let mut harness = harness(DESK, DARK, page(SMALL));
     harness.key_down(Keyboard::W);
     play(45, &mut harness);
@@ -154,7 +154,7 @@ fn a_search_tells_why_and_a_candidate_is_a_ghost() {
 }
 
 #[test]
-fn what_was_driven_is_played_again_and_one_may_drive_anew() {
+fn recorded_input_is_replayed_and_control_taken_again() {
     let mut harness = harness(DESK, LIGHT, page(SMALL));
     harness.key_down(Keyboard::W);
     play(40, &mut harness);
@@ -173,7 +173,7 @@ fn what_was_driven_is_played_again_and_one_may_drive_anew() {
 }
 
 #[test]
-fn the_lab_has_room_on_every_page() {
+fn match_lab_fits_every_page() {
     for (name, size, theme, link) in [
         ("match-desk-dark", DESK, DARK, "lab=match"),
         ("match-desk-light", DESK, LIGHT, "lab=match&scenario=spin&play=off&t=2.2"),
@@ -205,7 +205,7 @@ fn the_lab_has_room_on_every_page() {
 }
 
 #[test]
-fn a_stretch_is_tagged_by_hand() {
+fn stretch_is_tagged_by_hand() {
     let mut harness = harness(DESK, DARK, page(SMALL));
     play(5, &mut harness);
     press(text::TAGS.english(), &mut harness);

@@ -4,7 +4,7 @@ use super::*;
 use segue_session::Distances;
 
 #[test]
-fn the_graph_lab_shows_the_walk_the_distances_and_the_graph() {
+fn graph_lab_shows_walk_distances_and_graph() {
     for (name, size, theme, link) in [
         ("graph-desk-dark", DESK, DARK, "lab=graph&play=off&t=12"),
         ("graph-desk-light", DESK, LIGHT, "lab=graph&play=off&t=12"),
@@ -24,7 +24,7 @@ fn the_graph_lab_shows_the_walk_the_distances_and_the_graph() {
 }
 
 #[test]
-fn the_graph_lab_does_what_is_pressed() {
+fn graph_lab_reacts_to_its_controls() {
     let link = "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20&play=off";
     let mut harness = harness(DESK, DARK, page(link));
     let text_of = |harness: &Harness<'_, Page>, key: Key| {
@@ -141,7 +141,7 @@ fn the_graph_lab_does_what_is_pressed() {
 }
 
 #[test]
-fn whoever_sends_the_walk_where_no_way_leads_is_told() {
+fn visit_without_a_way_has_a_note() {
     let link =
         "lab=graph&clips=walk,walk_left,walk_right,idle&walk_seconds=20&blend_window=20&play=off";
     for theme in [DARK, LIGHT] {
@@ -166,7 +166,7 @@ fn whoever_sends_the_walk_where_no_way_leads_is_told() {
 }
 
 #[test]
-fn parts_that_do_not_reach_each_other_are_told_apart() {
+fn separate_components_have_colours_of_their_own() {
     let link = "lab=graph&clips=walk,run,idle,jump,walk_left&walk_seconds=20&edge_threshold=5&prune=off&play=off";
     for (name, theme) in [("graph-parts-dark", DARK), ("graph-parts-light", LIGHT)] {
         let mut harness = harness(DESK, theme, page(link));
@@ -177,7 +177,7 @@ fn parts_that_do_not_reach_each_other_are_told_apart() {
 }
 
 #[test]
-fn the_distances_of_very_many_frames_are_seen_from_afar_and_nearby() {
+fn distances_of_many_frames_are_drawn_at_every_zoom() {
     let clips = "walk(make_seconds:30),walk(turn_rate:20,make_seconds:30),run(make_seconds:30),walk(turn_rate:-20,make_seconds:20)";
     let link = format!("lab=graph&clips={clips}&walk_seconds=20&play=off&t=5");
     let mut harness = harness(DESK, DARK, page(&link));

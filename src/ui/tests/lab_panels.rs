@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn a_blend_of_two_skeletons_says_what_was_not_matched() {
+fn blend_of_two_skeletons_names_unmatched_joints() {
     let page = with_file("lab=blend&b=run&play=off");
     assert_eq!(outcome(&page).retargeted.as_ref().unwrap().unmatched, ["Tail"]);
     for (name, size, theme) in
@@ -17,7 +17,7 @@ fn a_blend_of_two_skeletons_says_what_was_not_matched() {
 }
 
 #[test]
-fn a_gait_takes_any_speed_and_says_when_that_is_a_guess() {
+fn speed_beyond_both_clips_has_a_warning() {
     for (name, size, theme, link) in [
         ("speed-desk-dark", DESK, DARK, "lab=speed&play=off&t=1"),
         ("speed-desk-light", DESK, LIGHT, "lab=speed&speed=9&foot_lock=on&play=off"),
@@ -47,7 +47,7 @@ fn a_gait_takes_any_speed_and_says_when_that_is_a_guess() {
 }
 
 #[test]
-fn lock_settings_are_offered_while_feet_are_held() {
+fn lock_rows_are_shown_while_feet_are_locked() {
     let rows = ["Lock blend", "Lock reach", "Swing clearance"];
     let mut harness = harness(DESK, DARK, page("lab=blend&play=off"));
     press(text::FEET.english(), &mut harness);
@@ -61,7 +61,7 @@ fn lock_settings_are_offered_while_feet_are_held() {
 }
 
 #[test]
-fn a_loop_says_where_it_was_cut_and_what_its_method_does() {
+fn loop_lab_describes_its_cut_and_method() {
     for (name, size, theme, link) in [
         ("loop-desk-dark", DESK, DARK, "lab=loop&play=off&t=1"),
         (
@@ -95,7 +95,7 @@ fn a_loop_says_where_it_was_cut_and_what_its_method_does() {
 }
 
 #[test]
-fn the_layers_lab_says_how_time_goes_and_where_the_layer_is() {
+fn layers_lab_describes_timing_and_mask() {
     for (name, size, theme, link) in [
         ("layers-desk-dark", DESK, DARK, "lab=layers&play=off&t=1"),
         ("layers-additive-light", DESK, LIGHT, "lab=layers&layer_mode=additive&b=jump&play=off"),
@@ -126,7 +126,7 @@ fn the_layers_lab_says_how_time_goes_and_where_the_layer_is() {
 }
 
 #[test]
-fn a_mistake_is_chosen_explained_and_held_against_the_right_way() {
+fn mistake_is_explained_and_compared_with_the_right_way() {
     let mut harness = harness(DESK, DARK, page("lab=transition&play=off&t=2.3"));
     assert!(harness.query_by_label(text::RIGHT_AND_WRONG.english()).is_none());
     press("Break it", &mut harness);
@@ -153,7 +153,7 @@ fn a_mistake_is_chosen_explained_and_held_against_the_right_way() {
 }
 
 #[test]
-fn every_mistake_has_its_sentence() {
+fn mistake_of_any_kind_has_a_description() {
     for &mistake in Mistake::ALL {
         assert_eq!(text::mistake(mistake).is_empty(), mistake == Mistake::None, "{mistake:?}");
     }

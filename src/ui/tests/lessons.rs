@@ -38,7 +38,7 @@ fn go(label: &str, harness: &mut Harness<'_, Page>) {
 }
 
 #[test]
-fn a_lesson_is_read_tried_and_left() {
+fn lesson_is_read_tried_and_left() {
     let mut harness = harness(DESK, DARK, page("lab=make&gait=run&play=off"));
     go(text::LESSONS.english(), &mut harness);
     picture("lessons-contents", &mut harness);
@@ -87,7 +87,7 @@ fn a_lesson_is_read_tried_and_left() {
 }
 
 #[test]
-fn a_lesson_is_worked_by_the_keyboard() {
+fn lesson_works_by_keyboard() {
     let mut harness = harness(DESK, LIGHT, lesson("lesson=foot_skate&lab=blend&play=off"));
     let node = harness.get_by_label("Only foot lock");
     node.focus();
@@ -103,7 +103,7 @@ fn a_lesson_is_worked_by_the_keyboard() {
 }
 
 #[test]
-fn a_lesson_that_does_not_come_says_why() {
+fn lesson_that_fails_to_load_says_why() {
     let mut harness = harness(PHONE, DARK, lesson("lesson=https://example.org/steps.md"));
     harness.get_by_label_contains("There is no file at https://example.org/steps.md");
     press(text::TRY_AGAIN.english(), &mut harness);
@@ -112,7 +112,7 @@ fn a_lesson_that_does_not_come_says_why() {
 }
 
 #[test]
-fn lessons_look_well_everywhere() {
+fn lessons_are_drawn_in_every_layout_and_language() {
     for (name, size, theme, link) in [
         ("desk-dark", DESK, DARK, "lesson=alignment&play=off&t=2.5"),
         ("desk-light", DESK, LIGHT, "lesson=half_life&play=off&t=2.5"),
@@ -184,7 +184,7 @@ fn harness_in_chinese(size: Vec2, theme: Theme, page: Page) -> Harness<'static, 
 
 /// The characters of the Chinese lessons are checked with the translations.
 #[test]
-fn every_letter_of_the_lessons_is_in_the_font() {
+fn every_character_of_the_lessons_is_in_the_font() {
     let harness = harness(PHONE, DARK, page("lab=make&play=off"));
     for name in segue_session::lesson::LESSONS {
         let file = segue_session::lesson::file_name(name).expect("a lesson of the list");
@@ -221,7 +221,7 @@ fn link_to_the_web_has_its_host_beside_it_and_opens_by_the_platform() {
 }
 
 #[test]
-fn lesson_that_is_waited_for_can_be_stopped() {
+fn lesson_that_is_loading_can_be_stopped() {
     let mut harness = harness(DESK, DARK, page("lesson=https://school.example/mine.md"));
     press(text::STOP_LOADING.english(), &mut harness);
     assert_eq!(harness.state().out.actions.as_slice(), [Action::StopLesson]);

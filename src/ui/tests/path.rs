@@ -41,7 +41,7 @@ fn drag(way: &[Pos2], harness: &mut Harness<'_, Page>) {
 }
 
 #[test]
-fn the_lab_opens_with_its_path_in_sight() {
+fn path_lab_opens_with_its_path_in_sight() {
     for (name, size, theme, link) in [
         ("path-desk-dark", DESK, DARK, "lab=path&a=walk_left&play=off&t=1.5"),
         ("path-desk-light", DESK, LIGHT, "lab=path&a=walk_left&play=off&t=1.5"),
@@ -79,7 +79,7 @@ fn the_lab_opens_with_its_path_in_sight() {
 }
 
 #[test]
-fn a_point_is_dragged_with_the_result_under_the_hand() {
+fn control_point_under_the_pointer_is_dragged() {
     for camera in ["", "&camera=top&camera_distance=9&follow=off"] {
         let mut harness = lab(DESK, DARK, &format!("lab=path&a=walk&play=off{camera}"));
         let (before, from) = (points(&harness), handle(4, &harness));
@@ -114,7 +114,7 @@ fn a_point_is_dragged_with_the_result_under_the_hand() {
 }
 
 #[test]
-fn a_finger_drags_a_point_too() {
+fn control_point_under_a_finger_is_dragged() {
     let mut harness = lab(PHONE, LIGHT, "lab=path&a=walk&play=off");
     let from = handle(3, &harness);
     let touch = |phase, pos| Event::Touch {
@@ -144,7 +144,7 @@ fn a_finger_drags_a_point_too() {
 }
 
 #[test]
-fn keys_move_a_point_go_to_the_next_and_take_one_out() {
+fn control_point_with_the_focus_is_moved_and_removed_by_keys() {
     let mut harness = lab(DESK, DARK, "lab=path&a=walk&play=off");
     harness.get_by_label_contains("Control point 3 of").focus();
     harness.run_steps(2);
@@ -171,7 +171,7 @@ fn keys_move_a_point_go_to_the_next_and_take_one_out() {
 }
 
 #[test]
-fn a_double_click_on_the_path_adds_a_point_where_it_is() {
+fn path_double_clicked_has_a_new_point_there() {
     let mut harness = lab(DESK, DARK, "lab=path&a=walk&play=off");
     let [one, two] = [5, 6].map(|number| handle(number, &harness));
     let middle = one.lerp(two, 0.45);
@@ -185,7 +185,7 @@ fn a_double_click_on_the_path_adds_a_point_where_it_is() {
 }
 
 #[test]
-fn a_path_is_drawn_by_hand() {
+fn path_is_drawn_by_hand() {
     let mut harness = lab(DESK, DARK, "lab=path&a=walk&play=off");
     press(text::DRAW.english(), &mut harness);
     harness.get_by_label(text::DRAW_HINT.english());
@@ -218,7 +218,7 @@ fn a_path_is_drawn_by_hand() {
 }
 
 #[test]
-fn buttons_edit_the_whole_path_and_reset_brings_it_back() {
+fn whole_path_is_edited_by_buttons_and_reset() {
     let mut harness = lab(DESK, DARK, "lab=path&a=walk_left&play=off");
     let original = points(&harness);
     for label in [
@@ -247,7 +247,7 @@ fn buttons_edit_the_whole_path_and_reset_brings_it_back() {
 }
 
 #[test]
-fn the_camera_goes_back_where_it_was_when_the_lab_is_left() {
+fn camera_is_restored_when_the_path_lab_is_left() {
     let mut harness = lab(DESK, DARK, "lab=path&a=walk&play=off");
     assert_eq!(harness.state().session.params().choice::<choices::Follow>().word(), "off");
     press("View", &mut harness);

@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn the_register_lab_shows_the_map_and_what_follows_it() {
+fn register_lab_shows_the_map_and_its_curves() {
     for (name, size, theme, link) in [
         ("register-desk-dark", DESK, DARK, "lab=register&play=off&t=1"),
         (
@@ -42,7 +42,7 @@ fn the_register_lab_shows_the_map_and_what_follows_it() {
 }
 
 #[test]
-fn a_weight_over_time_is_drawn_by_hand() {
+fn weight_over_time_is_drawn_by_hand() {
     let mut harness = harness(DESK, DARK, page("lab=register&play=off"));
     press(text::WEIGHT_OVER_TIME.english(), &mut harness);
     let label = Key::WarpCurve.param().label;
@@ -79,7 +79,7 @@ fn a_weight_over_time_is_drawn_by_hand() {
 }
 
 #[test]
-fn the_map_is_pointed_at_pressed_and_pinned() {
+fn map_under_the_pointer_previews_seeks_and_pins() {
     let mut harness = harness(DESK, DARK, page("lab=register&play=off"));
     let field = harness.get_by_label(text::DISTANCES.english()).rect();
     let at = |x: f32, y: f32| field.min + vec2(x * field.width(), y * field.height());

@@ -30,7 +30,7 @@ fn serve(harness: &mut Harness<'_, Page>) {
 }
 
 #[test]
-fn one_click_loads_the_set_with_progress_and_undo_takes_it_back() {
+fn set_of_takes_is_loaded_by_one_click_and_undone() {
     let set = &Session::sample_sets()[0];
     let mut harness = harness(DESK, DARK, page("lab=blend&play=off"));
     let first = set.samples[0].label;
@@ -58,7 +58,7 @@ fn one_click_loads_the_set_with_progress_and_undo_takes_it_back() {
 }
 
 #[test]
-fn a_button_changes_the_motion_of_every_lab_that_has_a_set() {
+fn button_of_a_set_changes_the_motion_of_every_lab() {
     let (made, captured) = (text::clip_set(ClipSet::Made).0, text::clip_set(ClipSet::Captured).0);
     for lab in ["speed", "loop", "register", "path", "graph", "match"] {
         let mut harness =
@@ -78,7 +78,7 @@ fn a_button_changes_the_motion_of_every_lab_that_has_a_set() {
 }
 
 #[test]
-fn the_users_own_clips_fill_graph_and_match_with_one_click() {
+fn own_clips_fill_graph_and_match_by_one_click() {
     for lab in ["graph", "match"] {
         let mut harness =
             harness(DESK, DARK, with_file(&format!("lab={lab}&scenario=straight&play=off")));

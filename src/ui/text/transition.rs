@@ -149,7 +149,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_not_matched_is_named_and_counted() {
+    fn unmatched_joints_are_named_and_counted() {
         let told = |names: &[&str]| {
             retargeted(&RetargetReport {
                 unmatched: names.iter().map(|name| (*name).to_owned()).collect(),

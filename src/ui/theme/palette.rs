@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn all_text_reaches_aa_on_what_it_stands_on() {
+    fn text_reaches_aa_on_its_grounds() {
         for (theme, p) in themes() {
             let mut pairs = Vec::new();
             let inks = [
@@ -292,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn controls_stand_out_from_panels() {
+    fn controls_reach_a_contrast_of_3_on_panels() {
         // WCAG 1.4.11: the parts that identify a control reach a contrast of 3.
         for (theme, p) in themes() {
             for (name, fill) in [
@@ -311,7 +311,7 @@ mod tests {
     }
 
     #[test]
-    fn a_is_warm_and_b_is_cool() {
+    fn colours_of_a_are_warm_and_of_b_cool() {
         for (_, p) in themes() {
             assert!(p.a.r() > p.a.b() && p.b.b() > p.b.r());
         }

@@ -192,7 +192,7 @@ mod tests {
     use segue_session::{Command, Session};
 
     #[test]
-    fn the_results_of_all_panes_are_drawn_over_each_other() {
+    fn curves_of_all_panes_share_the_plot() {
         let mut session = Session::new();
         session
             .apply(Command::OpenLink(

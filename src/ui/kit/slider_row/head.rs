@@ -183,7 +183,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn typed_numbers_may_carry_units_and_commas() {
+    fn typed_number_may_have_a_unit_and_a_comma() {
         assert_eq!(parsed(" 30 frames"), Some(30.0));
         assert_eq!(parsed("0,25 s"), Some(0.25));
         assert_eq!(parsed("−12.5°"), Some(-12.5));

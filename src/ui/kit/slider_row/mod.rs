@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn a_range_of_no_width_is_no_trap() {
+    fn range_of_no_width_keeps_its_value() {
         let row = SliderRow::new(Word::new("x"), 2.0..=2.0, 2.0);
         assert_eq!(row.position(2.0), 0.0);
         assert_eq!(row.value_at(0.5, row.step), 2.0);
