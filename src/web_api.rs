@@ -467,7 +467,7 @@ impl SegueHandle {
 
     async fn run_on(&self, canvas: HtmlCanvasElement, backends: Backends) -> Result<(), JsValue> {
         if backends == Backends::GL && is_lost(&canvas) {
-            return Err(error("the browser gives no WebGL context that lives"));
+            return Err(error("the browser provides no working WebGL context"));
         }
         let mut setup = WgpuSetupCreateNew::without_display_handle();
         setup.instance_descriptor.backends = backends;

@@ -61,7 +61,7 @@ async function install() {
   // host is being updated.
   if (!html.includes(`content="${BUILD}"`)) {
     await caches.delete(CACHE);
-    throw new Error("the page is of another build; next time");
+    throw new Error("the page is of another build; the next visit tries again");
   }
 }
 

@@ -72,7 +72,7 @@ onBackend("webgl2", "language that cannot be loaded leaves English", async ({ op
   await segue("set", { blend_window: 20 });
   assert.equal((await segue("params")).blend_window, 20);
   assert.equal(await page.evaluate(() => document.documentElement.lang), "en");
-  assert.equal(refused, 1, "it is not asked for again and again");
+  assert.equal(refused, 1, "it is requested once");
 });
 
 onBackend("webgl2", "panels of the page are in the browser's language", async ({ open }) => {

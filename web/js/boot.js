@@ -173,7 +173,7 @@ class RunningApp {
   panicText(fallback) {
     // The package and the line matter, not the folder on the machine that compiled it.
     const summary = this.#summary()?.replace(/^panicked at .*\/registry\/src\/[^/]+\//, "panicked at ");
-    return summary ?? String(fallback?.message ?? fallback ?? "The app stopped without a word.");
+    return summary ?? String(fallback?.message ?? fallback ?? "The app stopped without a message.");
   }
 
   /** Returns the app's summary of its panic; undefined where there was none. */
@@ -242,7 +242,7 @@ class RunningApp {
     }
     this.#restarting = false;
     if (this.stopped || !(last || this.#lostMeanwhile)) return;
-    showLost(String(last?.message ?? last ?? "It was lost again and again."), this.facts());
+    showLost(String(last?.message ?? last ?? "It was lost repeatedly."), this.facts());
   }
 
   async #replace() {

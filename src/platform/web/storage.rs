@@ -457,7 +457,7 @@ fn open_channel(inbox: &Inbox) -> Option<BroadcastChannel> {
         let text = event.data().as_string().unwrap_or_default();
         match serde_json::from_str(&text) {
             Ok(entries) => inbox.push(Incoming::StoredElsewhere(entries)),
-            Err(error) => log::warn!("another window said what is not understood: {error}"),
+            Err(error) => log::warn!("a message of another window cannot be read: {error}"),
         }
     });
     channel.set_onmessage(listener.as_ref());
