@@ -166,7 +166,7 @@ fn visit_without_a_way_has_a_note() {
 }
 
 #[test]
-fn separate_components_have_colours_of_their_own() {
+fn separate_components_are_drawn() {
     let link = "lab=graph&clips=walk,run,idle,jump,walk_left&walk_seconds=20&edge_threshold=5&prune=off&play=off";
     for (name, theme) in [("graph-parts-dark", DARK), ("graph-parts-light", LIGHT)] {
         let mut harness = harness(DESK, theme, page(link));
