@@ -184,7 +184,7 @@ fn slim_time_ui(
     });
 }
 
-/// One column: bar, stage, timeline, parameters.
+/// Draws the page of a phone in one column: bar, stage, timeline, parameters.
 fn phone_ui(
     session: &Session,
     state: &mut UiState,
@@ -243,7 +243,8 @@ fn phone_ui(
     });
 }
 
-/// Inside another page: the stage, a slim timeline, and the parameters that the link names.
+/// Draws the page inside another page: the stage, a slim timeline, and the parameters that the link
+/// names.
 fn embedded_ui(
     session: &Session,
     state: &mut UiState,

@@ -16,7 +16,7 @@ pub(crate) const TILE: usize = 256;
 /// The distance within which the pointer reaches a mark, points.
 const REACH: f32 = 9.0;
 /// The greatest number of marks in view: more could not be told apart.
-const MOST_MARKS: usize = 2_500;
+const MAX_MARKS: usize = 2_500;
 
 /// A tile of the picture. A texel is a square of cells, `factor` to a side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -227,13 +227,8 @@ fn seen_marks<'a>(matrix: &Matrix<'a>, window: &Window, side: f32) -> Vec<(usize
     let is_seen = |mark: &MatrixMark| {
         within(mark.at[0], window.corner.y) && within(mark.at[1], window.corner.x)
     };
-    let mut seen: Vec<_> = matrix
-        .marks
-        .iter()
-        .enumerate()
-        .filter(|(_, mark)| is_seen(mark))
-        .take(MOST_MARKS)
-        .collect();
+    let mut seen: Vec<_> =
+        matrix.marks.iter().enumerate().filter(|(_, mark)| is_seen(mark)).take(MAX_MARKS).collect();
     let lit = matrix.lit.filter(|lit| seen.binary_search_by_key(lit, |(index, _)| *index).is_err());
     let lit = lit.and_then(|lit| Some((lit, matrix.marks.get(lit)?)));
     // The first one is drawn last, above all others.
@@ -376,8 +371,8 @@ mod tests {
         let whole = Window::whole(1000.0, 500.0);
         let seen = seen_marks(&matrix, &whole, 500.0);
         assert_eq!(
-            (seen.len(), seen[0].0, seen[1].0, seen[MOST_MARKS].0),
-            (MOST_MARKS + 1, 9_999, 0, MOST_MARKS - 1)
+            (seen.len(), seen[0].0, seen[1].0, seen[MAX_MARKS].0),
+            (MAX_MARKS + 1, 9_999, 0, MAX_MARKS - 1)
         );
         // The lower right corner, where only the highlighted mark was shown.
         let near = whole.zoomed(4.0, vec2(500.0, 500.0));

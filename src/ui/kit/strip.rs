@@ -81,7 +81,7 @@ const GAP: f32 = 4.0;
 /// The distance within which the pointer reaches an arc, points.
 const REACH: f32 = 5.0;
 /// The greatest number of arcs: the most probable ones are drawn.
-const MOST_ARCS: usize = 500;
+const MAX_ARCS: usize = 500;
 /// Straight pieces by which the distance to an arc is measured.
 const PIECES: usize = 20;
 
@@ -123,9 +123,9 @@ pub(crate) fn strip_ui(strip: &Strip<'_>, height: f32, ui: &mut Ui) -> StripResp
         ]
     };
     let mut shown: Vec<usize> = (0..strip.arcs.len()).collect();
-    if shown.len() > MOST_ARCS {
+    if shown.len() > MAX_ARCS {
         shown.sort_by(|&a, &b| strip.arcs[b].weight.total_cmp(&strip.arcs[a].weight));
-        shown.truncate(MOST_ARCS);
+        shown.truncate(MAX_ARCS);
     }
     let pointer = response.hover_pos();
     let hovered_arc = pointer.filter(|pos| pos.y < bars.min - 1.0).and_then(|pos| {

@@ -13,7 +13,7 @@ use eframe::egui::{
 };
 
 /// The least number of tabs beside a menu: with fewer, the chosen one alone is clearer.
-const LEAST_TABS: usize = 3;
+const MIN_TABS: usize = 3;
 
 /// Draws tabs in one line, `width` points at most. Those without room are in a menu at the right
 /// end; the chosen one is always among the tabs. Where hardly any have room, the chosen one alone
@@ -37,7 +37,7 @@ pub(crate) fn tabs_ui<T: Copy + PartialEq>(
     // The button of the menu is as wide as it is high, and has a gap of its own.
     let shown = fitting(&widths, at, width, theme.row_height() + space::S);
     let mut picked = None;
-    if shown.len() < LEAST_TABS.min(options.len()) {
+    if shown.len() < MIN_TABS.min(options.len()) {
         let current = options.get(at).map_or(Word::default(), |option| option.1);
         let opener = button_ui(Button::new(current).trailing(Icon::ChevronDown).name(name), ui);
         picked = menu_of(&opener, chosen, options.iter().copied());

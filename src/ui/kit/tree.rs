@@ -46,7 +46,7 @@ struct Open {
 }
 
 /// The greatest indent: the many levels of fingers would leave no room for names.
-const MOST_INDENTS: usize = 9;
+const MAX_INDENTS: usize = 9;
 
 /// Draws a tree as wide as the panel. Only the rows in sight are laid out, with the content that
 /// `row_of` returns. Returns a new choice.
@@ -214,7 +214,7 @@ fn event_of(
 /// Returns the place of the sign that folds a row.
 fn chevron_of(row: Open, rect: Rect) -> Rect {
     let step = rect.height() * 0.42;
-    let left = rect.left() + space::XS + step * row.depth.min(MOST_INDENTS) as f32;
+    let left = rect.left() + space::XS + step * row.depth.min(MAX_INDENTS) as f32;
     Rect::from_min_size(pos2(left, rect.top()), vec2(rect.height() * 0.6, rect.height()))
 }
 

@@ -52,7 +52,7 @@ const TURN_DEG: f64 = 15.0;
 /// The factor by which the whole path becomes larger.
 const LARGER: f64 = 1.1;
 /// The greatest number of warnings that are listed.
-const MOST_WARNINGS: usize = 3;
+const MAX_WARNINGS: usize = 3;
 
 /// Draws the rows of the lab.
 pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
@@ -194,11 +194,11 @@ fn whole_ui(path: &PathFacts, session: &Session, state: &mut UiState, out: &mut 
 fn warnings_ui(path: &PathFacts, ui: &mut Ui) {
     let fps = path.fitted.motion().clip().fps();
     let warning = palette_of(ui).warning;
-    for turn in path.hard_turns.iter().take(MOST_WARNINGS) {
+    for turn in path.hard_turns.iter().take(MAX_WARNINGS) {
         kit::note_ui(&text::hard_turn(turn, fps), warning, ui);
     }
-    if path.hard_turns.len() > MOST_WARNINGS {
-        let more = text::more_hard_turns(path.hard_turns.len() - MOST_WARNINGS);
+    if path.hard_turns.len() > MAX_WARNINGS {
+        let more = text::more_hard_turns(path.hard_turns.len() - MAX_WARNINGS);
         kit::note_ui(&more, warning, ui);
     }
 }

@@ -223,7 +223,7 @@ struct Tiles {
 }
 
 /// Tiles on the graphics card at once, 256 KB each.
-const MOST_TILES: usize = 128;
+const MAX_TILES: usize = 128;
 /// Cells that may be read in a frame.
 const PER_FRAME: usize = 500_000;
 /// The cost of computing 256 × 256 cells, in cells that are read.
@@ -310,7 +310,7 @@ impl Tiles {
             if tile.factor == 1 { TextureOptions::NEAREST } else { TextureOptions::LINEAR };
         let texture = ctx.load_texture("distances", image, options);
         let id = texture.id();
-        if self.made.len() >= MOST_TILES {
+        if self.made.len() >= MAX_TILES {
             drop(self.made.remove(0));
         }
         self.made.push((tile, texture));

@@ -16,7 +16,7 @@ use segue_text::Message;
 use std::sync::Arc;
 
 /// The greatest number of marks: more could not be told apart.
-const MOST_SEAMS: usize = 160;
+const MAX_SEAMS: usize = 160;
 
 /// The time for which a visit that failed is explained, seconds of the walk.
 const TOLD_SECS: f64 = 5.0;
@@ -56,7 +56,7 @@ fn time_ui(session: &Session, walk: &Walk, out: &mut Out, ui: &mut Ui) {
         })
         .filter(|moment| moment.time < walk.motion.clip().duration_secs())
         .collect();
-    if seams.len() > MOST_SEAMS {
+    if seams.len() > MAX_SEAMS {
         seams.clear();
     }
     let timeline = Timeline {

@@ -18,9 +18,9 @@ use segue_text::Message;
 /// The time for which a jump is shown, seconds.
 const JUMP_SECS: f64 = 0.8;
 /// The greatest number of marks: more could not be told apart.
-const MOST_MARKS: usize = 160;
+const MAX_MARKS: usize = 160;
 /// The greatest number of clips in the strip: more would have no width.
-const MOST_BARS: usize = 300;
+const MAX_BARS: usize = 300;
 
 /// Draws the panel.
 pub(crate) fn drive_panel_ui(
@@ -100,7 +100,7 @@ fn time_ui(
         .jumps_secs()
         .map(|time| Moment { time, color: palette.accent, name: text::JUMP })
         .collect();
-    if jumps.len() > MOST_MARKS {
+    if jumps.len() > MAX_MARKS {
         jumps.clear();
     }
     let timeline = Timeline {
@@ -159,7 +159,7 @@ fn strip_ui(
     let mirrored = database.options().mirrored;
     let originals = database.motions().iter().filter(|motion| !motion.is_mirrored());
     let bars: Vec<PlaceBar> = originals
-        .take(MOST_BARS)
+        .take(MAX_BARS)
         .map(|motion| PlaceBar {
             name: session.clip_title(motion.clip().name()),
             frames: motion.frames(),
@@ -213,7 +213,7 @@ fn strip_ui(
 pub(crate) fn strip_place(database: &Database, place: Place) -> Option<StripPlace> {
     let motion = database.motion(place.motion)?;
     let bar = if database.options().mirrored { place.motion / 2 } else { place.motion };
-    (bar < MOST_BARS).then_some(StripPlace {
+    (bar < MAX_BARS).then_some(StripPlace {
         bar,
         row: usize::from(motion.is_mirrored()),
         frame: place.frame,
