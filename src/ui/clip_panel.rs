@@ -94,7 +94,7 @@ const UNITS: [(f64, Word); 6] = [
 /// Frame rates that files come in.
 const RATES: [f64; 5] = [24.0, 25.0, 30.0, 60.0, 120.0];
 
-/// Draws the rows that correct what was detected.
+/// Draws the rows that correct the detected properties.
 fn overrides_ui(
     entry: &Entry,
     file: &SourceFile,

@@ -238,7 +238,7 @@ impl UiCommand {
     }
 }
 
-/// Closes the lesson, or what lies in front of it.
+/// Closes the layers in front of the lesson, or else the lesson.
 fn close(session: &Session, state: &mut UiState, out: &mut Out) {
     let lies_in_front = state.help_open || state.library_open || state.drawing.is_some();
     if lessons_panel::is_open(session) && !lies_in_front {

@@ -18,7 +18,7 @@ pub(super) fn is_open(session: &Session) -> bool {
     !session.params().text(Key::Lesson).is_empty() && !session.params().is_on(Key::Embed)
 }
 
-/// Opens the list of lessons, or closes what is open.
+/// Opens the list of lessons, or closes the open lesson.
 pub(super) fn toggle_lessons(session: &Session, out: &mut Out) {
     go_to(if is_open(session) { "" } else { CONTENTS }, out);
 }

@@ -80,8 +80,8 @@ pub(crate) fn keep_ui(pane: usize, session: &Session, out: &mut Out, ui: &mut Ui
     }
 }
 
-/// Draws the choices of both clips, and what was done to B for another skeleton or frame rate.
-/// Returns the frame rate of the result.
+/// Draws the choices of both clips, with notes where B was retargeted or resampled. Returns the
+/// frame rate of the result.
 pub(crate) fn pair_ui(session: &Session, out: &mut Out, ui: &mut Ui) -> f64 {
     slot_row_ui(Slot::A, session, out, ui);
     slot_row_ui(Slot::B, session, out, ui);

@@ -68,7 +68,7 @@ pub(crate) fn command_item_ui(
     }
 }
 
-/// Returns what a command is called where its label alone does not say it.
+/// Returns the name of a command where its label alone is not enough.
 fn name_of(command: UiCommand, state: &UiState) -> Word {
     match command {
         UiCommand::SwitchLanguage => state.language.next().switch(),

@@ -17,7 +17,7 @@ use segue_text::Message;
 /// A notice.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Notice<'a> {
-    /// What has happened, and what to do about it, of any length.
+    /// The event and its remedy, of any length.
     pub(crate) text: &'a Message,
     /// Its severity.
     pub(crate) mood: Mood,

@@ -35,13 +35,13 @@ fn title(shown: &Shown<'_>) -> Title {
     }
 }
 
-/// Returns the hint for first visitors, while it is about what is on the stage.
+/// Returns the hint for first visitors while it applies to the stage.
 pub(crate) fn welcome(session: &Session) -> Option<Word> {
     is_welcome(session).then_some(text::WELCOME_HINT)
 }
 
-/// Returns whether the hint for first visitors is about what is on the stage: the windows of the
-/// built-in walk and run.
+/// Returns whether the hint for first visitors applies: the stage compares windows of the built-in
+/// walk and run.
 fn is_welcome(session: &Session) -> bool {
     let shown = |key, id| session.params().text(key) == id;
     session.params().lab() == LabId::Blend

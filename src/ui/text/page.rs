@@ -137,7 +137,7 @@ pub(crate) const OUTDATED: Word = Word::new("updating…");
 pub(crate) const NOTHING_TO_KEEP: Word = Word::new("There is no result to keep or save.");
 pub(crate) const STILL_COMPUTED: Word = Word::new("The result is still being computed.");
 
-/// Returns what is being worked on, and how much of it is done.
+/// Returns the task under way, and its progress.
 pub(crate) fn under_way(job: &Job) -> Message {
     let percent = 100.0 * job.progress;
     match &job.kind {
@@ -162,7 +162,7 @@ pub(crate) const UNREAD: Word = Word::new("not read: drop the file again");
 /// The status of a motion whose file of the skeleton is missing.
 pub(crate) const AWAITS_SKELETON: Word = Word::new("needs its skeleton: drop the .asf file");
 
-/// Returns what keeps a clip from being played; empty where nothing does.
+/// Returns the reason why a clip cannot be played; empty where it can.
 pub(crate) fn status(entry: &Entry) -> Word {
     match (&entry.motion, &entry.origin) {
         (Some(_), _) | (None, Origin::Preset | Origin::Made) => Word::default(),

@@ -101,7 +101,7 @@ pub(crate) fn control_point(index: usize, count: usize, place: glam::DVec2) -> M
     )
 }
 
-/// Returns the number and place of the chosen control point, and what keys do with it.
+/// Returns the number and place of the chosen control point, and its keys.
 pub(crate) fn chosen_point(index: usize, count: usize, place: glam::DVec2) -> Message {
     let [x, z] = [place.x, place.y].map(|metres| format!("{metres:.2}").replace('-', "−"));
     msg!(
@@ -113,7 +113,7 @@ pub(crate) fn chosen_point(index: usize, count: usize, place: glam::DVec2) -> Me
     )
 }
 
-/// Returns the description of what stays when a path becomes longer or shorter.
+/// Returns the description of the quantity that stays when a path changes its length.
 pub(crate) fn path_keep(word: PathKeep) -> Word {
     Word::new(match word {
         PathKeep::Duration => {

@@ -8,7 +8,7 @@ pub(super) fn is_open(session: &Session) -> bool {
     session.params().lab() == LabId::Match
 }
 
-/// Returns what the first pane shows now, where it was driven.
+/// Returns the driven character of the first pane, and its present moment.
 pub(super) fn shown(session: &Session) -> Option<(&Arc<DriveHistory>, &DriveMoment)> {
     let driven = session.main_outcome()?.driven()?;
     Some((driven, driven.at(session.now_secs())?))

@@ -40,7 +40,7 @@ pub(crate) struct Held {
     pub(crate) grip: DVec2,
 }
 
-/// A curve whose ends are nearer to each other than this share of its length is a loop.
+/// The greatest distance between the ends of a loop, as a share of its length.
 const LOOP_SHARE: f64 = 0.12;
 /// The smoothing of a drawn curve, about the unsteadiness of a hand.
 const DRAWN_SMOOTHING: f64 = 1e-3;
