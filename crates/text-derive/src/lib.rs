@@ -22,7 +22,7 @@ pub fn to_message(input: proc_macro::TokenStream) -> proc_macro::TokenStream {
     implementation(&input).unwrap_or_else(syn::Error::into_compile_error).into()
 }
 
-/// A template and what its names stand for, as written in the code.
+/// A template and the values of its names, as written in the code.
 struct Text {
     template: LitStr,
     args: Vec<(Ident, TokenStream)>,
@@ -53,7 +53,8 @@ impl Parse for Text {
     }
 }
 
-/// The expression of a message. Names that are none of `fields` nor given are variables in scope.
+/// Returns the expression of a message. Names that are neither in `fields` nor given are variables
+/// in scope.
 fn message(text: &Text, fields: &[Field]) -> syn::Result<TokenStream> {
     let Text { template, args } = text;
     let written = template.value();
@@ -89,8 +90,8 @@ struct Field {
     binding: Ident,
 }
 
-/// The expression with `.field` and `.0` replaced by the variables of these fields, as `thiserror`
-/// reads them.
+/// Returns the expression with `.field` and `.0` replaced by the variables of these fields, as in
+/// `thiserror`.
 fn with_fields(value: TokenStream, fields: &[Field]) -> TokenStream {
     let mut tokens = value.into_iter().peekable();
     let mut whole = TokenStream::new();
@@ -120,7 +121,7 @@ fn with_fields(value: TokenStream, fields: &[Field]) -> TokenStream {
     whole
 }
 
-/// Whether an expression mentions a variable or field.
+/// Returns whether an expression mentions a variable or field.
 fn mentions(value: &TokenStream, field: &Field) -> bool {
     value.clone().into_iter().any(|token| match token {
         TokenTree::Group(group) => mentions(&group.stream(), field),
@@ -161,7 +162,7 @@ fn implementation(input: &DeriveInput) -> syn::Result<TokenStream> {
     })
 }
 
-/// The arm of a variant, or of a struct.
+/// Returns the match arm of a variant, or of a struct.
 fn arm(
     path: &TokenStream,
     fields: &Fields,
@@ -193,7 +194,7 @@ fn arm(
     Ok(quote!(#path #pattern => #message,))
 }
 
-/// The pattern that binds the fields that are used.
+/// Returns the pattern that binds the fields that are used.
 fn pattern(fields: &Fields, bound: &[Field], is_used: impl Fn(&Field) -> bool) -> TokenStream {
     let used = bound.iter().filter(|field| is_used(field));
     let entries = used.map(|field| {
