@@ -61,8 +61,8 @@
 //! # What it does not do
 //!
 //! It generates no meshes: limbs are rounded cones, and the meshes of skins come from
-//! [`segue_motion::skin`]. It computes neither light nor shadows: a [`Figure`] only has the strength
-//! of its shadow on the ground.
+//! [`segue_motion::skin`]. It computes neither light nor shadows: a [`Figure`] only has the
+//! strength of its shadow on the ground.
 
 mod annotations;
 mod body;
