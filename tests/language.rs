@@ -84,7 +84,7 @@ const NO_SENTENCE: [&str; 29] = [
     "Inter SemiBold",
     "Noto Sans TC",
     "segue outline",
-    "BTreeMap<Role, Assigned>",
+    "BTreeMap<Role, RoleJoint>",
     "LargeFile({} bytes)",
     "a joint that this skeleton does not have",
     "no joint was found for the {}: choose one by hand",
