@@ -115,7 +115,9 @@ fn path_without_edits_keeps_the_motion() {
         for control_points in [4, 8, 30] {
             match FittedPath::new(Arc::clone(&source), &options(control_points)) {
                 Ok(path) => assert_same(&path, preset.id),
-                Err(PathEditError::Stands { extent_m }) if extent_m < 0.2 => stood.push(preset.id),
+                Err(PathEditError::NoTravel { extent_m }) if extent_m < 0.2 => {
+                    stood.push(preset.id)
+                }
                 Err(error) => panic!("{}: {error}", preset.id),
             }
         }

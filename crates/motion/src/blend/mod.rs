@@ -153,7 +153,7 @@ pub enum BlendError {
     #[error(
         "`{reference}` and the clips blended with it have no registered part in common: register them over the same frames, or free fewer ends"
     )]
-    Apart {
+    NothingInCommon {
         /// Name of the clip that the others are registered to.
         reference: String,
     },

@@ -83,8 +83,8 @@ pub fn registered_blend(
 /// frame.
 ///
 /// # Errors
-/// [`BlendError`] as for [`registered_blend`]; also [`BlendError::Apart`] when fewer than two
-/// frames of either clip lie between `leave` and `arrive`.
+/// [`BlendError`] as for [`registered_blend`]; also [`BlendError::NothingInCommon`] when fewer than
+/// two frames of either clip lie between `leave` and `arrive`.
 pub fn registered_join(
     a: &Motion,
     b: &Motion,
@@ -98,7 +98,7 @@ pub fn registered_join(
     let partner = [Partner { source: b, registration, weight: &weight }];
     let blend = Blend { law: Some(law), ..Blend::new(a, &partner)? };
     let (from, to) = blend.span()?;
-    let apart = || BlendError::Apart { reference: a.clip().name().into() };
+    let apart = || BlendError::NothingInCommon { reference: a.clip().name().into() };
     let warp = registration.warp();
     let start = leave as f64;
     let end_in_b = warp.at((arrive as f64).min(to)).round().min(warp.at(to).floor());
@@ -218,7 +218,7 @@ impl<'a> Blend<'a> {
         if span.1 - span.0 >= 1.0 {
             Ok(span)
         } else {
-            Err(BlendError::Apart { reference: self.reference.clip().name().into() })
+            Err(BlendError::NothingInCommon { reference: self.reference.clip().name().into() })
         }
     }
 

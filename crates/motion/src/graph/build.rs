@@ -61,8 +61,8 @@ impl GraphOptions {
         ((self.min_jump_secs * set.fps()).round() as usize).max(2)
     }
 
-    /// Returns the reason why no transition is possible.
-    fn nowhere(&self, set: &FrameSet) -> GraphError {
+    /// Returns the error with the reason why no transition is possible.
+    fn no_transition_error(&self, set: &FrameSet) -> GraphError {
         let window = self.blend_window;
         let least = match self.construction {
             Construction::Segments { segment_size } => segment_size,
@@ -74,7 +74,7 @@ impl GraphOptions {
         if long_enough.count() > 1 || self.min_jump(set) <= farthest {
             return GraphError::NoMinimum { window };
         }
-        GraphError::NowhereToGo {
+        GraphError::JumpsTooShort {
             window,
             lower_window: set
                 .longest()
@@ -241,7 +241,7 @@ impl MotionGraph {
                 Some(nearest_cm) => {
                     GraphError::NoTransition { threshold_cm: options.edge_threshold_cm, nearest_cm }
                 }
-                None => options.nowhere(set),
+                None => options.no_transition_error(set),
             });
         }
         let mut made = Self {

@@ -105,7 +105,7 @@ pub enum GraphError {
         lower_window = lower_window
             .map_or_else(Message::default, |window| msg!("the window to {window}, ", window))
     )]
-    NowhereToGo {
+    JumpsTooShort {
         /// Frames of the blend window.
         window: usize,
         /// A window with which a jump is possible; `None` if there is none.

@@ -55,7 +55,7 @@ impl FittedPath {
         let calm = smoothed(&way, SWAY_SECS * source.clip().fps());
         let extent_m = extent(&calm);
         if extent_m < STANDS_M {
-            return Err(PathEditError::Stands { extent_m });
+            return Err(PathEditError::NoTravel { extent_m });
         }
         let (parameters, _) = chord_parameters(&calm);
         let curve = ArcLengthPath::new(fit_spline(&way, &parameters, options)?)?;

@@ -106,7 +106,7 @@ pub enum PathEditError {
         "this motion stays within {extent_cm:.0} cm, so that there is no path to edit: choose one that travels",
         extent_cm = extent_m * 100.0
     )]
-    Stands {
+    NoTravel {
         /// The diagonal of the bounding box of the root's trajectory, metres.
         extent_m: f64,
     },

@@ -156,7 +156,7 @@ fn registered_blend_of_unregistered_clips_is_refused() {
         assert!(
             matches!(
                 registered_join(&a, &b, &registration, leave, arrive, WeightLaw::Linear),
-                Err(BlendError::Apart { .. })
+                Err(BlendError::NothingInCommon { .. })
             ),
             "{leave} {arrive}"
         );

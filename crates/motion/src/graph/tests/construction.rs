@@ -31,7 +31,7 @@ fn remedies(error: &GraphError, options: &GraphOptions) -> Vec<(&'static str, Gr
             );
             vec![("raise the threshold", threshold(raised))]
         }
-        GraphError::NowhereToGo { lower_window, farthest_secs, .. } => {
+        GraphError::JumpsTooShort { lower_window, farthest_secs, .. } => {
             let jump = (farthest_secs * 100.0 + 1e-6).floor() / 100.0;
             let lowered = GraphOptions { min_jump_secs: jump, ..*options };
             let window = lower_window.map(|found| ("lower the window", window(found)));
@@ -143,8 +143,10 @@ fn graph_of_one_short_clip_is_refused_with_working_advice() {
                 let Err(error) = built(&set, &options) else {
                     continue;
                 };
-                let has_advice =
-                    matches!(error, GraphError::NowhereToGo { .. } | GraphError::NoMinimum { .. });
+                let has_advice = matches!(
+                    error,
+                    GraphError::JumpsTooShort { .. } | GraphError::NoMinimum { .. }
+                );
                 advised += usize::from(has_advice);
                 for (remedy, mended) in remedies(&error, &options) {
                     let again = built(&set, &mended);
