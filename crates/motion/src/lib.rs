@@ -24,10 +24,11 @@
 //! let walk = Motion::analyze(synthesize(&Params::new(Action::Walk))?.clip);
 //! let run = Motion::analyze(synthesize(&Params::new(Action::Run))?.clip);
 //!
-//! // Align: find the half second of each clip that is most like one of the other. let weights =
-//! limb_weights(walk.clip().skeleton()); let height = f64::from(walk.body_height()); let options =
-//! SearchOptions::new(30); let found = best_transition(walk.clip(), run.clip(), &weights, height,
-//! &options)?;
+//! // Align: find the half second of each clip that is most like one of the other.
+//! let weights = limb_weights(walk.clip().skeleton());
+//! let height = f64::from(walk.body_height());
+//! let options = SearchOptions::new(30);
+//! let found = best_transition(walk.clip(), run.clip(), &weights, height, &options)?;
 //!
 //! // Blend, and for comparison cut.
 //! let blended = |window| {
@@ -35,10 +36,11 @@
 //!     dissolve(&walk, found.leave, &run, found.enter, &options)
 //! };
 //!
-//! // Measure: jumps of joints and character in a frame, beyond the usual. let blend =
-//! TransitionMetrics::measure(&walk, &run, &blended(30)?); let cut =
-//! TransitionMetrics::measure(&walk, &run, &blended(0)?); assert!(cut.seam_deg.is_some_and(|jump|
-//! jump > 60.0)); assert!(blend.seam_deg.is_some_and(|jump| jump < 5.0));
+//! // Measure: jumps of joints and character in a frame, beyond the usual.
+//! let blend = TransitionMetrics::measure(&walk, &run, &blended(30)?);
+//! let cut = TransitionMetrics::measure(&walk, &run, &blended(0)?);
+//! assert!(cut.seam_deg.is_some_and(|jump| jump > 60.0));
+//! assert!(blend.seam_deg.is_some_and(|jump| jump < 5.0));
 //! assert!(blend.jump_cm.is_some_and(|jump| jump < 0.1));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
