@@ -56,29 +56,29 @@ fn clippy(what: &[&str]) -> Command {
 }
 
 fn core(report: &mut Report) {
-    // Crate by crate, as one does when working on one of them: this also shows that each has all
-    // dependencies that it needs.
-    for library in LIBRARIES {
-        report.run(library, cargo(&["test", "--quiet", "--locked", "--package", library]));
-    }
-    // The tests across the crates: they need no UI.
-    report.run(
-        "tests without the UI",
-        cargo(&["test", "--quiet", "--locked", "--package=segue", "--no-default-features"]),
-    );
+    // Crate by crate: each must have all dependencies and features that it needs.
+    report.step("each library by itself", || {
+        LIBRARIES.iter().try_for_each(|library| {
+            shell::run(&mut cargo(&["check", "--quiet", "--locked", "--package", library]))
+        })
+    });
+    report.run("tests without the UI", tests_without_ui());
+}
+
+/// Returns the command that runs the tests of the libraries and those across them. All are tested
+/// at once: a library would otherwise be built again for each set of features that the others ask
+/// of the packages below it.
+fn tests_without_ui() -> Command {
+    let mut tests = cargo(&["test", "--quiet", "--locked", "--no-default-features"]);
+    tests.args(["segue"].iter().chain(&LIBRARIES).flat_map(|name| ["--package", name]));
+    tests
 }
 
 fn oracles(report: &mut Report) {
     report.step("exported files in three.js and bvhio", || {
         tools::browser_packages()?;
         let python = tools::python("bvhio==1.5.4")?;
-        shell::run(&mut cargo(&[
-            "test",
-            "--quiet",
-            "--locked",
-            "--package=segue-formats",
-            "--test=exchange",
-        ]))?;
+        shell::run(tests_without_ui().arg("--test=exchange"))?;
         let files = shell::target().join("tmp/exchange");
         shell::run(command("node", &["tests/browser/read_back.mjs"]).arg(&files))?;
         shell::run(command(python, &["crates/formats/tests/oracles/read_back.py"]).arg(&files))
