@@ -217,7 +217,7 @@ impl Tree {
         let all: HashMap<NodeId, &Node> =
             update.nodes.iter().map(|(id, node)| (*id, node)).collect();
         let mut found = Found { all: &all, zoom, elements: Vec::new() };
-        let mut top = found.children_of(root, self);
+        let mut top = found.children_of(root, false, self);
         found.sort_parts(&mut top);
         let elements = found.elements;
 
@@ -265,9 +265,9 @@ struct Found<'a> {
 }
 
 impl Found<'_> {
-    /// Adds what lies in a node, and returns the numbers of the elements directly in it. Containers
+    /// Adds the elements in a node, and returns the numbers of those directly in it. Containers
     /// without a name give way to their contents.
-    fn children_of(&mut self, id: NodeId, tree: &mut Tree) -> Vec<u32> {
+    fn children_of(&mut self, id: NodeId, is_in_menu: bool, tree: &mut Tree) -> Vec<u32> {
         let Some(&node) = self.all.get(&id) else {
             return Vec::new();
         };
@@ -279,9 +279,15 @@ impl Found<'_> {
             if child.is_hidden() || child.role() == Role::TextRun {
                 continue;
             }
-            let inner = self.children_of(child_id, tree);
+            let is_in_menu = is_in_menu || child.role() == Role::Menu;
+            let inner = self.children_of(child_id, is_in_menu, tree);
             if let Some(mut element) = self.element(child, inner.clone()) {
                 element.number = tree.number_of(child_id);
+                if !is_in_menu && element.role.starts_with("menuitem") {
+                    // The items of a list that always stands open.
+                    element.role = "button";
+                    element.state = element.state.map(|(_, value)| ("aria-pressed", value));
+                }
                 if element.role == "banner" {
                     self.sort_line(&mut element.children);
                 }
@@ -607,6 +613,25 @@ mod tests {
         let changes = changes.expect("all elements");
         assert_eq!(changes["elements"].as_array().unwrap().len(), 1, "{changes}");
         assert_eq!(changes["elements"][0]["description"], "Holds planted feet in place.");
+    }
+
+    #[test]
+    fn items_are_buttons_outside_of_menus() {
+        let (ctx, _outline) = told_outline();
+        let item = |role: Role, ui: &mut Ui| {
+            ui.push_id(role as u8, |ui| {
+                ui.ctx().accesskit_node_builder(ui.unique_id(), |node| node.set_role(role));
+                let response = ui.button("Walk");
+                ui.ctx().accesskit_node_builder(response.id, |node| node.set_role(Role::MenuItem));
+            });
+        };
+        let changes = frame(&ctx, |ui| {
+            item(Role::Menu, ui);
+            item(Role::GenericContainer, ui);
+        });
+        let changes = changes.expect("all elements");
+        assert!(find(&changes, "menuitem", "Walk").is_some(), "{changes}");
+        assert!(find(&changes, "button", "Walk").is_some(), "{changes}");
     }
 
     #[test]

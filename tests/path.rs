@@ -116,7 +116,7 @@ fn path_without_edits_keeps_the_motion() {
             match FittedPath::new(Arc::clone(&source), &options(control_points)) {
                 Ok(path) => assert_same(&path, preset.id),
                 Err(PathEditError::NoTravel { extent_m }) if extent_m < 0.2 => {
-                    stood.push(preset.id)
+                    stood.push(preset.id);
                 }
                 Err(error) => panic!("{}: {error}", preset.id),
             }
