@@ -308,7 +308,11 @@ impl Found<'_> {
         let name = name.map_or_else(|| self.labels(node), str::to_owned);
         // A container that has nothing but a hint stands for what lies in it.
         let is_hint = node.description() == Some(&name) && node.role() == Role::GenericContainer;
-        let role = aria_role(node, !name.is_empty() && !is_hint)?;
+        let mut role = aria_role(node, !name.is_empty() && !is_hint)?;
+        if role == "button" && !children.is_empty() {
+            // A window that comes to the front when it is pressed.
+            role = "group";
+        }
         if (is_text || role == "group") && name.is_empty() && children.is_empty() {
             return None;
         }
@@ -451,7 +455,7 @@ fn aria_role(node: &Node, has_name: bool) -> Option<&'static str> {
         Role::Row => "row",
         Role::Cell => "cell",
         Role::ColumnHeader => "columnheader",
-        Role::Dialog => "dialog",
+        Role::Dialog | Role::Window => "dialog",
         Role::AlertDialog => "alertdialog",
         Role::Alert => "alert",
         Role::Status => "status",
@@ -613,6 +617,20 @@ mod tests {
         let changes = changes.expect("all elements");
         assert_eq!(changes["elements"].as_array().unwrap().len(), 1, "{changes}");
         assert_eq!(changes["elements"][0]["description"], "Holds planted feet in place.");
+    }
+
+    #[test]
+    fn container_that_can_be_pressed_is_no_button() {
+        let (ctx, _outline) = told_outline();
+        let changes = frame(&ctx, |ui| {
+            let row = ui.scope(|ui| drop(ui.button("Walk")));
+            ui.ctx().accesskit_node_builder(row.response.id, |node| {
+                node.set_label("Clips");
+                node.add_action(Action::Click);
+            });
+        });
+        let changes = changes.expect("all elements");
+        assert!(find(&changes, "group", "Clips").is_some(), "{changes}");
     }
 
     #[test]
