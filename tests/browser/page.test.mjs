@@ -17,6 +17,7 @@ const STAND_IN = `
     async restart(canvas) { this.canvases.push(canvas); }
     version() { return "9.9.9"; }
     setListener(listener) { this.tell = listener; }
+    setOutline() {}
     hasPanicked() { return Boolean(window.panic); }
     panicSummary() { return window.panic; }
     isEmbedded() { return new URLSearchParams(window.location.search).has("embed"); }
