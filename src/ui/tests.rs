@@ -25,6 +25,7 @@ use std::sync::Arc;
 
 mod chinese;
 mod clips;
+mod contacts;
 mod drive;
 mod graph;
 mod lab_panels;

@@ -1,5 +1,6 @@
 //! The bottom panel: the timeline.
 
+mod contacts;
 mod curves;
 mod events;
 mod tracks;
@@ -119,7 +120,13 @@ pub(crate) fn timeline_panel_ui(
     let mut seams = seams(outcome, palette.accent);
     seams.extend(hard_turns(outcome, palette.warning));
     let feet = feet_names(session, layout);
-    let stripes = stripes(session, &feet);
+    // A lab with stripes of registered clips shows none of clips frame by frame.
+    let clips = session.contact_clips();
+    let labels = contacts::labels(&clips, session);
+    let mut stripes = stripes(session, &feet);
+    if stripes.is_empty() {
+        stripes = contacts::stripes(&clips, &labels, session);
+    }
     let timeline = Timeline {
         duration: session.duration_secs(),
         now: session.now_secs(),
@@ -135,6 +142,6 @@ pub(crate) fn timeline_panel_ui(
         curves: (layout != Layout::Phone).then_some(curves),
     };
     for event in kit::timeline_ui(&timeline, ui) {
-        timeline_event(event, session, outcome, out);
+        timeline_event(event, &clips, session, outcome, out);
     }
 }

@@ -1,6 +1,7 @@
 //! Resolution of the clips that labs use: found in the library, synthesised, made again from a
 //! recipe, or requested from the app.
 
+use crate::contact_edits::corrections_of;
 use crate::document::Document;
 use crate::files::FileIntake;
 use crate::labs::{Answer, Inputs, LabClips, LabError, LabSet, MoreClip};
@@ -37,14 +38,21 @@ impl ClipResolver<'_> {
         next.is_some_and(|id| self.motion(&id).is_ok())
     }
 
-    /// Returns the motion of a clip, with its feet read as the parameters say.
+    /// Returns the motion of a clip, with its feet read as the parameters say, and its contacts as
+    /// corrected.
     fn motion_with_feet(
         &mut self,
         reference: &str,
         params: &Params,
     ) -> Result<Arc<Motion>, LabError> {
         let motion = self.motion(reference)?;
-        Ok(self.labs.feet.read(&motion, foot_options(params)))
+        // Labs without the options of reading feet read them as ever.
+        let uses = |key: Key| key.param().is_used_by(params.lab());
+        let feet = if uses(Key::ContactHeight) { foot_options(params) } else { motion.feet() };
+        let library = &self.document.library;
+        let entry = library.find(reference).filter(|_| uses(Key::ContactEdits));
+        let corrections = entry.and_then(|entry| corrections_of(library, params, &entry.id));
+        Ok(self.labs.feet.read(&motion, feet, corrections))
     }
 
     /// Returns the motion of a clip. Makes or requests it if it is not available yet.
@@ -101,23 +109,16 @@ impl ClipResolver<'_> {
         Ok(motion)
     }
 
-    /// Returns the motions of several clips, with their feet read as the parameters say.
+    /// Returns the motions of several clips, with their feet read as the parameters say. Makes or
+    /// requests all that are not available yet before it fails with the first missing one.
     fn motions_with_feet(
         &mut self,
         ids: &[String],
         params: &Params,
     ) -> Result<Vec<Arc<Motion>>, LabError> {
-        let motions = self.motions(ids)?;
-        let reading = foot_options(params);
-        Ok(motions.iter().map(|motion| self.labs.feet.read(motion, reading)).collect())
-    }
-
-    /// Returns the motions of several clips. Makes or requests all that are not available yet
-    /// before it fails with the first missing one.
-    fn motions(&mut self, ids: &[String]) -> Result<Vec<Arc<Motion>>, LabError> {
         let motion = |id: &String| {
             self.document.ensure_clip(id);
-            self.motion(id)
+            self.motion_with_feet(id, params)
         };
         let motions: Vec<_> = ids.iter().map(motion).collect();
         motions.into_iter().collect()
@@ -146,11 +147,7 @@ impl ClipResolver<'_> {
             .map(|slot| self.motion_with_feet(params.text(slot.key()), params))
             .collect();
         let ids = lab.more_clips(params)?;
-        let motions = if Key::ContactHeight.param().is_used_by(params.lab()) {
-            self.motions_with_feet(&ids, params)
-        } else {
-            self.motions(&ids)
-        };
+        let motions = self.motions_with_feet(&ids, params);
         let slots = slots.into_iter().collect::<Result<_, _>>()?;
         let more = ids.into_iter().zip(motions?).map(|(id, motion)| MoreClip {
             name: self

@@ -69,6 +69,7 @@ mod clip_resolver;
 mod clip_sets;
 mod command;
 mod compare;
+mod contact_edits;
 mod document;
 pub mod export;
 mod extra_characters;
@@ -102,6 +103,7 @@ pub use command::{
     Command, CommandError, DriveCommand, ExtraCharacterCommand, FileCommand, PlaybackCommand,
     Request,
 };
+pub use contact_edits::ContactClip;
 pub use extra_characters::ExtraCharacter;
 pub use files::{Job, LoadedFile};
 pub use labs::LabError;
@@ -127,8 +129,9 @@ pub use numbers::{NumberRow, NumberTable, digits};
 pub use pane::{NoResult, Pane, PaneContent, PaneResult};
 pub use params::choices::{self, LabId, Selected};
 pub use params::{
-    Choice, Compare, Group, HandTag, Key, Kind, List, ListKind, MAX_PANES, MAX_WEIGHTED_CLIPS,
-    Mark, Misread, PARAMS, Param, Params, Value, ValueError, decimals_of, format_number, write_ids,
+    Choice, ClipContacts, Compare, Group, HandTag, Key, Kind, List, ListKind, MAX_PANES,
+    MAX_WEIGHTED_CLIPS, Mark, Misread, PARAMS, Param, Params, Value, ValueError, decimals_of,
+    format_number, write_ids,
 };
 pub use playback::Span;
 pub use report::{ReportFacts, report};

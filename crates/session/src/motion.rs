@@ -2,7 +2,7 @@
 
 use crate::choices::Curve;
 use crate::params::{Key, Params, Value};
-use segue_motion::clip::{ContactOptions, CurveKind, FootOptions, Motion};
+use segue_motion::clip::{ContactCorrections, ContactOptions, CurveKind, FootOptions, Motion};
 use segue_motion::skeleton::Role;
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -30,7 +30,8 @@ pub fn foot_options(params: &Params) -> FootOptions {
     }
 }
 
-/// A cache of clips whose feet were read with options other than the defaults.
+/// A cache of clips whose feet were read with options other than the defaults, or whose contacts
+/// were corrected.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FeetReader(VecDeque<(Arc<Motion>, Arc<Motion>)>);
 
@@ -38,20 +39,49 @@ impl FeetReader {
     /// The greatest number of clips in one graph.
     const KEPT: usize = 64;
 
-    /// Returns a motion with its feet read with these options.
-    pub(super) fn read(&mut self, motion: &Arc<Motion>, feet: FootOptions) -> Arc<Motion> {
-        if motion.feet() == feet {
-            return Arc::clone(motion);
+    /// Returns a motion with its feet read with these options, and with these corrections of its
+    /// contacts.
+    pub(super) fn read(
+        &mut self,
+        motion: &Arc<Motion>,
+        feet: FootOptions,
+        corrections: Option<&ContactCorrections>,
+    ) -> Arc<Motion> {
+        if let Some(known) = self.known(motion, feet, corrections) {
+            return Arc::clone(known);
         }
-        if let Some((_, read)) =
-            self.0.iter().find(|(of, read)| Arc::ptr_eq(of, motion) && read.feet() == feet)
-        {
-            return Arc::clone(read);
+        let mut read = Motion::clone(motion);
+        if read.feet() != feet {
+            read = read.with_feet(feet);
         }
-        let read = Arc::new(Motion::clone(motion).with_feet(feet));
+        if let Some(corrections) = corrections {
+            read = read.with_contact_corrections(corrections.clone());
+        }
+        let read = Arc::new(read);
+        // While an edge is dragged, every frame has other corrections.
+        self.0.retain(|(of, read)| !(Arc::ptr_eq(of, motion) && read.feet() == feet));
         self.0.truncate(Self::KEPT - 1);
         self.0.push_front((Arc::clone(motion), Arc::clone(&read)));
         read
+    }
+
+    /// Returns what [`read`](Self::read) returns, if it was read before.
+    pub(super) fn known<'a>(
+        &'a self,
+        motion: &'a Arc<Motion>,
+        feet: FootOptions,
+        corrections: Option<&ContactCorrections>,
+    ) -> Option<&'a Arc<Motion>> {
+        if motion.feet() == feet && corrections.is_none() {
+            return Some(motion);
+        }
+        let own = motion.contact_corrections();
+        let is_read = |(of, read): &&(Arc<Motion>, Arc<Motion>)| {
+            Arc::ptr_eq(of, motion)
+                && read.feet() == feet
+                && read.contact_corrections() == corrections.unwrap_or(own)
+        };
+        self.0.iter().find(is_read).map(|(_, read)| read)
     }
 }
 

@@ -10,6 +10,7 @@ mod storage;
 
 use crate::clip_resolver::ClipResolver;
 use crate::command::{Command, CommandError, DriveCommand, PlaybackCommand, Request};
+use crate::contact_edits::keep_edits_of_files;
 use crate::document::Document;
 use crate::extra_characters::{self, ExtraCharacter, ExtraCharacters};
 use crate::files::{FileIntake, Job};
@@ -348,7 +349,8 @@ impl Session {
 
     /// Replaces all parameters by those of a link. Reports its problems and the missing clips.
     fn replace_params(&mut self, new: NewParams) {
-        let NewParams { params, named, problems } = new;
+        let NewParams { mut params, named, problems } = new;
+        keep_edits_of_files(&self.document.library, &self.document.params, &mut params);
         let new_sources = self.document.replace_params(params, &named);
         match problems.get(MAX_PROBLEMS..).map_or(0, <[_]>::len) {
             _ if problems.is_empty() => {}

@@ -41,6 +41,19 @@ pub(crate) fn menu_ui<R>(
         })
 }
 
+/// Draws a menu that opens at the pointer when `widget` is clicked with the second button, or
+/// pressed for long by a finger, and closes after a choice.
+pub(crate) fn context_menu_ui<R>(
+    widget: &Response,
+    content: impl FnOnce(&mut Ui) -> R,
+) -> Option<InnerResponse<R>> {
+    Popup::context_menu(widget).close_behavior(PopupCloseBehavior::CloseOnClick).show(|ui| {
+        ui.spacing_mut().item_spacing.y = 1.0;
+        ui.set_min_width(150.0 * theme_of(ui).scale());
+        content(ui)
+    })
+}
+
 /// Draws one line of a menu, as wide as the menu.
 pub(crate) fn menu_item_ui(item: MenuItem<'_>, ui: &mut Ui) -> Response {
     let (theme, palette) = (theme_of(ui), palette_of(ui));

@@ -75,7 +75,10 @@ pub(crate) use stick::{stick_size, stick_ui};
 pub(crate) use strip::{Arc, Fate, Stretch, Strip, strip_ui};
 pub(crate) use switch_row::switch_row_ui;
 pub(crate) use tabs::tabs_ui;
-pub(crate) use timeline::{Moment, Stripe, Timeline, TimelineEvent, Track, timeline_ui};
+pub(crate) use timeline::{
+    Moment, StanceEdit, StanceEvent, Stripe, Timeline, TimelineEvent, Track, corrected_hint,
+    timeline_ui,
+};
 pub(crate) use transport::{Transport, TransportEvent, transport_ui};
 pub(crate) use tree::{Tree, TreeRow, tree_ui};
 pub(crate) use weight_curve::{WeightCurveEvent, WeightCurveRow, weight_curve_ui};

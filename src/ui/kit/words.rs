@@ -36,6 +36,24 @@ pub(super) const OUT_POINT: Word = Word::new("Loop end");
 pub(super) const TRANSITION_START: Word = Word::new("Transition start");
 /// The edge where the transition ends.
 pub(super) const TRANSITION_END: Word = Word::new("Transition end");
+/// The left foot.
+pub(super) const LEFT_FOOT: Word = Word::new("Left foot");
+/// The right foot.
+pub(super) const RIGHT_FOOT: Word = Word::new("Right foot");
+/// The item that adds a contact under the pointer.
+pub(super) const ADD_CONTACT: Word = Word::new("Add a contact here");
+/// The item that adds a contact of the left foot.
+pub(super) const ADD_LEFT_CONTACT: Word = Word::new("Add a left contact at the playhead");
+/// The item that adds a contact of the right foot.
+pub(super) const ADD_RIGHT_CONTACT: Word = Word::new("Add a right contact at the playhead");
+/// The item that removes a contact.
+pub(super) const REMOVE_CONTACT: Word = Word::new("Remove this contact");
+/// The item that takes back the corrections of contacts.
+pub(super) const RESET_CONTACTS: Word = Word::new("Back to what was found");
+/// The help on a contact.
+pub(super) const STANCE_HELP: Word = Word::new(
+    "Drag an end, or use the arrow keys: they move the strike, with Shift the lift. Delete removes the contact.",
+);
 /// The button that closes a notice.
 pub(crate) const DISMISS: Word = Word::new("Dismiss");
 /// The button that stops a task.

@@ -105,6 +105,8 @@ pub(crate) const GROUND: Word = Word::new("Ground");
 pub(crate) const NO_LEGS: Word = Word::new(
     "The foot lock does nothing: this skeleton has no leg with thigh, shin and foot. Assign these joints under Body parts in the View lab.",
 );
+/// The label of the contacts of a clip on the timeline.
+pub(crate) const CONTACTS: Word = Word::new("Contacts");
 pub(crate) const FEET: Word = Word::new("Feet and ground");
 pub(crate) const MEAN_SPEED: Word = Word::new("Mean speed");
 pub(crate) const JOINTS: Word = Word::new("Joints");

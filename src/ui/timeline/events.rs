@@ -1,13 +1,15 @@
 //! The input to the handles of the timeline.
 
+use super::contacts;
 use crate::ui::kit::TimelineEvent;
 use crate::ui::labs::in_time;
 use crate::ui::out::Out;
-use segue_session::{Command, Key, Outcome, PlaybackCommand, Session, Value};
+use segue_session::{Command, ContactClip, Key, Outcome, PlaybackCommand, Session, Value};
 
 /// Turns the user's input to the timeline into commands.
 pub(super) fn timeline_event(
     event: TimelineEvent,
+    clips: &[ContactClip],
     session: &Session,
     outcome: &Outcome,
     out: &mut Out,
@@ -43,6 +45,11 @@ pub(super) fn timeline_event(
         }
         TimelineEvent::SetTransitionEnd(secs) => {
             set_number(in_time::end_value(secs, session, outcome), out);
+        }
+        TimelineEvent::Stance { stripe, event } => {
+            if let Some(clip) = clips.get(stripe) {
+                contacts::correct(event, clip, session, out);
+            }
         }
         TimelineEvent::ScrubEnded | TimelineEvent::EditStarted => {}
         TimelineEvent::EditEnded => out.commands.push(Command::Settle),

@@ -70,6 +70,7 @@ pub(super) fn stripes<'a>(session: &Session, names: &'a [[Message; 3]]) -> Vec<S
                 part,
                 label: label.into(),
                 feet: Side::BOTH.map(|side| registered.stances(slot, side)),
+                edit: None,
             })
         })
         .collect()

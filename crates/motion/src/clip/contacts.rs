@@ -1,5 +1,9 @@
 //! Foot contacts: the frames in which each foot is planted.
 
+mod corrections;
+
+pub use self::corrections::{ContactCorrection, ContactCorrections, StanceEnd};
+
 use super::Clip;
 use crate::math::stats;
 use crate::skeleton::{Role, Roles, Side, WorldPose};
@@ -123,6 +127,15 @@ impl Contacts {
                 .collect()
         });
         Self { planted }
+    }
+
+    /// Returns the contacts with other flags where `by_hand` has one for a foot in a frame.
+    pub(crate) fn corrected(&self, by_hand: impl Fn(Side, usize) -> Option<bool>) -> Self {
+        let flags = |side: Side| {
+            let found = self.planted[side.index()].iter().enumerate();
+            found.map(|(frame, &planted)| by_hand(side, frame).unwrap_or(planted)).collect()
+        };
+        Self { planted: Side::BOTH.map(flags) }
     }
 
     /// Returns the number of frames.

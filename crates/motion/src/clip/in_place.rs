@@ -1,7 +1,7 @@
 //! Clips without root motion, and root motion computed from planted feet.
 
 use super::contacts::{FootTracks, GROUND_PERCENTILE, REFERENCE_HEIGHT_M, drop_short_runs};
-use super::{Clip, ContactOptions, Contacts, character_frames};
+use super::{Clip, ContactCorrections, ContactOptions, Contacts, character_frames};
 use crate::math::{Planar, stats};
 use crate::skeleton::{Roles, Side};
 use glam::DVec2;
@@ -73,7 +73,7 @@ pub enum RootMotionError {
 ///
 /// Each foot counts by its point that moves backward fastest: the others roll about it.
 ///
-/// The speed limits of `options` are not used. The distance of synthesised walks is reproduced
+/// The speed limits of `options` are not used. `corrections` overrule the feet that are found. The distance of synthesised walks is reproduced
 /// within 1 %, that of runs within 7 %, too short: a foot that lands or leaves is a little slower
 /// than the ground. A foot that slides in the source is taken as standing. O(frames × joints).
 ///
@@ -83,6 +83,7 @@ pub fn root_motion_from_feet(
     clip: &Clip,
     roles: &Roles,
     options: &ContactOptions,
+    corrections: &ContactCorrections,
     turns: bool,
 ) -> Result<RootMotion, RootMotionError> {
     let taken = take_in_place(&character_frames(clip, roles), turns);
@@ -92,7 +93,7 @@ pub fn root_motion_from_feet(
         return Err(RootMotionError::NoFeet);
     }
     let carries = feet.carrying(clip.fps());
-    let contacts = feet.contacts(&carries, options, clip.fps());
+    let contacts = corrections.applied_to(&feet.contacts(&carries, options, clip.fps()));
     if Side::BOTH.into_iter().all(|side| contacts.intervals(side).is_empty()) {
         return Err(RootMotionError::NoContacts);
     }
@@ -351,9 +352,13 @@ mod tests {
         (made.clip, roles, frames)
     }
 
+    fn none() -> ContactCorrections {
+        ContactCorrections::default()
+    }
+
     fn put_back(clip: &Clip, roles: &Roles, turns: bool) -> Vec<Planar> {
-        let way =
-            root_motion_from_feet(clip, roles, &ContactOptions::default(), turns).expect("a way");
+        let way = root_motion_from_feet(clip, roles, &ContactOptions::default(), &none(), turns)
+            .expect("a way");
         assert_eq!(way.world_from_clip.len(), clip.frames());
         assert_eq!(way.contacts.frames(), clip.frames());
         let back = clip.transformed_by_frame(&way.world_from_clip);
@@ -444,17 +449,38 @@ mod tests {
     fn root_motion_of_a_single_frame_is_the_identity() {
         let (clip, roles, _) = made(&Params::new(Action::Walk));
         let one = clip.crop(0..1).expect("a frame");
-        let way =
-            root_motion_from_feet(&one, &roles, &ContactOptions::default(), true).expect("a way");
+        let way = root_motion_from_feet(&one, &roles, &ContactOptions::default(), &none(), true)
+            .expect("a way");
         let [stays] = way.world_from_clip[..] else { panic!("one frame") };
         assert!(stays.shift.length() < 1e-9 && stays.yaw.abs() < 1e-9, "{stays:?}");
     }
 
     #[test]
+    fn corrected_contacts_carry_the_body_in_place_of_those_that_are_found() {
+        let (clip, roles, frames) = made(&Params::new(Action::Walk));
+        let still = clip.transformed_by_frame(&take_in_place(&frames, true));
+        let put_back = |corrections: &ContactCorrections| {
+            root_motion_from_feet(&still, &roles, &ContactOptions::default(), corrections, true)
+        };
+        let found = put_back(&none()).expect("a way").contacts;
+        let late = found.with_end_at(Side::Left, 1, crate::clip::StanceEnd::Strike, usize::MAX);
+        let way = put_back(&ContactCorrections::between(&found, &late)).expect("a way");
+        assert_eq!(way.contacts, late);
+        let nothing = Contacts::from_flags(Side::BOTH.map(|_| vec![false; clip.frames()]));
+        let refused = put_back(&ContactCorrections::between(&found, &nothing));
+        assert_eq!(refused, Err(RootMotionError::NoContacts));
+    }
+
+    #[test]
     fn root_motion_without_feet_is_refused() {
         let (clip, _, _) = made(&Params::new(Action::Walk));
-        let refused =
-            root_motion_from_feet(&clip, &Roles::default(), &ContactOptions::default(), true);
+        let refused = root_motion_from_feet(
+            &clip,
+            &Roles::default(),
+            &ContactOptions::default(),
+            &none(),
+            true,
+        );
         assert_eq!(refused, Err(RootMotionError::NoFeet));
     }
 

@@ -26,7 +26,7 @@
 //!
 //! [`Contacts`] hold the frames in which a foot is on the ground: it is low *and* slow. Each limit
 //! has hysteresis, one value to enter contact and a looser one to leave it: about a single limit a
-//! trembling foot would flicker.
+//! trembling foot would flicker. [`ContactCorrections`] overrule it where it errs.
 //!
 //! The root motion of a clip that moves in place ([`take_in_place`]) follows from its feet: a
 //! standing foot moves backward under the body, and [`root_motion_from_feet`] integrates this
@@ -105,7 +105,7 @@ mod storage;
 mod usual;
 mod velocity;
 
-pub use contacts::{ContactOptions, Contacts};
+pub use contacts::{ContactCorrection, ContactCorrections, ContactOptions, Contacts, StanceEnd};
 pub(crate) use contacts::{stillest_point, stillest_step};
 pub use curves::{CurveKind, joint_curve};
 pub use ground::estimate_ground;

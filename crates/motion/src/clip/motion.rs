@@ -1,6 +1,9 @@
 //! Clips with the quantities that are derived from them once and used everywhere.
 
-use super::{Clip, ContactOptions, Contacts, UsualMotion, character_frames, estimate_ground};
+use super::{
+    Clip, ContactCorrections, ContactOptions, Contacts, UsualMotion, character_frames,
+    estimate_ground,
+};
 use crate::math::{Planar, wrap_angle};
 use crate::skeleton::{Role, Roles};
 use std::ops::Range;
@@ -21,13 +24,18 @@ pub struct FootOptions {
 /// [`analyze`](Self::analyze) makes it once; then it is shared in an [`Arc`]. Ground frames,
 /// contacts and ground height are computed on first use, each in O(frames × joints), and kept,
 /// unless they are given ([`with_ground_frames`](Self::with_ground_frames),
-/// [`with_contacts`](Self::with_contacts), [`with_ground_m`](Self::with_ground_m)).
+/// [`with_contacts`](Self::with_contacts), [`with_ground_m`](Self::with_ground_m)). Contacts may be
+/// corrected by hand ([`with_contact_corrections`](Self::with_contact_corrections)).
 #[derive(Clone, Debug)]
 pub struct Motion {
     clip: Arc<Clip>,
     roles: Roles,
     ground_frames: OnceLock<Vec<Planar>>,
     feet: FootOptions,
+    /// The contacts before corrections.
+    found_contacts: OnceLock<Contacts>,
+    corrections: ContactCorrections,
+    /// The corrected contacts; unused without corrections.
     contacts: OnceLock<Contacts>,
     ground_m: OnceLock<f32>,
     usual: OnceLock<UsualMotion>,
@@ -64,6 +72,8 @@ impl Motion {
             roles: roles.clone(),
             ground_frames: OnceLock::new(),
             feet: FootOptions::default(),
+            found_contacts: OnceLock::new(),
+            corrections: ContactCorrections::default(),
             contacts: OnceLock::new(),
             ground_m: OnceLock::new(),
             usual: OnceLock::new(),
@@ -86,16 +96,34 @@ impl Motion {
     }
 
     /// Returns the same motion with its feet read by other options: contacts and ground height are
-    /// computed anew.
+    /// computed anew. Corrections of the contacts stay.
     #[must_use]
     pub fn with_feet(self, feet: FootOptions) -> Self {
-        Self { feet, contacts: OnceLock::new(), ground_m: OnceLock::new(), ..self }
+        Self {
+            feet,
+            found_contacts: OnceLock::new(),
+            contacts: OnceLock::new(),
+            ground_m: OnceLock::new(),
+            ..self
+        }
     }
 
-    /// Returns the same motion with these contacts in place of those that would be detected.
+    /// Returns the same motion with these contacts in place of those that would be detected, and
+    /// without corrections of them.
     #[must_use]
     pub fn with_contacts(self, contacts: Contacts) -> Self {
-        Self { contacts: contacts.into(), ..self }
+        let corrections = ContactCorrections::default();
+        Self { found_contacts: contacts.into(), corrections, contacts: OnceLock::new(), ..self }
+    }
+
+    /// Returns the same motion with its contacts corrected by hand, in place of earlier corrections.
+    /// The height of the ground is estimated anew.
+    #[must_use]
+    pub fn with_contact_corrections(self, corrections: ContactCorrections) -> Self {
+        if corrections == self.corrections {
+            return self;
+        }
+        Self { corrections, contacts: OnceLock::new(), ground_m: OnceLock::new(), ..self }
     }
 
     /// Returns the same motion with this height of the ground in place of an estimate, metres.
@@ -133,6 +161,8 @@ impl Motion {
         let frames =
             self.ground_frames().iter().map(|frame| world_from_clip.after(frame)).collect();
         Self {
+            found_contacts: self.found_contacts.clone(),
+            corrections: self.corrections.clone(),
             contacts: self.contacts.clone(),
             ground_m: self.ground_m.clone(),
             seams: self.seams.clone(),
@@ -150,7 +180,10 @@ impl Motion {
         if !fits || *roles == self.roles {
             return self;
         }
-        Self::with_roles(self.clip, roles).with_feet(self.feet).with_seams(self.seams)
+        Self::with_roles(self.clip, roles)
+            .with_feet(self.feet)
+            .with_contact_corrections(self.corrections)
+            .with_seams(self.seams)
     }
 
     /// Returns the clip.
@@ -181,8 +214,23 @@ impl Motion {
     /// Returns the frames in which each foot is planted.
     #[must_use]
     pub fn contacts(&self) -> &Contacts {
+        if self.corrections.is_empty() {
+            return self.found_contacts();
+        }
+        self.contacts.get_or_init(|| self.corrections.applied_to(self.found_contacts()))
+    }
+
+    /// Returns the contacts before corrections: those that were detected or given.
+    #[must_use]
+    pub fn found_contacts(&self) -> &Contacts {
         let detect = || Contacts::detect(&self.clip, &self.roles, &self.feet.contacts);
-        self.contacts.get_or_init(detect)
+        self.found_contacts.get_or_init(detect)
+    }
+
+    /// Returns the corrections of its contacts by hand.
+    #[must_use]
+    pub fn contact_corrections(&self) -> &ContactCorrections {
+        &self.corrections
     }
 
     /// Returns the height of the ground under the clip, metres.
@@ -277,6 +325,7 @@ impl Motion {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::clip::ContactCorrection;
     use crate::skeleton::Side;
     use crate::synth::{Action, Params, synthesize};
 
@@ -303,6 +352,31 @@ mod tests {
         let anew = changed.with_feet(FootOptions { ground_m: Some(0.1), ..FootOptions::default() });
         assert_ne!(*anew.contacts(), none);
         assert_eq!(anew.ground_m(), 0.1);
+    }
+
+    #[test]
+    fn corrected_contacts_overrule_what_is_found_or_given() {
+        let motion = Motion::analyze(walk());
+        let (found, frames) = (motion.contacts().clone(), walk().frames());
+        let all: ContactCorrections = Side::BOTH
+            .map(|side| ContactCorrection { side, frames: 0..frames, planted: true })
+            .into_iter()
+            .collect();
+        let corrected = motion.clone().with_contact_corrections(all.clone());
+        assert!((0..frames).all(|frame| corrected.contacts().planted(Side::Left, frame)));
+        assert_eq!((corrected.found_contacts(), corrected.contact_corrections()), (&found, &all));
+        assert_ne!(corrected.ground_m(), motion.ground_m(), "estimated from raised feet, too");
+        // Other thresholds leave them alone, as does a place on the ground; new contacts end them.
+        let strict = ContactOptions { enter_height_m: 0.01, ..ContactOptions::default() };
+        let strict = FootOptions { contacts: strict, ground_m: None };
+        let read = corrected.clone().with_feet(strict);
+        assert_eq!(read.contacts(), corrected.contacts());
+        assert_ne!(read.found_contacts(), &found);
+        let there = Planar::new(0.3, 1.0, 0.0);
+        assert_eq!(corrected.moved(&there).contacts(), corrected.contacts());
+        assert_eq!(corrected.clone().with_contacts(found.clone()).contacts(), &found);
+        let back = corrected.with_contact_corrections(ContactCorrections::default());
+        assert_eq!(back, motion);
     }
 
     #[test]

@@ -104,7 +104,9 @@ impl GaitCycle {
         }
         closed.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (_, start, looped) in closed {
-            let Some((strike, events)) = events_of(&looped, roles) else {
+            let corrections = source.contact_corrections();
+            let by_hand = |side, frame| corrections.planted(side, start + frame);
+            let Some((strike, events)) = events_of(&looped, roles, by_hand) else {
                 continue;
             };
             let frames = looped.clip.frames();
@@ -153,14 +155,20 @@ impl GaitCycle {
 }
 
 /// Returns the frame of a closed cycle in which the left foot strikes, and the events from there
-/// on. `None` unless each foot stands once.
-pub(crate) fn events_of(looped: &Loop, roles: &Roles) -> Option<(usize, Events)> {
+/// on. `None` unless each foot stands once. `by_hand` is whether a foot is planted in a frame of the
+/// cycle, where that was corrected.
+pub(crate) fn events_of(
+    looped: &Loop,
+    roles: &Roles,
+    by_hand: impl Fn(Side, usize) -> Option<bool>,
+) -> Option<(usize, Events)> {
     let frames = looped.clip.frames();
     if !CYCLE_SECS.contains(&(frames as f64 / looped.clip.fps())) {
         return None;
     }
     // In the middle one of three repetitions no stance is cut off.
-    let contacts = Contacts::detect(&looped.repeat(3).ok()?, roles, &ContactOptions::default());
+    let found = Contacts::detect(&looped.repeat(3).ok()?, roles, &ContactOptions::default());
+    let contacts = found.corrected(|side, frame| by_hand(side, frame % frames));
     let stance = |side: Side| {
         let mut within = contacts
             .intervals(side)

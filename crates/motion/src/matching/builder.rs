@@ -10,7 +10,8 @@ use super::tags::{TagRange, suggest_tags};
 use super::{MatchError, Weights};
 use crate::blend::moving_joints_of;
 use crate::clip::{
-    Clip, ContactOptions, Contacts, Interpolation, Motion, mirror, resample, retarget_onto,
+    Clip, ContactCorrections, ContactOptions, Contacts, Interpolation, Motion, mirror, resample,
+    retarget_onto,
 };
 use crate::math::Planar;
 use crate::registration::{Progress, REFERENCE_HEIGHT_M};
@@ -65,12 +66,19 @@ enum Stage {
 struct PreparedClip {
     clip: Arc<Clip>,
     cycle: Option<Planar>,
+    /// The corrections of its contacts by hand.
+    corrections: ContactCorrections,
 }
 
 impl PreparedClip {
-    /// Returns the contacts of the feet; for a cycle those of a repetition between others, where no
-    /// stance is cut off.
+    /// Returns the contacts of the feet, as corrected.
     fn contacts(&self, roles: &Roles) -> Result<Contacts, MatchError> {
+        Ok(self.corrections.applied_to(&self.detected_contacts(roles)?))
+    }
+
+    /// Returns the contacts that are detected; for a cycle those of a repetition between others,
+    /// where no stance is cut off.
+    fn detected_contacts(&self, roles: &Roles) -> Result<Contacts, MatchError> {
         let detect = |clip: &Clip| Contacts::detect(clip, roles, &ContactOptions::default());
         let Some(cycle) = &self.cycle else {
             return Ok(detect(&self.clip));
@@ -256,6 +264,8 @@ impl DatabaseBuilder {
                         Stage::MeasureMirrored(PreparedClip {
                             clip: Arc::new(clip),
                             cycle: motion.cycle().as_ref().map(cycle::mirrored),
+                            // The contacts of the original are mirrored.
+                            corrections: ContactCorrections::default(),
                         })
                     }
                     None => self.next_clip(),
@@ -349,16 +359,20 @@ impl DatabaseBuilder {
                 .map_err(|error| MatchError::Retarget { name: clip.name().to_owned(), error })?;
             clip = Arc::new(moved);
         }
+        let corrections = from.contact_corrections();
         if self.options.cycles
-            && let Some((clip, cycle)) =
-                cycle::closed(&clip, &self.roles).as_ref().and_then(cycle::at_rate)
+            && let Some(looped) = cycle::closed(&clip, &self.roles, corrections)
+            && let Some((clip, cycle)) = cycle::at_rate(&looped)
         {
-            return Ok(PreparedClip { clip: Arc::new(clip), cycle: Some(cycle) });
+            let ratio = clip.frames() as f64 / looped.clip.frames().max(1) as f64;
+            let corrections = corrections.at_rate(ratio);
+            return Ok(PreparedClip { clip: Arc::new(clip), cycle: Some(cycle), corrections });
         }
+        let corrections = corrections.at_rate(RATE as f64 / clip.fps());
         if clip.fps() != RATE as f64 {
             clip = Arc::new(resample(&clip, RATE as f64, Interpolation::Cubic)?);
         }
-        Ok(PreparedClip { clip, cycle: None })
+        Ok(PreparedClip { clip, cycle: None, corrections })
     }
 
     fn tags_of(&self, motion: &DatabaseClip) -> Vec<TagRange> {

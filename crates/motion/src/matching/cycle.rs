@@ -1,7 +1,7 @@
 //! Clips that are cycles, and their repetition.
 
 use super::features::RATE;
-use crate::clip::{Clip, Interpolation, Motion};
+use crate::clip::{Clip, ContactCorrections, Interpolation, Motion};
 use crate::gait::events_of;
 use crate::math::Planar;
 use crate::skeleton::Roles;
@@ -19,12 +19,17 @@ const MAX_STRIDE_GAP_SHARE: f64 = 0.35;
 ///
 /// A cycle is a clip whose end leads into its beginning ([`WholeCycle`]): any clip whose ends
 /// nearly meet, and a single stride, with one stance of each foot, whose ends are near each other.
-pub(super) fn closed(clip: &Arc<Clip>, roles: &Roles) -> Option<Loop> {
+pub(super) fn closed(
+    clip: &Arc<Clip>,
+    roles: &Roles,
+    corrections: &ContactCorrections,
+) -> Option<Loop> {
     let source = Motion::with_roles(Arc::clone(clip), roles);
     let whole = WholeCycle::of(&source).filter(|whole| whole.gap_share <= MAX_STRIDE_GAP_SHARE)?;
     let looped = whole.close(&LoopOptions::default()).ok()?;
     let meets = whole.added_frames <= 1 && whole.gap_share <= MAX_GAP_SHARE;
-    (meets || events_of(&looped, roles).is_some()).then_some(looped)
+    let by_hand = |side, frame| corrections.planted(side, frame);
+    (meets || events_of(&looped, roles, by_hand).is_some()).then_some(looped)
 }
 
 /// Returns one repetition of a cycle at [`RATE`] frames per second, and its transform: the frame

@@ -5,6 +5,7 @@ use super::places::forget_places;
 use crate::LabId;
 use crate::Selected;
 use crate::command::CommandError;
+use crate::contact_edits::forget_edits;
 use crate::labs::{Slot, lab_of};
 use crate::library::Entry;
 use crate::outside;
@@ -52,6 +53,7 @@ impl Document {
                 self.set_unchecked(key, value);
             }
         }
+        forget_edits(&mut self.params, &entry.id);
         self.library_revision += 1;
         if self.params.text(Key::Character) == entry.id {
             self.set_unchecked(Key::Character, Value::Text(String::new()));

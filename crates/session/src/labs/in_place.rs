@@ -78,8 +78,13 @@ impl LabInputs for InPlaceInputs {
             }
             RootWay::PutBack => {
                 let options = &source.feet().contacts;
-                let found =
-                    root_motion_from_feet(source.clip(), source.roles(), options, self.turns)?;
+                let found = root_motion_from_feet(
+                    source.clip(),
+                    source.roles(),
+                    options,
+                    source.contact_corrections(),
+                    self.turns,
+                )?;
                 (found.world_from_clip, found.contacts)
             }
         };

@@ -58,7 +58,10 @@ pub(super) fn fitted(
     let retargeted = (!same_skeleton).then(|| Arc::new(RetargetReport::between(a, b)));
     let (rate, rate_b) = (a.clip().fps(), b.clip().fps());
     let seams = b.seams_at(|frame| (frame as f64 * rate / rate_b).round() as usize);
-    let motion = Motion::with_roles(clip, &roles).with_feet(b.feet()).with_seams(seams);
+    let motion = Motion::with_roles(clip, &roles)
+        .with_feet(b.feet())
+        .with_contact_corrections(b.contact_corrections().at_rate(rate / rate_b))
+        .with_seams(seams);
     Ok((Arc::new(motion), retargeted))
 }
 

@@ -3,6 +3,7 @@
 use super::lab::can_change_result;
 use super::lab_set::lab_of;
 use super::outcome::Outcome;
+use crate::contact_edits::with_own_edits;
 use crate::params::{Key, Kind, PARAMS, Param, Params, Value, escaped, is_recipe, parts};
 use crate::{LabId, Selected};
 use percent_encoding::percent_decode_str;
@@ -22,6 +23,7 @@ pub(crate) fn recipe_ingredients(lab: LabId) -> impl Iterator<Item = Key> {
 pub(crate) fn recipe_id(params: &Params, outcome: &Outcome, fps: [f64; 2]) -> Option<String> {
     let lab = params.lab();
     let facts = lab_of(lab);
+    let params = &with_own_edits(params);
     if facts.is_clip_as_it_is(params) {
         return None;
     }

@@ -5,6 +5,7 @@ use super::feet::{Lock, locking, slide, slide_before};
 use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs, can_change_result};
 use super::sliced::{JobKind, Sliced};
 use super::{MeasuredMotion, Outcome};
+use crate::contact_edits::with_own_edits;
 use crate::labs::LabError;
 use crate::metrics::{Metric, MetricId};
 use crate::params::{Key, Kind, MAX_PANES, PARAMS, Param, Params};
@@ -30,6 +31,9 @@ impl<S: HasPart<ViewCache>> Lab<S> for ViewLab {
             choices::RootMotion::InPlace => msg!("{held}, in place", held),
             choices::RootMotion::Residual => msg!("{held}, beside its path", held),
             choices::RootMotion::World if is_placed => msg!("{held}, moved", held),
+            choices::RootMotion::World if !params.contact_edits().is_empty() => {
+                msg!("{held}, contacts corrected", held)
+            }
             choices::RootMotion::World => held,
         }
     }
@@ -39,6 +43,7 @@ impl<S: HasPart<ViewCache>> Lab<S> for ViewLab {
     }
 
     fn is_clip_as_it_is(&self, params: &Params) -> bool {
+        let params = &with_own_edits(params);
         let changes = |param: &Param| {
             !matches!(param.kind, Kind::Clip)
                 && param.is_used_by(LabId::View)
@@ -94,7 +99,12 @@ impl LabInputs for ViewInputs {
             Some(viewed) => viewed.made.clone()?,
         };
         let measured = MeasuredMotion::Clip(Arc::clone(shown.motion.clip()));
-        let motion = self.ground.moved(&shown.motion)?;
+        let mut motion = self.ground.moved(&shown.motion)?;
+        if !motion.contact_corrections().is_empty() {
+            // A kept result has no corrections of its own: its contacts are those that it shows.
+            let contacts = motion.contacts().clone();
+            motion = Arc::new(Motion::clone(&motion).with_contacts(contacts));
+        }
         Ok(Outcome { motion, measured, ..shown })
     }
 

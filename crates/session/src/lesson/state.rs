@@ -137,7 +137,10 @@ impl LessonState {
         let wanted = with_links(params, &links, false);
         let named = |key: Key| links.iter().any(|link| names(link, key));
         let counts = |param: &&Param| {
-            is_of_page_state(param) || (param.group == Group::Stage && named(param.key))
+            // Those of the reader's own files stay.
+            let is_own = param.key == Key::ContactEdits;
+            (is_of_page_state(param) && !is_own)
+                || (param.group == Group::Stage && named(param.key))
         };
         PARAMS.iter().filter(counts).all(|param| wanted.get(param.key) == params.get(param.key))
     }

@@ -420,3 +420,17 @@ pub(super) const OF_FEET: &[LabId] = &[
     LabId::Graph,
     LabId::InPlace,
 ];
+
+/// The labs whose results depend on the contacts of their clips.
+pub(super) const OF_CONTACTS: &[LabId] = &[
+    LabId::View,
+    LabId::Transition,
+    LabId::Speed,
+    LabId::Loop,
+    LabId::Layers,
+    LabId::Register,
+    LabId::Path,
+    LabId::Graph,
+    LabId::Match,
+    LabId::InPlace,
+];

@@ -6,6 +6,7 @@
 
 mod addresses;
 mod clip_ids;
+mod contact_edits;
 mod edited_path;
 mod frame_pairs;
 mod ground_path;
@@ -20,6 +21,7 @@ mod weighted_clips;
 
 pub use clip_ids::write_ids;
 pub(crate) use clip_ids::{escaped, is_recipe, parts, read_id};
+pub use contact_edits::ClipContacts;
 pub use tags::HandTag;
 pub use weighted_clips::MAX_WEIGHTED_CLIPS;
 
@@ -162,6 +164,8 @@ lists! {
     Recording(Option<Recording>) in recording, else None;
     /// Tags set by hand, as in `walk:0.2-1.5:exclude,run:0-1:-turn`.
     Tags(Vec<HandTag>) in tags, else Vec::new();
+    /// Contacts of clips that are corrected by hand, as in `walk:L12-30;-R40-52`.
+    ContactEdits(Vec<ClipContacts>) in contact_edits, else Vec::new();
     /// Addresses of files on the web, separated by spaces.
     Addresses(Vec<String>) in addresses, else Vec::new();
 }
@@ -171,7 +175,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    const KINDS: [ListKind; 11] = [
+    const KINDS: [ListKind; 12] = [
         ListKind::ClipIds,
         ListKind::WeightedClips,
         ListKind::WeightCurve,
@@ -182,6 +186,7 @@ mod tests {
         ListKind::Jump,
         ListKind::Recording,
         ListKind::Tags,
+        ListKind::ContactEdits,
         ListKind::Addresses,
     ];
 
@@ -206,6 +211,7 @@ mod tests {
             (ListKind::Jump, "0:52-1:14"),
             (ListKind::Recording, "3c.0.s_1o.0.0"),
             (ListKind::Tags, "walk:0.2-1.5:exclude,run:0-1:-turn"),
+            (ListKind::ContactEdits, "walk:L12-30;-R40-52,run:R3-3"),
             (ListKind::Addresses, "https://example.org/a.bvh http://example.org/b.bvh"),
         ] {
             assert_eq!(kind.read(text).map(|list| list.write()), Ok(text.to_owned()));

@@ -1,7 +1,7 @@
 //! The lists of a document, by their values.
 
 use super::current::Params;
-use super::grammar::{HandTag, List};
+use super::grammar::{ClipContacts, HandTag, List};
 use super::key::Key;
 use super::value::Value;
 use glam::DVec2;
@@ -97,6 +97,15 @@ impl Params {
     pub fn tags(&self) -> &[HandTag] {
         match self.get(Key::Tags) {
             Value::List(List::Tags(tags)) => tags,
+            _ => &[],
+        }
+    }
+
+    /// Returns the contacts of clips that are corrected by hand.
+    #[must_use]
+    pub fn contact_edits(&self) -> &[ClipContacts] {
+        match self.get(Key::ContactEdits) {
+            Value::List(List::ContactEdits(clips)) => clips,
             _ => &[],
         }
     }

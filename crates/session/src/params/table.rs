@@ -26,6 +26,7 @@ macro_rules! parameters {
     Ground "ground" "Ground" Lab(Blend), auto(-100.0, 100.0, 0.5), Start::Auto, "cm", "The height of the ground for foot lock and penetration. Auto: 0, or the height of planted feet where they are more than 3 cm away from that." [Feet, NoCompare] in OF_FEET;
     ContactHeight "contact_height" "Contact height" Lab(Blend), number(1.0, 15.0, 0.5), Start::Number(4.0), "cm", "A foot is planted below this height above its own lowest level, for a body of 1.75 m. Higher: longer stances." [Feet, NoCompare] in OF_FEET;
     ContactSpeed "contact_speed" "Contact speed" Lab(Blend), number(0.1, 2.0, 0.05), Start::Number(0.4), "m/s", "A foot is planted while it is slower than this. Faster: longer stances, and feet that slide are held too." [Feet, NoCompare] in OF_FEET;
+    ContactEdits "contact_edits" "Corrected contacts" Lab(Blend), Kind::List(ListKind::ContactEdits), Start::Text(""), "", "Contacts corrected by hand: for each clip the feet that are planted, with their first and last frames, as in walk:L12-30;-R40-52. A minus sign before a foot lifts it." in OF_CONTACTS;
 
     Method "method" "Method" Lab(Transition), Kind::Choice(TransitionMethod::CHOICES), Start::Choice(TransitionMethod::Inertialize.word()), "", "The method of the transition from A to B.";
     HalfLife "half_life" "Half-life" Lab(Transition), logarithmic(0.02, 1.5, 0.01), Start::Number(0.2), "s", "How slowly the offset from A decays: half of it remains after 1.2 half-lives. Longer is smoother, but has more lag." in [Loop, Graph];

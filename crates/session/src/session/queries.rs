@@ -3,6 +3,7 @@
 use super::Session;
 use crate::Selected;
 use crate::clip_info::ClipInfo;
+use crate::contact_edits::{ContactClip, corrections_of, with_named_edits};
 use crate::labs::lab::Beside;
 use crate::labs::lab_of;
 use crate::labs::{CycleMade, DistanceMap, Slot};
@@ -10,29 +11,65 @@ use crate::labs::{made_motion_has, middle_mps, range_of, synth_action};
 use crate::lesson::would_set_up;
 use crate::library::{Entry, split_reference};
 use crate::link;
+use crate::motion::foot_options;
 use crate::pane::Pane;
-use crate::params::{Compare, Key, Kind, Value};
+use crate::params::{Compare, Key, Kind, Params, Value};
 use segue_motion::clip::Motion;
 use segue_motion::matching::{made_name, made_params};
+use segue_motion::skeleton::{Role, Side};
 use segue_motion::skin::Character;
 use segue_motion::synth;
 use segue_text::{Message, msg};
 use std::collections::BTreeMap;
 use std::sync::{Arc, LazyLock};
 
+/// Returns the query string of parameters, without `?`.
+pub(super) fn query_of(params: &Params) -> String {
+    let query = link::write(params);
+    if would_set_up(params) {
+        // The lab, which is usually named only if it is not the first one, shows that there is a
+        // state besides.
+        format!("{query}&{}={}", Key::Lab.param().name, params.lab().word())
+    } else {
+        query
+    }
+}
+
 impl Session {
     /// Returns the query string that restores this state, without `?`.
     #[must_use]
     pub fn query(&self) -> String {
         let params = &self.document.params;
-        let query = link::write(params);
-        if would_set_up(params) {
-            // The lab, which is usually named only if it is not the first one, shows that there is
-            // a state besides.
-            format!("{query}&{}={}", Key::Lab.param().name, params.lab().word())
-        } else {
-            query
+        if params.contact_edits().is_empty() {
+            return query_of(params);
         }
+        query_of(&with_named_edits(params))
+    }
+
+    /// Returns the clips whose contacts can be corrected on the timeline: those that the panes show
+    /// frame by frame. None in labs whose results have frames of their own.
+    #[must_use]
+    pub fn contact_clips(&self) -> Vec<ContactClip> {
+        let (library, present) = (&self.document.library, &self.document.params);
+        let mut clips: Vec<ContactClip> = Vec::new();
+        let shown = self.panes.list.iter().filter_map(Pane::made_from);
+        for params in shown.filter(|params| lab_of(params.lab()).shows_clip()) {
+            let entry = library.find(params.text(Key::A));
+            let Some((entry, motion)) =
+                entry.and_then(|entry| Some((entry, entry.motion.as_ref()?)))
+            else {
+                continue;
+            };
+            let corrections = corrections_of(library, present, &entry.id);
+            let read = self.labs.feet.known(motion, foot_options(present), corrections);
+            let has_feet =
+                Side::BOTH.iter().any(|&side| motion.roles().get(Role::foot(side)).is_some());
+            let is_new = clips.iter().all(|clip| clip.id != entry.id);
+            if let Some(motion) = read.filter(|_| has_feet && is_new) {
+                clips.push(ContactClip { id: entry.id.clone(), motion: Arc::clone(motion) });
+            }
+        }
+        clips
     }
 
     /// Returns the open comparison.

@@ -1,11 +1,14 @@
 //! Storing of the work, and its restoring: before anything is shown, or later.
 
 use super::Session;
+use super::queries::query_of;
+use crate::contact_edits::keep_edits_of_files;
+use crate::document::Document;
 use crate::files::{is_as_it_came, stored_entries};
 use crate::library::Origin;
 use crate::link;
 use crate::missing::look_for_clips;
-use crate::params::Key;
+use crate::params::{Key, Params};
 use crate::reading::Content;
 use crate::saved::{Saved, SavedEntry};
 use std::sync::Arc;
@@ -15,7 +18,7 @@ impl Session {
     #[must_use]
     pub fn saved(&self) -> Saved {
         Saved {
-            query: self.query(),
+            query: query_of(&self.document.params),
             entries: self
                 .document
                 .library
@@ -43,6 +46,7 @@ impl Session {
         // A language that was chosen by hand stays when the page is opened with a link, unless the
         // link names another.
         self.keep_language(saved);
+        self.keep_contact_edits(saved);
         self.open_link(query.unwrap_or(&saved.query));
         self.document.forget_steps();
         // The results on the stage do not belong to this work.
@@ -88,6 +92,7 @@ impl Session {
         if self.document.params.get(Key::Lang) == &Key::Lang.param().default_value() {
             self.keep_language(saved);
         }
+        self.keep_contact_edits(saved);
         self.document.library_revision += 1;
         self.refresh();
     }
@@ -115,6 +120,18 @@ impl Session {
         self.document.add_to_steps(&came);
         self.document.library_revision += 1;
         self.refresh();
+    }
+
+    /// Keeps the corrected contacts of stored files.
+    fn keep_contact_edits(&mut self, saved: &Saved) {
+        let mut stored = Params::default();
+        let values = link::read(&saved.query).values.into_iter();
+        for (key, edits) in values.filter(|(key, _)| *key == Key::ContactEdits) {
+            let result = stored.set(key, edits);
+            debug_assert!(result.is_ok(), "links hold checked values: {result:?}");
+        }
+        let Document { library, params, .. } = &mut self.document;
+        keep_edits_of_files(library, &stored, params);
     }
 
     /// Keeps the language that was chosen by hand.

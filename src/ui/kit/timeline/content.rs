@@ -4,6 +4,8 @@ use super::super::chip::Part;
 use super::super::curves::Curves;
 use crate::ui::language::{Text, Word};
 use eframe::egui::Color32;
+use segue_motion::clip::StanceEnd;
+use segue_text::Message;
 use std::ops::Range;
 
 /// A clip on the timeline.
@@ -35,6 +37,24 @@ pub(crate) struct Stripe<'a> {
     pub(crate) label: Text<'a>,
     /// The stances, seconds: left, right.
     pub(crate) feet: [Vec<Range<f64>>; 2],
+    /// The correction of the stances; `None` where they can only be seen.
+    pub(crate) edit: Option<StanceEdit>,
+}
+
+/// The correction of stances by hand.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct StanceEdit {
+    /// The parts that are corrected, seconds: left, right.
+    pub(crate) corrected: [Vec<Range<f64>>; 2],
+    /// A sentence about the corrections; `None` without any.
+    pub(crate) hint: Option<Message>,
+}
+
+impl StanceEdit {
+    /// Returns whether anything is corrected.
+    pub(crate) fn is_corrected(&self) -> bool {
+        self.corrected.iter().any(|parts| !parts.is_empty())
+    }
 }
 
 /// A moment with a mark, such as the beginning of a cycle.
@@ -75,6 +95,38 @@ pub(crate) struct Timeline<'a> {
     pub(crate) curves: Option<Curves<'a>>,
 }
 
+/// A correction of stances. Feet and stances are given by their numbers; times are in seconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum StanceEvent {
+    /// Move an end of a stance.
+    Move {
+        /// The foot: left, right.
+        foot: usize,
+        /// The stance.
+        stance: usize,
+        /// The end.
+        end: StanceEnd,
+        /// Its new time.
+        time: f64,
+    },
+    /// Add a stance.
+    Add {
+        /// The foot.
+        foot: usize,
+        /// The middle of the stance.
+        time: f64,
+    },
+    /// Remove a stance.
+    Remove {
+        /// The foot.
+        foot: usize,
+        /// The stance.
+        stance: usize,
+    },
+    /// Take back all corrections.
+    Reset,
+}
+
 /// The user's input to a timeline. Times are in seconds, within the timeline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum TimelineEvent {
@@ -92,6 +144,13 @@ pub(crate) enum TimelineEvent {
     SetTransitionStart(f64),
     /// Move the end of the transition.
     SetTransitionEnd(f64),
+    /// Correct the stances of a stripe, by its number.
+    Stance {
+        /// The stripe's number.
+        stripe: usize,
+        /// The correction.
+        event: StanceEvent,
+    },
     /// A handle was taken hold of: the changes until it is released are one step of undo.
     EditStarted,
     /// The handle was released.

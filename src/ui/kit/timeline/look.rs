@@ -114,15 +114,19 @@ pub(super) fn paint_playhead(x: f32, top: f32, bottom: f32, scrub: &Response, ui
     ui.painter().circle_filled(pos2(x, top + 2.0), (3.5 + hot) * theme.scale(), palette.handle);
 }
 
+/// Returns the lines of the left and the right foot in the row of a stripe.
+pub(super) fn stripe_lanes(row: Rangef) -> [Rangef; 2] {
+    let half = 0.5 * (row.span() - 1.0);
+    [0.0, half + 1.0].map(|top| Rangef::new(row.min + top, row.min + top + half))
+}
+
 /// Draws the stances of a motion as bars.
 pub(super) fn paint_stripe(stripe: &Stripe<'_>, row: Rangef, axis: TimeAxis, ui: &Ui) {
     let palette = palette_of(ui);
     let color =
         if stripe.part == Part::Result { palette.accent } else { stripe.part.fill(palette).0 };
-    let half = 0.5 * (row.span() - 1.0);
-    for (foot, stances) in stripe.feet.iter().enumerate() {
-        let top = row.min + foot as f32 * (half + 1.0);
-        let lane = Rect::from_x_y_ranges(axis.x, top..=top + half);
+    for (stances, lane) in stripe.feet.iter().zip(stripe_lanes(row)) {
+        let lane = Rect::from_x_y_ranges(axis.x, lane);
         ui.painter().rect_filled(lane, 1.0, palette.track.gamma_multiply(0.5));
         for stance in stances {
             let bar = Rect::from_x_y_ranges(

@@ -5,10 +5,14 @@ mod content;
 mod handles;
 mod look;
 mod scrub;
+mod stances;
 
 use self::handles::Handles;
-use self::look::{moment_ui, outside_loop, paint_playhead, paint_ruler, paint_stripe, paint_track};
+use self::look::{
+    moment_ui, outside_loop, paint_playhead, paint_ruler, paint_stripe, paint_track, stripe_lanes,
+};
 use self::scrub::scrub_ui;
+use self::stances::Lanes;
 use super::curves::{curves_ui, hover_ui, key_ui};
 use super::paint::{Run, focus_ring, full_width, line_of, put};
 use super::time_axis::TimeAxis;
@@ -16,7 +20,10 @@ use super::words;
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{Align2, Rangef, Rect, Sense, Ui, pos2};
 
-pub(crate) use self::content::{Moment, Stripe, Timeline, TimelineEvent, Track};
+pub(crate) use self::content::{
+    Moment, StanceEdit, StanceEvent, Stripe, Timeline, TimelineEvent, Track,
+};
+pub(crate) use self::stances::corrected_hint;
 
 /// Draws the bars, the curves, and the playhead over both. Press anywhere to go there, drag to
 /// scrub, use the arrow keys for frames.
@@ -30,9 +37,13 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
     let Heights { head, bar: bar_height, pitch, .. } = Heights::of(ui);
     // Each of several panes has less room.
     let crowded = timeline.stripes.len() > 3;
-    let stripe_pitch = ((if crowded { 0.8 } else { 1.0 }) * STRIPE * scale).round();
+    let stripe_pitch = |stripe: &Stripe<'_>| match stripe.edit {
+        None => ((if crowded { 0.8 } else { 1.0 }) * STRIPE * scale).round(),
+        Some(_) => (edited_stripe(gutter > 0.0) * scale).round(),
+    };
     let tracks_height = head + timeline.tracks.len() as f32 * pitch;
-    let bars = full_width(tracks_height + timeline.stripes.len() as f32 * stripe_pitch, ui);
+    let stripes_height: f32 = timeline.stripes.iter().map(stripe_pitch).sum();
+    let bars = full_width(tracks_height + stripes_height, ui);
     let curve_height = timeline
         .curves
         .as_ref()
@@ -81,10 +92,13 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
         }
         paint_track(track, row, axis, timeline.duration, ui);
     }
-    for (index, stripe) in timeline.stripes.iter().enumerate() {
-        let y = bars.top() + tracks_height + index as f32 * stripe_pitch;
-        let row = Rangef::new(y, y + stripe_pitch - 2.0);
-        if gutter > 0.0 {
+    let mut rows = Vec::new();
+    let mut below = bars.top() + tracks_height;
+    for stripe in timeline.stripes {
+        let row = Rangef::new(below, below + stripe_pitch(stripe) - 2.0);
+        below += stripe_pitch(stripe);
+        rows.push(row);
+        if gutter > 0.0 && stripe.edit.is_none() {
             let label = line_of(
                 &[Run::new(stripe.label, Type::Small, palette.muted)],
                 gutter - space::S,
@@ -110,6 +124,18 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
     }
     outside_loop(timeline, axis, area, ui);
 
+    for (index, (stripe, row)) in timeline.stripes.iter().zip(rows).enumerate() {
+        let Some(edit) = &stripe.edit else {
+            continue;
+        };
+        let lanes = stripe_lanes(row);
+        let lanes = Lanes { index, stripe, edit, lanes, axis, id: id.with(("stances", index)) };
+        if gutter > 0.0 {
+            let x = bars.left()..=axis.x.min - space::S;
+            lanes.label_ui(Rect::from_x_y_ranges(x, row), now, &mut events, ui);
+        }
+        lanes.stances_ui(timeline, &mut events, ui);
+    }
     let handles = Handles { axis, top: bars.top(), bottom: plot_row.bottom(), id };
     if let (Some(transition), true) = (&timeline.transition, timeline.transition_editable) {
         handles.edge_ui(
@@ -175,6 +201,12 @@ impl Heights {
 
 /// Height of a stripe of stances at scale 1, points.
 const STRIPE: f32 = 15.0;
+
+/// Returns the height of a stripe whose stances can be corrected at scale 1, points. Without a space
+/// before it the page is narrow, and fingers need more.
+fn edited_stripe(has_gutter: bool) -> f32 {
+    if has_gutter { 28.0 } else { 44.0 }
+}
 
 /// Height of the line with the seconds at scale 1, points.
 const RULER: f32 = 18.0;

@@ -1,7 +1,9 @@
 //! Tests of gait cycles and of blending by speed.
 
 use super::*;
-use crate::clip::{Motion, character_frames, ground_speed, resample, stillest_step};
+use crate::clip::{
+    ContactCorrections, Motion, StanceEnd, character_frames, ground_speed, resample, stillest_step,
+};
 use crate::gait::SpeedPlayer;
 use crate::registration::fixtures::Walk;
 use crate::synth::{Action, Params, synthesize};
@@ -42,6 +44,39 @@ fn skate(clip: &Clip, contacts: &Contacts, roles: &Roles) -> f32 {
         }
     }
     sum
+}
+
+#[test]
+fn corrected_strikes_move_the_cycle_and_its_events() {
+    let motion = Motion::analyze(synthesize(&Params::new(Action::Walk)).unwrap().clip);
+    let found = GaitCycle::find(&motion).unwrap();
+    // All strikes of both feet three frames later.
+    let mut late = motion.contacts().clone();
+    for side in Side::BOTH {
+        for (index, stance) in motion.contacts().intervals(side).into_iter().enumerate() {
+            late = late.with_end_at(side, index, StanceEnd::Strike, stance.start + 3);
+        }
+    }
+    let corrections = ContactCorrections::between(motion.contacts(), &late);
+    let corrected = GaitCycle::find(&motion.clone().with_contact_corrections(corrections)).unwrap();
+    let frames = motion.contacts().intervals(Side::Left);
+    let begins = |cycle: &GaitCycle, by: usize| {
+        frames.iter().any(|stance| stance.start + by == cycle.range().start)
+    };
+    assert!(begins(&found, 0) && begins(&corrected, 3), "{:?}", corrected.range());
+    let stance = |cycle: &GaitCycle| cycle.events().left_lift * cycle.range().len() as f64;
+    assert!((stance(&found) - stance(&corrected) - 3.0).abs() < 1.5);
+
+    // A single stride is closed at its own ends, and the contacts of the cycle are corrected, too.
+    let stride = Motion::analyze(motion.clip().crop(found.range()).unwrap());
+    let closed = GaitCycle::find(&stride).unwrap();
+    let stance =
+        |cycle: &GaitCycle| (cycle.events().left_lift * cycle.range().len() as f64).round();
+    let lift = stride.contacts().intervals(Side::Left)[0].end;
+    let early = stride.contacts().with_end_at(Side::Left, 0, StanceEnd::Lift, lift - 4);
+    let corrections = ContactCorrections::between(stride.contacts(), &early);
+    let corrected = GaitCycle::find(&stride.with_contact_corrections(corrections)).unwrap();
+    assert_eq!(stance(&closed) - stance(&corrected), 4.0);
 }
 
 #[test]
