@@ -73,6 +73,7 @@ impl Segue {
     /// Hands the panels what they show and the session does not have.
     fn update_panels(&mut self, ctx: &egui::Context) {
         self.panels.cameras = self.picture.cameras(self.session.panes().len());
+        self.panels.figures = self.picture.figures(self.session.panes().len());
         self.panels.language =
             self.languages.update(&self.session, &mut self.window.language, &self.inbox, ctx);
         self.session.set_lesson_language(self.panels.language.tag());

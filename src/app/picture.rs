@@ -5,6 +5,7 @@ use crate::render;
 use crate::ui::theme::Palette;
 use eframe::egui::layers::ShapeIdx;
 use eframe::egui::{Color32, Painter, Rect, Shape, Ui};
+use glam::Vec3;
 use segue_scene::{Camera, Color, Colors, Director, Highlights, Look, StageOptions, Viewport};
 use segue_session::Session;
 
@@ -48,6 +49,11 @@ impl Picture {
     /// Returns the cameras of the first `panes` panes, as last drawn.
     pub(crate) fn cameras(&self, panes: usize) -> Vec<Option<Camera>> {
         (0..panes).map(|pane| self.director.camera(pane).copied()).collect()
+    }
+
+    /// Returns the joints of the figures in the first `panes` panes, as last drawn.
+    pub(crate) fn figures(&self, panes: usize) -> Vec<Vec<Vec3>> {
+        (0..panes).map(|pane| self.director.figure(pane).to_vec()).collect()
     }
 
     /// Draws the session's present state into the reserved slot.

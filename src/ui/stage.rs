@@ -4,11 +4,13 @@ mod buttons;
 mod camera;
 pub(crate) mod framing;
 mod pane;
+mod pick;
 mod verdicts;
 
 use self::buttons::{camera_buttons_ui, pane_switch_ui};
 use self::camera::camera_input;
 use self::pane::pane_ui;
+use self::pick::pick_ui;
 use self::verdicts::verdicts;
 use crate::ui::appearance::stage_theme;
 use crate::ui::kit;
@@ -72,6 +74,9 @@ fn stage_ui(
         }
     }
     state.numbers_top = numbers_top;
+    if !takes_drag {
+        pick_ui(session, &shown, &response, state, out, ui);
+    }
     if layout == Layout::Phone && panes.len() > 1 {
         pane_switch_ui(panes.len(), stage, state, ui);
     }

@@ -3,7 +3,7 @@
 use super::labs::states::LabStates;
 use super::language::Language;
 use eframe::egui::Rect;
-use glam::DVec2;
+use glam::{DVec2, Vec3};
 use segue_scene::Camera;
 use segue_session::StorageState;
 use segue_session::export::ExportOptions;
@@ -91,12 +91,17 @@ pub(crate) struct UiState {
     /// Whether a tree of joints was shown in the last frame: the chosen joint is then marked on the
     /// stage.
     pub(crate) joints_open: bool,
+    /// Whether the chosen joint is marked on the stage because it was chosen there.
+    pub(crate) joint_marked: bool,
     /// The state of the labs.
     pub(crate) labs: LabStates,
     /// The input of the gamepad; `None` without one.
     pub(crate) gamepad: Option<Gamepad>,
     /// The cameras of all panes as they were drawn last.
     pub(crate) cameras: Vec<Option<Camera>>,
+    /// The joints of the figures in all panes as they were drawn last: positions in the world, in the
+    /// order of each skeleton.
+    pub(crate) figures: Vec<Vec<Vec3>>,
     /// The line that is being drawn on the ground, (x, z) in metres; `None` while none is.
     pub(crate) drawing: Option<Vec<DVec2>>,
     /// The layout of the page.
@@ -137,9 +142,11 @@ impl Default for UiState {
             typed_fps: None,
             details: None,
             joints_open: false,
+            joint_marked: false,
             labs: LabStates::default(),
             gamepad: None,
             cameras: Vec::new(),
+            figures: Vec::new(),
             drawing: None,
             layout: Layout::Desk,
             export: ExportOptions::default(),

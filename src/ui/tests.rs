@@ -28,6 +28,7 @@ mod clips;
 mod contacts;
 mod drive;
 mod graph;
+mod joints;
 mod lab_panels;
 mod lessons;
 mod path;
@@ -69,6 +70,7 @@ impl Page {
         let options = StageOptions { panes: &shown, highlights, ..StageOptions::default() };
         self.director.stage(&self.session, &options, 10.0);
         let panes = self.session.panes().len();
+        self.state.figures = (0..panes).map(|pane| self.director.figure(pane).to_vec()).collect();
         self.state.cameras = (0..panes).map(|pane| self.director.camera(pane).copied()).collect();
     }
 }

@@ -9,6 +9,7 @@ use crate::{
     Camera, CameraRig, Colors, Highlights, Look, Pane, Skinning, Stage, Viewport, annotations,
     extra_characters, labs, result, sources,
 };
+use glam::Vec3;
 use segue_session::choices;
 use segue_session::{Key, Session};
 use std::sync::Arc;
@@ -46,6 +47,8 @@ impl Default for StageOptions<'_> {
 pub struct Director {
     stage: Arc<Stage>,
     rigs: Vec<CameraRig>,
+    /// The joints of the results, pane by pane, in the world; empty for a pane without a result.
+    figures: Vec<Vec<Vec3>>,
     bodies: BodyCache,
 }
 
@@ -62,6 +65,8 @@ impl Director {
         let mut panes = std::mem::take(&mut Arc::make_mut(&mut self.stage).panes);
         panes.resize_with(options.panes.len(), Pane::default);
         self.rigs.resize_with(session.panes().len(), CameraRig::default);
+        self.figures.resize_with(session.panes().len(), Vec::new);
+        self.figures.iter_mut().for_each(Vec::clear);
         self.bodies.update(session);
         let mut context = DrawContext {
             session,
@@ -88,6 +93,9 @@ impl Director {
                     continue;
                 };
                 add_contents(index, &shown, &mut context, pane);
+                if let Some(figure) = self.figures.get_mut(index) {
+                    place_joints(&shown, &mut context, figure);
+                }
                 let followed = cameras::followed_point(&shown, &mut context);
                 let rest = resting_point(shown.outcome, &shown.place);
                 (Some(shown), followed, rest)
@@ -133,11 +141,28 @@ impl Director {
         self.rigs.iter().any(|rig| !rig.is_still())
     }
 
+    /// Returns the positions in the world of the joints of a pane's result, in the order of its
+    /// skeleton, on the figure that was drawn in the last frame; empty without a result.
+    #[must_use]
+    pub fn figure(&self, pane: usize) -> &[Vec3] {
+        self.figures.get(pane).map_or(&[], Vec::as_slice)
+    }
+
     /// Returns the camera of a pane in the last frame.
     #[must_use]
     pub fn camera(&self, pane: usize) -> Option<&Camera> {
         self.rigs.get(pane).map(CameraRig::camera)
     }
+}
+
+/// Adds the places of a result's joints on the drawn figure to `figure`.
+fn place_joints(shown: &PosedResult<'_>, context: &mut DrawContext<'_>, figure: &mut Vec<Vec3>) {
+    let motion = &shown.outcome.motion;
+    let body = context.bodies.body(motion);
+    let world = body.drawn_pose(&shown.world);
+    let place = |joint: usize| world.positions.get(body.drawn_joint(joint)).copied();
+    figure
+        .extend((0..motion.clip().skeleton().len()).map(|joint| place(joint).unwrap_or_default()));
 }
 
 /// Adds everything that a pane shows of a result and around it.

@@ -29,6 +29,7 @@ mod notice;
 pub(crate) mod paint;
 mod pane;
 mod places;
+mod pointer_label;
 mod profile;
 mod section;
 mod segmented;
@@ -67,6 +68,7 @@ pub(crate) use notice::{
 };
 pub(crate) use pane::{PaneTitle, pane_footer_ui, pane_header_ui};
 pub(crate) use places::{Chosen, PlaceBar, Places, StripPlace, places_ui};
+pub(crate) use pointer_label::pointer_label_ui;
 pub(crate) use profile::profile_ui;
 pub(crate) use section::{folded_ui, note_ui, section_header_ui, section_mark_ui};
 pub(crate) use segmented::{segmented_label_ui, segmented_ui};

@@ -106,7 +106,7 @@ pub(crate) fn warning(session: &Session, pane: &Pane) -> Option<Word> {
 /// Returns the highlights under the pointer on the stage.
 pub(crate) fn highlights(session: &Session, state: &UiState) -> Highlights {
     Highlights {
-        joint: state.joints_open,
+        joint: state.joints_open || state.joint_marked,
         pair: state.labs.register.hovered_pair,
         jump: state.labs.graph.hovered_jump,
         candidate: match_::candidate(session, state),
