@@ -13,6 +13,7 @@ impl Segue {
     /// Takes in an answer of the platform.
     pub(super) fn receive(&mut self, incoming: Incoming) {
         match incoming {
+            Incoming::Opening(count) => self.session.open_together(count),
             Incoming::File { name, bytes } => self.load(&name, bytes, false),
             Incoming::Large { name, file } => {
                 self.begin_reading(&name, file);

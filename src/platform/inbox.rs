@@ -15,6 +15,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// An answer of the platform, or an event from outside the app.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Incoming {
+    /// The number of files that were opened or dropped together, before the first of them.
+    Opening(usize),
     /// A file that was opened or dropped.
     File {
         /// Its name.

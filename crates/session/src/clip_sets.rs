@@ -1,7 +1,7 @@
 //! The set of clips of a lab: synthesised, captured, or the user's own.
 
-use super::labs::lab::Lab;
-use super::labs::{LabSet, lab_of};
+use super::labs::lab::{Lab, slots_of};
+use super::labs::{LabSet, Slot, lab_of};
 use super::library::{Entry, Origin};
 use super::link;
 use super::params::{Key, Kind, ListKind, Value};
@@ -37,6 +37,22 @@ impl Session {
                 lab.with_clips(&ids).filter(|_| !ids.is_empty())
             }
         }
+    }
+
+    /// Returns the parameters that make the open lab use these clips: as its list of clips, or in A
+    /// and B; `None` if it cannot use so many.
+    #[must_use]
+    pub fn with_clips(&self, ids: &[String]) -> Option<Vec<(Key, Value)>> {
+        let lab = self.params().lab();
+        if ids.is_empty() {
+            return None;
+        }
+        lab_of(lab).with_clips(ids).or_else(|| {
+            let slots: Vec<Slot> = slots_of(lab).collect();
+            let values =
+                slots.iter().zip(ids).map(|(slot, id)| (slot.key(), Value::Text(id.clone())));
+            (ids.len() == slots.len()).then(|| values.collect())
+        })
     }
 
     /// Returns whether the open lab uses a set.

@@ -28,6 +28,8 @@ pub enum Command {
     Assign(Slot, String),
     /// Takes a clip out of the library.
     Remove(String),
+    /// Takes several clips out of the library, in one step.
+    RemoveAll(Vec<String>),
     /// Gives a clip another name.
     Rename(String, String),
     /// Puts the result of a pane, counted from 0, into the library.

@@ -14,7 +14,7 @@ use segue_motion::clip::Motion;
 use std::sync::Arc;
 
 /// The greatest number of extra characters.
-const MAX_CHARACTERS: usize = 6;
+pub(crate) const MAX_CHARACTERS: usize = 6;
 
 /// A clip that plays beside the result.
 #[derive(Clone, Debug)]

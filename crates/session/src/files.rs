@@ -28,6 +28,8 @@ mod external_reader_tests;
 #[cfg(test)]
 mod fixtures;
 #[cfg(test)]
+mod group_tests;
+#[cfg(test)]
 mod memory_tests;
 #[cfg(test)]
 mod sample_tests;

@@ -121,10 +121,10 @@ pub use labs::{
 };
 pub use labs::{JobKind, file_stem, own_words, weight_curve};
 pub use lesson::{Lesson, LessonPage};
-pub use library::{Entry, Library, Origin, SourceFile, file_id, split_reference};
+pub use library::{ClipGroup, Entry, Library, Origin, SourceFile, file_id, split_reference};
 pub use memory::{MemoryUse, PageMemory};
 pub use motion::{curve_kind, foot_options, frame_at, joint_of, word_of_joint};
-pub use notice::{Level, Notice, Notices};
+pub use notice::{AddedClips, Level, Notice, Notices};
 pub use numbers::{NumberRow, NumberTable, digits};
 pub use pane::{NoResult, Pane, PaneContent, PaneResult};
 pub use params::choices::{self, LabId, Selected};

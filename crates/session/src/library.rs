@@ -13,10 +13,26 @@ use std::sync::Arc;
 /// The way in which a file has arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Arrival {
-    /// The user dropped or opened it, or the page's API handed it over.
-    ByHand,
+    /// The user dropped or opened it, or the page's API handed it over; with the number of the
+    /// selection if it was one of several files.
+    ByHand(Option<u32>),
     /// It was fetched from an address in the link.
     ByLink,
+}
+
+impl Arrival {
+    /// Returns whether the user opened the file.
+    pub(crate) fn is_by_hand(self) -> bool {
+        matches!(self, Self::ByHand(_))
+    }
+
+    /// Returns the number of the selection that the file belongs to.
+    pub(crate) fn batch(self) -> Option<u32> {
+        match self {
+            Self::ByHand(batch) => batch,
+            Self::ByLink => None,
+        }
+    }
 }
 
 /// The origin of a clip.
@@ -86,6 +102,20 @@ pub struct Entry {
     pub warnings: Vec<Message>,
     /// The roles, if they were corrected by hand.
     pub roles_by_hand: Option<Roles>,
+    /// The number of the selection of files that it was opened with; `None` if its file was opened
+    /// alone.
+    pub batch: Option<u32>,
+}
+
+/// The clips that an entry arrived with.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum ClipGroup {
+    /// Those of a folder or an archive, by its name.
+    Folder(String),
+    /// Those of several files that were opened or dropped together, by a number.
+    Batch(u32),
+    /// Those of one file, by its SHA-256.
+    File(String),
 }
 
 impl Entry {
@@ -103,7 +133,22 @@ impl Entry {
             about: None,
             warnings: Vec::new(),
             roles_by_hand: None,
+            batch: None,
         }
+    }
+
+    /// Returns the clips that it arrived with; `None` for a clip that is in no file.
+    #[must_use]
+    pub fn group(&self) -> Option<ClipGroup> {
+        let Origin::File(file) = &self.origin else {
+            return None;
+        };
+        let folder = file.name.split_once('/').map(|(folder, _)| folder);
+        Some(match (folder, self.batch) {
+            (Some(folder), _) => ClipGroup::Folder(folder.to_owned()),
+            (None, Some(batch)) => ClipGroup::Batch(batch),
+            (None, None) => ClipGroup::File(file.sha256.clone()),
+        })
     }
 
     /// Returns the name on screen. The name of a built-in clip and of a result is the program's
@@ -317,6 +362,17 @@ mod tests {
         assert_eq!(dropped("Walk", "3fa9c1d2aa").title(), Message::data("Walk"));
         preset.name = "Run".to_owned();
         assert_eq!(preset.title(), Message::data("Run"));
+    }
+
+    #[test]
+    fn group_of_a_clip_is_its_folder_then_its_batch_then_its_file() {
+        let in_folder = dropped("takes/day 1/walk.bvh", "11111111aa");
+        assert_eq!(in_folder.group(), Some(ClipGroup::Folder("takes".into())));
+        let mut alone = dropped("walk.bvh", "11111111aa");
+        assert_eq!(alone.group(), Some(ClipGroup::File("11111111aa".into())));
+        alone.batch = Some(3);
+        assert_eq!(alone.group(), Some(ClipGroup::Batch(3)));
+        assert_eq!(Entry::new("walk", "Walk", Origin::Preset).group(), None);
     }
 
     #[test]

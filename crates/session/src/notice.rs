@@ -33,6 +33,34 @@ pub struct Notice {
     age_secs: f64,
 }
 
+impl Notice {
+    /// Returns whether it was added only a moment ago.
+    #[must_use]
+    pub fn is_fresh(&self) -> bool {
+        self.age_secs < FRESH_SECS
+    }
+}
+
+/// A number of clips that joined the library.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct AddedClips {
+    /// All of them.
+    pub clips: usize,
+    /// Those with warnings about their file.
+    pub with_notes: usize,
+}
+
+/// The clips that were added lately, shortly one after the other.
+#[derive(Clone, Debug, Default)]
+struct Lately {
+    added: AddedClips,
+    /// The files that one notice names or counts.
+    files: Vec<String>,
+    /// The number of that notice.
+    notice: Option<u64>,
+    age_secs: f64,
+}
+
 /// The notices on screen, oldest first.
 #[derive(Clone, Debug, Default)]
 pub struct Notices {
@@ -41,11 +69,12 @@ pub struct Notices {
     more: Vec<Notice>,
     /// The number of that entry.
     sum: Option<u64>,
+    lately: Option<Lately>,
     next_id: u64,
 }
 
-/// The duration of an [`Level::Info`], seconds: long enough to read two lines.
-const INFO_SECS: f64 = 6.0;
+/// The duration of an [`Level::Info`], and the time for which any notice is new, seconds.
+const FRESH_SECS: f64 = 4.0;
 /// The greatest number of notices at once.
 const MAX_NOTICES: usize = 6;
 /// The greatest number of notices that stay until dismissed: there is always room for an
@@ -67,6 +96,37 @@ impl Notices {
     /// Adds a notice about a file or key.
     pub fn say_of(&mut self, level: Level, about: &str, text: impl Into<Message>) {
         self.put(level, text.into(), about, None);
+    }
+
+    /// Counts clips that joined the library. Those of several files that arrive one after the other
+    /// are counted together.
+    pub fn count_added(&mut self, more: AddedClips) {
+        let lately = self.lately.get_or_insert_default();
+        lately.added.clips += more.clips;
+        lately.added.with_notes += more.with_notes;
+        lately.age_secs = 0.0;
+    }
+
+    /// Returns how many clips were added lately; `None` if that is some time ago.
+    #[must_use]
+    pub fn added(&self) -> Option<AddedClips> {
+        self.lately.as_ref().map(|lately| lately.added).filter(|added| added.clips > 0)
+    }
+
+    /// Adds the notice that files are in the library. One notice names or counts all that arrive
+    /// one after the other.
+    pub fn say_added(&mut self, mut names: Vec<String>) {
+        let mut lately = self.lately.take().unwrap_or_default();
+        if let Some(before) = lately.notice.take() {
+            self.list.retain(|notice| notice.id != before);
+        }
+        lately.files.append(&mut names);
+        lately.age_secs = 0.0;
+        if let Some(text) = in_the_library(&lately.files) {
+            lately.notice = Some(self.next_id);
+            self.say(Level::Info, text);
+        }
+        self.lately = Some(lately);
     }
 
     /// Adds a warning about clips, by id, that another import can fix.
@@ -193,27 +253,46 @@ impl Notices {
         errors
     }
 
-    /// Advances the time; returns whether a notice disappeared.
+    /// Advances the time; returns whether a notice disappeared or is new no longer.
     pub fn tick(&mut self, dt_secs: f64) -> bool {
-        let before = self.list.len();
+        let fresh = |notices: &Self| {
+            let list = notices.list.iter().filter(|notice| notice.is_fresh()).count();
+            list + usize::from(notices.lately.is_some())
+        };
+        let before = fresh(self);
         for notice in &mut self.list {
             notice.age_secs += dt_secs;
         }
-        self.list.retain(|notice| notice.level != Level::Info || notice.age_secs < INFO_SECS);
-        self.list.len() < before
+        self.list.retain(|notice| notice.level != Level::Info || notice.is_fresh());
+        self.lately = self.lately.take().and_then(|lately| {
+            let age_secs = lately.age_secs + dt_secs;
+            (age_secs < FRESH_SECS).then_some(Lately { age_secs, ..lately })
+        });
+        fresh(self) < before
     }
 
-    /// Returns the seconds until the next notice disappears by itself.
+    /// Returns the seconds until the next notice disappears by itself, or is new no longer.
     #[must_use]
     pub fn next_change_secs(&self) -> Option<f64> {
-        let infos = self.list.iter().filter(|notice| notice.level == Level::Info);
-        infos.map(|notice| (INFO_SECS - notice.age_secs).max(0.0)).min_by(f64::total_cmp)
+        let ages = self.list.iter().map(|notice| notice.age_secs);
+        let ages = ages.chain(self.lately.as_ref().map(|lately| lately.age_secs));
+        let waits = ages.map(|age| FRESH_SECS - age).filter(|wait| *wait > 0.0);
+        waits.min_by(f64::total_cmp)
     }
 
     /// Returns the notices, oldest first.
     #[must_use]
     pub fn list(&self) -> &[Notice] {
         &self.list
+    }
+}
+
+/// Returns "walk.bvh is in the library."; `None` without a name.
+pub(crate) fn in_the_library(names: &[String]) -> Option<Message> {
+    match names {
+        [] => None,
+        [name] => Some(msg!("Added to the library: {name}.")),
+        several => Some(msg!("Added {count} files to the library.", count = several.len())),
     }
 }
 
@@ -336,13 +415,41 @@ mod tests {
     }
 
     #[test]
+    fn files_that_arrive_one_after_the_other_have_one_notice() {
+        let mut notices = Notices::default();
+        for n in 0..12 {
+            notices.count_added(AddedClips { clips: 2, with_notes: usize::from(n == 3) });
+            notices.say_added(vec![format!("{n}.bvh")]);
+            notices.tick(FRESH_SECS * 0.9);
+        }
+        assert_eq!(texts(&notices), ["Added 12 files to the library."]);
+        assert_eq!(notices.added(), Some(AddedClips { clips: 24, with_notes: 1 }));
+        assert!(notices.next_change_secs().is_some_and(|secs| secs < FRESH_SECS * 0.2));
+        assert!(notices.tick(FRESH_SECS));
+        assert_eq!((notices.added(), notices.list().len()), (None, 0));
+        notices.say_added(vec!["13.bvh".to_owned()]);
+        assert_eq!(texts(&notices), ["Added to the library: 13.bvh."]);
+    }
+
+    #[test]
+    fn warning_is_new_for_a_moment_and_stays() {
+        let mut notices = Notices::default();
+        notices.say(Level::Warning, "odd");
+        assert!(notices.list()[0].is_fresh() && notices.next_change_secs().is_some());
+        assert!(notices.tick(FRESH_SECS));
+        assert!(!notices.list()[0].is_fresh() && notices.next_change_secs().is_none());
+        assert!(!notices.tick(FRESH_SECS));
+        assert_eq!(texts(&notices), ["odd"]);
+    }
+
+    #[test]
     fn tick_removes_infos_and_keeps_errors() {
         let mut notices = Notices::default();
         notices.say(Level::Info, "loaded");
         notices.say(Level::Error, "broken");
         notices.say(Level::Error, "broken");
         assert_eq!(notices.list().len(), 2);
-        assert!(notices.tick(INFO_SECS + 1.0));
+        assert!(notices.tick(FRESH_SECS + 1.0));
         assert_eq!(notices.list().len(), 1);
         assert_eq!(notices.next_change_secs(), None);
         notices.dismiss(notices.list()[0].id);

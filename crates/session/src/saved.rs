@@ -65,6 +65,10 @@ pub struct SavedEntry {
     /// requested or not.
     #[serde(default)]
     pub is_sample: bool,
+    /// The number of the selection of files that it was opened with; states that were stored
+    /// without this field have none.
+    #[serde(default)]
+    pub batch: Option<u32>,
 }
 
 /// A file without its bytes.
@@ -114,6 +118,7 @@ impl From<&Entry> for SavedEntry {
             file,
             roles: entry.roles_by_hand.clone(),
             is_sample: matches!(entry.origin, Origin::Sample(_)),
+            batch: entry.batch,
         }
     }
 }
@@ -137,6 +142,7 @@ mod tests {
             }),
             roles: None,
             is_sample: false,
+            batch: None,
         };
         Saved { query: query.to_owned(), entries: ids.iter().map(entry).collect() }
     }

@@ -267,6 +267,15 @@ impl Session {
                 let name = self.document.remove(&id)?;
                 self.say(Level::Info, msg!("{name} was removed; undo brings it back."));
             }
+            Command::RemoveAll(ids) => {
+                let count = self.document.remove_all(&ids)?;
+                if count > 0 {
+                    self.say(
+                        Level::Info,
+                        msg!("{count, plural, one {# clip was} other {# clips were}} removed; undo brings them back."),
+                    );
+                }
+            }
             Command::Rename(id, name) => self.document.rename(&id, &name)?,
             Command::Keep(pane) => self.keep(pane)?,
             Command::Compare(key) => {

@@ -21,7 +21,9 @@ pub(crate) fn open_files(inbox: &Inbox) {
         .pick_files();
     let inbox = inbox.clone();
     std::thread::spawn(move || {
-        for file in pollster::block_on(asked).unwrap_or_default() {
+        let files = pollster::block_on(asked).unwrap_or_default();
+        inbox.push(Incoming::Opening(files.len()));
+        for file in files {
             read_path(file.path(), &inbox);
         }
     });
@@ -31,6 +33,7 @@ pub(crate) fn open_files(inbox: &Inbox) {
 pub(crate) fn read_dropped(files: Vec<DroppedFileHandle>, inbox: &Inbox) {
     let inbox = inbox.clone();
     std::thread::spawn(move || {
+        inbox.push(Incoming::Opening(files.len()));
         for file in files {
             read_path(file.path(), &inbox);
         }
@@ -46,6 +49,7 @@ pub(crate) fn read_arguments(inbox: &Inbox) {
         .collect();
     let inbox = inbox.clone();
     std::thread::spawn(move || {
+        inbox.push(Incoming::Opening(paths.len()));
         for path in paths {
             read_path(&path, &inbox);
         }

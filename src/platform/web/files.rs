@@ -56,6 +56,7 @@ pub(crate) fn open_files(inbox: &Inbox) {
 
 /// Reads files, each with its name, one after the other, so that their answers are in order.
 pub(super) async fn read(files: Vec<(String, File)>, inbox: Inbox) {
+    inbox.push(Incoming::Opening(files.len()));
     for (name, file) in files {
         if let Some(reason) = too_large(&name, file.size() as u64, MAX_FILE_BYTES) {
             inbox.push(Incoming::Failed { reason });
@@ -93,6 +94,7 @@ fn refuse(name: &str, reason: &str, inbox: &Inbox) {
 /// Reads the files dropped on the page, in order.
 pub(crate) fn read_dropped(files: Vec<DroppedFileHandle>, inbox: &Inbox) {
     let inbox = inbox.clone();
+    inbox.push(Incoming::Opening(files.len()));
     spawn_local(async move {
         for file in files {
             let name = file

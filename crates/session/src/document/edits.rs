@@ -43,10 +43,38 @@ impl Document {
         Ok(())
     }
 
-    /// Removes a clip from the library and from everything that names it. Returns its name.
+    /// Removes a clip from the library and from everything that names it, as a step for undo.
+    /// Returns its name.
     pub(crate) fn remove(&mut self, id: &str) -> Result<String, CommandError> {
         let entry = Arc::clone(self.clip(id)?);
         self.remember(None);
+        self.take_out(&entry);
+        Ok(entry.name.clone())
+    }
+
+    /// Removes several clips as [`Document::remove`] does, in one step. Returns their number.
+    ///
+    /// # Errors
+    /// [`CommandError::NoClip`] if one of them is not there; all stay then.
+    pub(crate) fn remove_all(&mut self, ids: &[String]) -> Result<usize, CommandError> {
+        let mut entries: Vec<Arc<Entry>> = Vec::new();
+        for id in ids {
+            let entry = self.clip(id)?;
+            if entries.iter().all(|known| known.id != entry.id) {
+                entries.push(Arc::clone(entry));
+            }
+        }
+        if entries.is_empty() {
+            return Ok(0);
+        }
+        self.remember(None);
+        for entry in &entries {
+            self.take_out(entry);
+        }
+        Ok(entries.len())
+    }
+
+    fn take_out(&mut self, entry: &Entry) {
         self.library.remove(&entry.id);
         for lab in LabId::ALL {
             for (key, value) in lab_of(*lab).without_clip(&self.params, &entry.id) {
@@ -74,7 +102,6 @@ impl Document {
             self.set_unchecked(key, Value::Text(next));
             forget_places(&mut self.params, slot, &[]);
         }
-        Ok(entry.name.clone())
     }
 
     /// Puts a clip into the library, as a step for undo.

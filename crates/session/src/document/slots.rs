@@ -15,8 +15,8 @@ impl Document {
         if self.removed_built_in(&id).is_some() { Ok(id) } else { Ok(self.clip(&id)?.id.clone()) }
     }
 
-    /// Offers a slot to a clip that just arrived: in View that of the clip on the stage; otherwise
-    /// A, then B, if they hold built-in clips.
+    /// Offers a slot to a clip that just arrived: in View that of the clip on the stage, if it is
+    /// the first of those that came together; otherwise A, then B, if they hold built-in clips.
     pub(crate) fn offer(&mut self, id: &str, arrival: Arrival) {
         if [Slot::A, Slot::B]
             .iter()
@@ -24,7 +24,8 @@ impl Document {
         {
             return;
         }
-        let is_viewed = arrival == Arrival::ByHand
+        let is_viewed = arrival.is_by_hand()
+            && self.is_first_of_group(id)
             && lab_of(self.params.lab()).shows_clip()
             && self.slot(Slot::A).is_some();
         let free = [Slot::A, Slot::B]
@@ -35,6 +36,18 @@ impl Document {
         }
     }
 
+    /// Returns whether no other motion of its group is in the library.
+    fn is_first_of_group(&self, id: &str) -> bool {
+        let Some(group) = self.library.get(id).and_then(|entry| entry.group()) else {
+            return true;
+        };
+        let moves =
+            |entry: &Entry| entry.motion.as_ref().is_some_and(|motion| motion.clip().frames() > 1);
+        let mut entries = self.library.entries().iter();
+        !entries
+            .any(|other| other.id != id && moves(other) && other.group().as_ref() == Some(&group))
+    }
+
     /// Offers slots to clips that arrived together, in turn: in View that of the clip on the stage;
     /// otherwise those with built-in clips.
     pub(crate) fn offer_together<'a>(&mut self, ids: impl IntoIterator<Item = &'a str>) {
@@ -42,7 +55,7 @@ impl Document {
             vec![Slot::A]
         } else {
             let free = [Slot::A, Slot::B].into_iter();
-            free.filter(|slot| self.is_free(*slot, Arrival::ByHand)).collect()
+            free.filter(|slot| self.is_free(*slot, Arrival::ByHand(None))).collect()
         };
         for (slot, id) in slots.into_iter().zip(ids) {
             self.put_into(slot, id);

@@ -2,12 +2,13 @@
 
 use super::corrections::{corrected_options, offer_corrections};
 use super::intake::{FileIntake, LoadedFile};
-use super::messages::{in_the_library, notify_all_unread, notify_unread};
+use super::messages::{notify_all_unread, notify_unread};
 use super::setup::lacks_skeleton;
 use super::skeletons::drop_used_skeletons;
 use crate::document::Document;
+use crate::labs::Slot;
 use crate::library::{Arrival, Entry, Origin, SourceFile, file_id, file_stem};
-use crate::notice::{Level, Notices};
+use crate::notice::{AddedClips, Level, Notices, in_the_library};
 use crate::outside;
 use crate::params::{Key, Value};
 use crate::reading::{Content, ReadFile, ReadReport, ReadSetup};
@@ -55,23 +56,24 @@ impl FileIntake {
                     t_poses += usize::from(entries.iter().any(has_t_pose));
                     loaded.warnings.extend(warnings);
                     let first = entries.iter().find(|entry| entry.mesh.is_some());
-                    if first
-                        .and_then(Entry::character)
-                        .is_some_and(|character| !character.has_limbs())
-                    {
-                        loaded.warnings.push(
-                            "its character has no recognised limbs: only its own clips can animate it"
-                                .into(),
-                        );
-                    }
                     if let Some(first) =
                         first.filter(|entry| takes_character(document, entry, arrival))
                     {
                         document.set_unchecked(Key::Character, Value::Text(first.id.clone()));
                     }
+                    let may_be_cast = |entry: &&Entry| {
+                        arrival.is_by_hand() || document.library.get(&entry.id).is_none()
+                    };
+                    let figure = first.filter(may_be_cast).cloned();
                     for entry in entries {
                         loaded.ids.push(entry.id.clone());
+                        let entry = Entry { batch: arrival.batch(), ..entry };
                         self.join(document, notices, entry, arrival);
+                    }
+                    if let Some(figure) =
+                        figure.filter(|figure| serves_its_own_clips(document, figure, &loaded.ids))
+                    {
+                        document.set_unchecked(Key::Character, Value::Text(figure.id));
                     }
                 }
                 Err(error) => failures.push(error),
@@ -102,9 +104,17 @@ impl FileIntake {
                 told.push(msg!("{more} more warnings are listed with the clips."));
             }
             let text = Message::joined(told, " ");
-            // The takes of whole databases begin with a T-pose: good to know, and nothing has to be
-            // done about it.
+            // The takes of whole databases begin with a T-pose: nothing has to be done about it, and
+            // the clips' own warnings say it.
             let is_odd = loaded.warnings.len() > t_poses;
+            let has_notes = |entry: &Entry| {
+                let is_t_pose = entry.about.as_ref().is_some_and(|about| about.t_pose_first_row);
+                entry.warnings.len() > usize::from(is_t_pose)
+            };
+            let added: Vec<_> =
+                loaded.ids.iter().filter_map(|id| document.library.get(id)).collect();
+            let with_notes = added.iter().filter(|entry| has_notes(entry)).count();
+            notices.count_added(AddedClips { clips: added.len(), with_notes });
             let corrections: Vec<String> = loaded
                 .ids
                 .iter()
@@ -115,15 +125,12 @@ impl FileIntake {
                 // Until its other half arrives.
                 [id] if is_odd && document.is_unpaired(id) => notices.say_missing(id, text),
                 // A skeleton that a motion waited for: the motion has it now.
-                [id] if document.library.get(id).is_none() => {
-                    if let Some(text) = in_the_library(&names) {
-                        notices.say(Level::Info, text);
-                    }
-                }
+                [id] if document.library.get(id).is_none() => notices.say_added(names),
                 _ if !corrections.is_empty() => {
                     offer_corrections(&document.library, notices, text, corrections);
                 }
-                _ => notices.say(if is_odd { Level::Warning } else { Level::Info }, text),
+                _ if is_odd => notices.say(Level::Warning, text),
+                _ => notices.say_added(names),
             }
         } else if !loaded.warnings.is_empty() {
             // Notes on the archive hold even if nothing in it can be read.
@@ -159,7 +166,7 @@ impl FileIntake {
         });
         // A file that the link fetches again after a reload has the slot that it was given then, or
         // none.
-        if plays && (known.is_none() || arrival == Arrival::ByHand) {
+        if plays && (known.is_none() || arrival.is_by_hand()) {
             document.offer(&id, arrival);
         }
     }
@@ -183,6 +190,7 @@ impl FileIntake {
         document.library.put(Entry {
             name: known.name.clone(),
             roles_by_hand: known.roles_by_hand.clone(),
+            batch: known.batch,
             origin: Origin::File(file.clone()),
             ..entry
         });
@@ -196,15 +204,24 @@ impl FileIntake {
 }
 
 /// Returns whether a file with a skin becomes the character. A fetched one does not if it was in
-/// the library before, or if the link names another character.
+/// the library before, or if the link names another character. A figure without limbs does not:
+/// other clips cannot move it.
 fn takes_character(document: &Document, entry: &Entry, arrival: Arrival) -> bool {
+    let has_limbs = entry.character().is_some_and(|character| character.has_limbs());
     let is_free = document.params.text(Key::Character).is_empty();
-    // A figure that only its own clips move cannot be the character of other clips.
-    let replaces = entry.character().is_some_and(|character| character.has_limbs());
-    match arrival {
-        Arrival::ByHand => is_free || replaces,
-        Arrival::ByLink => is_free && document.library.get(&entry.id).is_none(),
-    }
+    has_limbs
+        && match arrival {
+            Arrival::ByHand(_) => true,
+            Arrival::ByLink => is_free && document.library.get(&entry.id).is_none(),
+        }
+}
+
+/// Returns whether a figure without limbs becomes the character: none is chosen, and A holds one of
+/// the clips that came with it.
+fn serves_its_own_clips(document: &Document, figure: &Entry, clips: &[String]) -> bool {
+    let is_free = document.params.text(Key::Character).is_empty();
+    let in_a = document.slot(Slot::A).is_some_and(|entry| clips.contains(&entry.id));
+    is_free && in_a && figure.character().is_some_and(|character| !character.has_limbs())
 }
 
 /// Replaces the content of clips in the library by that of a new report. Leaves out those whose
@@ -296,5 +313,16 @@ fn file_entries(
             .map_or_else(String::new, |motion| outside::clip_name(motion.clip().name()));
         entry
     });
-    Ok((named.collect(), warnings))
+    let mut named: Vec<Entry> = named.collect();
+    let figure = named.iter().find_map(Entry::character);
+    if figure.is_some_and(|character| !character.has_limbs()) {
+        let warning = Message::word(
+            "its character has no recognised limbs: only its own clips can animate it",
+        );
+        for entry in named.iter_mut().filter(|entry| entry.mesh.is_some()) {
+            entry.warnings.push(warning.clone());
+        }
+        warnings.push(warning);
+    }
+    Ok((named, warnings))
 }

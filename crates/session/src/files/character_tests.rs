@@ -84,7 +84,11 @@ fn figure_that_no_other_clip_moves_is_no_character_for_others() {
         loaded.warnings
     );
     let spider_id = loaded.ids[0].clone();
-    let character = session.character().unwrap();
+    assert!(
+        !session.library().get(&spider_id).unwrap().warnings.is_empty(),
+        "it is said at its row as well"
+    );
+    let character = session.character().expect("its own clip is in A");
     let show = |session: &mut Session, a: &str| {
         let link = format!("lab=view&a={a}&character={spider_id}");
         session.apply(Command::OpenLink(link)).unwrap();
@@ -97,6 +101,17 @@ fn figure_that_no_other_clip_moves_is_no_character_for_others() {
     let (is_moved, note) = show(&mut session, "walk");
     assert!(!is_moved);
     assert!(note.unwrap().to_string().contains("This clip cannot animate"));
+
+    // Beside clips of the user's it is not cast, nor without a motion of its own.
+    let mut session = Session::new();
+    session.apply(Command::OpenLink("lab=blend".into())).unwrap();
+    for seed in [1.0, 2.0] {
+        session.load(&format!("own {seed}.bvh"), made_bvh(seed)).unwrap();
+    }
+    let spider_id = session.load("spider.glb", spider()).unwrap().ids.remove(0);
+    assert!(session.character().is_none() && session.character_note().is_none());
+    session.apply(Command::Set(vec![(Key::Character, Value::Text(spider_id.clone()))])).unwrap();
+    assert!(session.character().is_some(), "it can be chosen by hand");
 
     // A person that is the character stays.
     let mut session = Session::new();

@@ -54,6 +54,14 @@ impl Reading {
     pub(super) fn is_new(&self) -> bool {
         matches!(self.purpose, Purpose::New(_))
     }
+
+    /// Returns the number of the selection that the file belongs to.
+    fn batch(&self) -> Option<u32> {
+        match self.purpose {
+            Purpose::New(arrival) => arrival.batch(),
+            Purpose::Again(_) | Purpose::Sample(_) => None,
+        }
+    }
 }
 
 /// The bundled takes that were requested and have not arrived.
@@ -64,6 +72,14 @@ pub(super) struct AwaitedSamples {
     pub(super) asked: usize,
     /// Those that failed, and are not requested again before the next command.
     pub(super) failed: Vec<&'static Sample>,
+}
+
+/// A selection of files that were opened together.
+#[derive(Clone, Copy, Debug)]
+struct Batch {
+    number: u32,
+    /// The number of its files that have not arrived.
+    left: usize,
 }
 
 /// The files that are being read, and the requests to the app for them.
@@ -78,6 +94,8 @@ pub(crate) struct FileIntake {
     pub(super) samples: AwaitedSamples,
     /// The page's memory, if it is limited.
     memory: Option<Memory>,
+    /// The selection whose files are arriving.
+    batch: Option<Batch>,
     /// The library revision at which motions outside the library were dropped last.
     dropped_at: Option<u64>,
 }
@@ -91,6 +109,7 @@ impl FileIntake {
             requests: Vec::new(),
             samples: AwaitedSamples::default(),
             memory: None,
+            batch: None,
             dropped_at: None,
         }
     }
@@ -170,6 +189,24 @@ impl FileIntake {
         };
         let report = read(name, &bytes, &setup, &mut |_| true).unwrap_or_default();
         self.admit(document, notices, report, &Content::Here(bytes), &setup, arrival)
+    }
+
+    /// Begins a selection of files, with a number that no clip of the library has. A file alone is
+    /// no selection.
+    pub(crate) fn open_together(&mut self, library: &Library, count: usize) {
+        let known = library.entries().iter().filter_map(|entry| entry.batch);
+        let read = self.reading.iter().filter_map(Reading::batch);
+        let number = known.chain(read).max().map_or(1, |last| last.saturating_add(1));
+        self.batch = (count > 1).then_some(Batch { number, left: count });
+    }
+
+    /// Returns the arrival of the next file that the user opened.
+    pub(crate) fn next_by_hand(&mut self) -> Arrival {
+        let Some(batch) = self.batch.as_mut().filter(|batch| batch.left > 0) else {
+            return Arrival::ByHand(None);
+        };
+        batch.left -= 1;
+        Arrival::ByHand(Some(batch.number))
     }
 
     /// Requests that a file be read elsewhere and then added to the library. Returns the task's

@@ -2,7 +2,7 @@
 
 use crate::notice::{Level, Notices};
 use segue_formats::ImportError;
-use segue_text::{Message, ToMessage, msg};
+use segue_text::{ToMessage, msg};
 
 /// The greatest number of files that one notice names.
 pub(crate) const MAX_NAMED: usize = 3;
@@ -26,14 +26,5 @@ pub(super) fn notify_all_unread(notices: &mut Notices, errors: &[ImportError]) {
             named.push("…".to_owned());
         }
         notices.say(Level::Error, msg!("{count} more failed: {named}.", count = rest.len()));
-    }
-}
-
-/// Returns "walk.bvh is in the library."; `None` without a name.
-pub(super) fn in_the_library(names: &[String]) -> Option<Message> {
-    match names {
-        [] => None,
-        [name] => Some(msg!("Added to the library: {name}.")),
-        several => Some(msg!("Added {count} files to the library.", count = several.len())),
     }
 }

@@ -95,6 +95,7 @@ pub(crate) fn stored_entries(
         entries.push(Entry {
             name: stored.name.clone(),
             roles_by_hand: stored.roles.clone(),
+            batch: stored.batch,
             ..entry
         });
     }

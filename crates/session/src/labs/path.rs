@@ -5,6 +5,7 @@ use super::lab::{Beside, HasPart, Inputs, Lab, LabClips, LabInputs};
 use super::sliced::{JobKind, Sliced};
 use super::{LabFacts, Outcome, PlacedClip, Slot};
 use crate::choices;
+use crate::extra_characters::MAX_CHARACTERS;
 use crate::labs::LabError;
 use crate::metrics::{Metric, MetricId};
 use crate::params::{Key, List, MAX_PANES, Params, Value};
@@ -37,6 +38,15 @@ impl<S: HasPart<Paths>> Lab<S> for PathLab {
             return Vec::new();
         }
         vec![(Key::Others, List::ClipIds(others).into())]
+    }
+
+    fn with_clips(&self, ids: &[String]) -> Option<Vec<(Key, Value)>> {
+        let (first, others) = ids.split_first()?;
+        let others: Vec<String> = others.iter().take(MAX_CHARACTERS).cloned().collect();
+        Some(vec![
+            (Key::A, Value::Text(first.clone())),
+            (Key::Others, List::ClipIds(others).into()),
+        ])
     }
 
     fn result_name(&self, _params: &Params, a: Message, _b: Message) -> Message {

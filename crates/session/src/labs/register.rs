@@ -3,7 +3,7 @@
 use super::lab::{Beside, HasPart, Inputs, Lab, LabClips, LabInputs};
 use crate::labs::LabError;
 use crate::metrics::{Metric, MetricId};
-use crate::params::{Key, Params};
+use crate::params::{Key, List, MAX_WEIGHTED_CLIPS, Params, Value};
 mod map;
 mod scheduler;
 
@@ -29,6 +29,9 @@ use segue_text::{Message, msg};
 use std::ops::Range;
 use std::sync::Arc;
 
+/// The weight of a clip that joins A and B.
+const FIRST_WEIGHT: f64 = 0.25;
+
 /// The Register lab: clips registered in time, then blended or joined.
 pub(super) struct RegisterLab;
 
@@ -43,6 +46,19 @@ impl<S: HasPart<Pairs> + HasPart<RegistrationSchedulers>> Lab<S> for RegisterLab
 
     fn more_clips(&self, params: &Params) -> Result<Vec<String>, LabError> {
         Ok(params.weighted_clips().iter().map(|(id, _)| id.clone()).collect())
+    }
+
+    fn with_clips(&self, ids: &[String]) -> Option<Vec<(Key, Value)>> {
+        let [a, b, others @ ..] = ids else {
+            return None;
+        };
+        let others = others.iter().take(MAX_WEIGHTED_CLIPS);
+        let weighted = others.map(|id| (id.clone(), FIRST_WEIGHT)).collect();
+        Some(vec![
+            (Key::A, Value::Text(a.clone())),
+            (Key::B, Value::Text(b.clone())),
+            (Key::WarpAlso, List::WeightedClips(weighted).into()),
+        ])
     }
 
     fn captured_link(&self) -> Option<&'static str> {

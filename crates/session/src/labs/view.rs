@@ -8,7 +8,7 @@ use super::{MeasuredMotion, Outcome};
 use crate::contact_edits::with_own_edits;
 use crate::labs::LabError;
 use crate::metrics::{Metric, MetricId};
-use crate::params::{Key, Kind, MAX_PANES, PARAMS, Param, Params};
+use crate::params::{Compare, Key, Kind, MAX_PANES, PARAMS, Param, Params, Value};
 use crate::{LabId, choices};
 use segue_motion::clip::{Motion, take_in_place};
 use segue_motion::math::Planar;
@@ -40,6 +40,13 @@ impl<S: HasPart<ViewCache>> Lab<S> for ViewLab {
 
     fn file_stem(&self, params: &Params) -> String {
         params.text(Key::A).to_owned()
+    }
+
+    fn with_clips(&self, ids: &[String]) -> Option<Vec<(Key, Value)>> {
+        let first = ids.first().filter(|_| ids.len() <= MAX_PANES)?;
+        let values = ids.iter().map(|id| Value::Text(id.clone())).collect();
+        let compare = (ids.len() > 1).then_some(Compare { key: Key::A, values });
+        Some(vec![(Key::A, Value::Text(first.clone())), (Key::Compare, Value::Compare(compare))])
     }
 
     fn is_clip_as_it_is(&self, params: &Params) -> bool {

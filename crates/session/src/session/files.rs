@@ -12,6 +12,12 @@ use segue_text::Message;
 use std::sync::Arc;
 
 impl Session {
+    /// Announces that the next `count` files were opened or dropped together: the library shows
+    /// them as a group.
+    pub fn open_together(&mut self, count: usize) {
+        self.files.open_together(&self.document.library, count);
+    }
+
     /// Reads one file, exactly as if it were dropped on the page: its clips join the library, and
     /// the first ones take the slots of built-in clips in A and B. It is read at once, unless it is
     /// larger than [`LARGE_BYTES`](crate::reading::LARGE_BYTES) or the session reads all files
@@ -21,7 +27,8 @@ impl Session {
     /// # Errors
     /// [`ImportError`] with name, line, column, found and expected; nothing already loaded changes.
     pub fn load(&mut self, name: &str, bytes: Arc<[u8]>) -> Result<LoadedFile, ImportError> {
-        self.load_arriving(name, bytes, Arrival::ByHand)
+        let arrival = self.files.next_by_hand();
+        self.load_arriving(name, bytes, arrival)
     }
 
     /// Reads a file that was fetched from an address in the link: like [`Session::load`], but a
@@ -54,7 +61,8 @@ impl Session {
     /// added to the library, as by [`Session::load`]. Returns the task's number.
     pub fn begin_reading(&mut self, name: &str, content: Content, size: u64) -> u64 {
         self.revision += 1;
-        self.files.begin_reading(&self.document.library, name, content, size, Arrival::ByHand)
+        let arrival = self.files.next_by_hand();
+        self.files.begin_reading(&self.document.library, name, content, size, arrival)
     }
 
     /// Requests a file as [`Session::begin_reading`] does, for one that was fetched: its clips join
