@@ -16,6 +16,7 @@
 import { makeApi } from "./api.js";
 import { answerParent } from "./embed.js";
 import { showDownloadFailed, showLost, showNoMemory, showPanic, showStartFailed, showUnsupported } from "./panels.js";
+import { agreePixels } from "./pixels.js";
 
 const PANIC_POLL_MS = 500;
 /** The memory from which on a trap without a panic is taken for a failed allocation, bytes. */
@@ -52,6 +53,7 @@ async function start(jsUrl, wasmUrl) {
     throw new Error("The WebAssembly module exports no SegueHandle");
   }
 
+  agreePixels();
   const app = new RunningApp(memory);
   try {
     app.handle = await Promise.race([SegueHandle.start(canvas(), newReader), app.trapped]);
