@@ -138,6 +138,21 @@ impl Contacts {
         Self { planted: Side::BOTH.map(flags) }
     }
 
+    /// Returns the contacts of a motion that plays these frames of this one, in this order. Frames
+    /// beyond the end have none.
+    #[must_use]
+    pub fn of_frames(&self, frames: &[usize]) -> Self {
+        let flags = |side| frames.iter().map(|&frame| self.planted(side, frame)).collect();
+        Self { planted: Side::BOTH.map(flags) }
+    }
+
+    /// Returns the contacts of the mirror image: those of the other foot.
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        let [left, right] = &self.planted;
+        Self { planted: [right.clone(), left.clone()] }
+    }
+
     /// Returns the number of frames.
     #[must_use]
     pub fn frames(&self) -> usize {

@@ -28,6 +28,12 @@
 //! has hysteresis, one value to enter contact and a looser one to leave it: about a single limit a
 //! trembling foot would flicker. [`ContactCorrections`] overrule it where it errs.
 //!
+//! A [`Motion`] is edited as a whole: a part of it ([`Motion::cropped`]), backwards
+//! ([`Motion::reversed`]), from left to right ([`Motion::mirrored`]), at another frame rate
+//! ([`Motion::resampled`]), larger or smaller ([`Motion::scaled`]), elsewhere on the ground
+//! ([`Motion::moved`]). Contacts, ground frames and seams follow exactly, frame by frame: what was
+//! corrected by hand stays corrected.
+//!
 //! The root motion of a clip that moves in place ([`take_in_place`]) follows from its feet: a
 //! standing foot moves backward under the body, and [`root_motion_from_feet`] integrates this
 //! motion.
@@ -82,6 +88,7 @@
 mod carrier;
 mod contacts;
 mod curves;
+mod edits;
 #[expect(
     clippy::missing_panics_doc,
     clippy::must_use_candidate,

@@ -40,6 +40,7 @@ pub struct Motion {
     ground_m: OnceLock<f32>,
     usual: OnceLock<UsualMotion>,
     seams: Vec<Range<usize>>,
+    is_cycle: bool,
 }
 
 impl PartialEq for Motion {
@@ -49,7 +50,7 @@ impl PartialEq for Motion {
             && self.roles == other.roles
             && self.ground_frames() == other.ground_frames()
             && self.feet == other.feet
-            && self.seams == other.seams
+            && (&self.seams, self.is_cycle) == (&other.seams, other.is_cycle)
             && self.ground_m() == other.ground_m()
             && self.contacts() == other.contacts()
     }
@@ -78,6 +79,7 @@ impl Motion {
             ground_m: OnceLock::new(),
             usual: OnceLock::new(),
             seams: Vec::new(),
+            is_cycle: false,
         }
     }
 
@@ -138,6 +140,14 @@ impl Motion {
         Self { seams, ..self }
     }
 
+    /// Returns the same motion, declared one cycle or not ([`is_cycle`](Self::is_cycle)). The last
+    /// frame of a cycle has the pose of its first one; `treat_as_cycle` in
+    /// [`transition`](crate::transition) closes a clip and declares it.
+    #[must_use]
+    pub fn declared_cycle(self, is_cycle: bool) -> Self {
+        Self { is_cycle, ..self }
+    }
+
     /// Returns the motion of a changed clip with as many frames: its ground frames are given, and
     /// contacts and ground height are those of this motion.
     #[must_use]
@@ -166,6 +176,7 @@ impl Motion {
             contacts: self.contacts.clone(),
             ground_m: self.ground_m.clone(),
             seams: self.seams.clone(),
+            is_cycle: self.is_cycle,
             ..self.same_body(self.clip.transformed(world_from_clip), frames)
         }
     }
@@ -184,6 +195,7 @@ impl Motion {
             .with_feet(self.feet)
             .with_contact_corrections(self.corrections)
             .with_seams(self.seams)
+            .declared_cycle(self.is_cycle)
     }
 
     /// Returns the clip.
@@ -256,6 +268,13 @@ impl Motion {
     #[must_use]
     pub fn seams(&self) -> &[Range<usize>] {
         &self.seams
+    }
+
+    /// Returns whether the clip was declared one cycle: its last frame is its first, one cycle
+    /// later. Where cycles are used, a declared one is taken whole, whatever its poses.
+    #[must_use]
+    pub fn is_cycle(&self) -> bool {
+        self.is_cycle
     }
 
     /// Returns the first frame after all seams; 0 without seams.

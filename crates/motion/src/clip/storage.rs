@@ -347,6 +347,32 @@ impl Clip {
         moved
     }
 
+    /// Returns the clip backwards: its last frame plays first.
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        let mut backwards = self.clone();
+        let poses = self.rotations.chunks_exact(self.skeleton.len()).rev();
+        backwards.rotations = poses.flatten().copied().collect();
+        backwards.root_translations.reverse();
+        for track in &mut backwards.translations {
+            track.values.reverse();
+        }
+        backwards
+    }
+
+    /// Returns the clip with all lengths multiplied by `factor`, which is above 0: those of the
+    /// body, and those of its path. Rotations stay.
+    #[must_use]
+    pub fn scaled(&self, factor: f32) -> Self {
+        let mut scaled = self.clone();
+        scaled.skeleton = Arc::new(self.skeleton.scaled(factor));
+        let tracks = scaled.translations.iter_mut().flat_map(|track| &mut track.values);
+        for translation in scaled.root_translations.iter_mut().chain(tracks) {
+            *translation *= factor;
+        }
+        scaled
+    }
+
     /// Returns the clip with each frame moved over the ground by a transform of its own; a frame
     /// without one stays in place.
     #[must_use]

@@ -22,6 +22,9 @@ pub struct GaitCycle {
 const MAX_APART_CM: f64 = 12.0;
 /// Range of the duration of a cycle, seconds.
 const CYCLE_SECS: Range<f64> = 0.3..3.0;
+/// The strikes and lifts of a walk whose feet take turns evenly, each planted for three fifths of
+/// the cycle.
+const EVEN_WALK: Events = Events { left_lift: 0.6, right_strike: 0.5, right_lift: 1.1 };
 
 impl GaitCycle {
     /// Finds the most regular cycle of a clip, and closes it ([`close_loop`], half of the
@@ -37,10 +40,16 @@ impl GaitCycle {
     /// repeat best ([`find_cycle`]); the contacts of the closed, repeated cycle then give the
     /// strikes.
     ///
+    /// A clip that was declared a cycle ([`Motion::is_cycle`]) is taken whole. Where its feet do
+    /// not strike once each, the strikes of an even walk are assumed.
+    ///
     /// # Errors
     /// [`GaitError::NoFeet`] and [`GaitError::NoCycle`] when no cycle is found, [`GaitError::Loop`]
     /// when it cannot be closed.
     pub fn find(source: &Motion) -> Result<Self, GaitError> {
+        if source.is_cycle() {
+            return Self::declared(source);
+        }
         let mut candidates = candidates(source);
         if candidates.iter().any(|candidate| candidate.range.start > 0) {
             candidates.retain(|candidate| candidate.range.start > 0);
@@ -81,6 +90,19 @@ impl GaitCycle {
             range,
             events,
         }
+    }
+
+    /// Returns the cycle of a clip that was declared one.
+    fn declared(source: &Motion) -> Result<Self, GaitError> {
+        let range = 0..source.clip().frames().saturating_sub(1);
+        let looped = close_loop(source, range.clone(), &LoopOptions::default())?;
+        let corrections = source.contact_corrections();
+        let by_hand = |side, frame| corrections.planted(side, frame);
+        let Some((strike, events)) = events_of(&looped, source.roles(), by_hand) else {
+            return Ok(Self::new(looped, range, EVEN_WALK));
+        };
+        let looped = looped.starting_at(strike).map_err(GaitError::Clip)?;
+        Ok(Self::new(looped, strike..strike + range.len(), events))
     }
 
     /// Returns the cycle of a clip that does not contain one from strike to strike.

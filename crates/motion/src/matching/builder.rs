@@ -3,7 +3,7 @@
 use super::cycle;
 use super::database::{Database, DatabaseOptions, spread_all};
 use super::features::{Features, Layout, RATE};
-use super::motion::{DatabaseClip, FeatureJoints, mirrored_contacts};
+use super::motion::{DatabaseClip, FeatureJoints};
 use super::pace::Pace;
 use super::search::{BoxBuilder, BoxIndex};
 use super::tags::{TagRange, suggest_tags};
@@ -263,7 +263,7 @@ impl DatabaseBuilder {
                         })?;
                         Stage::MeasureMirrored(PreparedClip {
                             clip: Arc::new(clip),
-                            cycle: motion.cycle().as_ref().map(cycle::mirrored),
+                            cycle: motion.cycle().map(|cycle| cycle.mirrored()),
                             // The contacts of the original are mirrored.
                             corrections: ContactCorrections::default(),
                         })
@@ -273,7 +273,7 @@ impl DatabaseBuilder {
             }
             Stage::MeasureMirrored(round) => {
                 if let Some(original) = self.motions.last() {
-                    let contacts = mirrored_contacts(original.contacts());
+                    let contacts = original.contacts().mirrored();
                     let mut motion = DatabaseClip::new(
                         round.clip,
                         round.cycle,
@@ -361,7 +361,7 @@ impl DatabaseBuilder {
         }
         let corrections = from.contact_corrections();
         if self.options.cycles
-            && let Some(looped) = cycle::closed(&clip, &self.roles, corrections)
+            && let Some(looped) = cycle::closed(&clip, &self.roles, corrections, from.is_cycle())
             && let Some((clip, cycle)) = cycle::at_rate(&looped)
         {
             let ratio = clip.frames() as f64 / looped.clip.frames().max(1) as f64;

@@ -19,12 +19,14 @@ const MAX_STRIDE_GAP_SHARE: f64 = 0.35;
 ///
 /// A cycle is a clip whose end leads into its beginning ([`WholeCycle`]): any clip whose ends
 /// nearly meet, and a single stride, with one stance of each foot, whose ends are near each other.
+/// A clip that was declared a cycle is one.
 pub(super) fn closed(
     clip: &Arc<Clip>,
     roles: &Roles,
     corrections: &ContactCorrections,
+    is_declared: bool,
 ) -> Option<Loop> {
-    let source = Motion::with_roles(Arc::clone(clip), roles);
+    let source = Motion::with_roles(Arc::clone(clip), roles).declared_cycle(is_declared);
     let whole = WholeCycle::of(&source).filter(|whole| whole.gap_share <= MAX_STRIDE_GAP_SHARE)?;
     let looped = whole.close(&LoopOptions::default()).ok()?;
     let meets = whole.added_frames <= 1 && whole.gap_share <= MAX_GAP_SHARE;
@@ -66,9 +68,4 @@ pub(super) fn cycle_frame(stands: &[Planar], cycle: &Planar, frame: isize) -> Pl
 pub(super) fn cycle_power(cycle: &Planar, rounds: isize) -> Planar {
     let once = if rounds < 0 { cycle.inverse() } else { *cycle };
     (0..rounds.unsigned_abs()).fold(Planar::IDENTITY, |all, _| once.after(&all))
-}
-
-/// Returns the transform of the mirror image: see [`crate::clip::mirror`].
-pub(super) fn mirrored(cycle: &Planar) -> Planar {
-    Planar::new(-cycle.yaw, -cycle.shift.x, cycle.shift.y)
 }

@@ -385,10 +385,3 @@ fn foot_states(
         })
         .collect()
 }
-
-/// Returns the contacts of the mirror image.
-pub(super) fn mirrored_contacts(contacts: &Contacts) -> Contacts {
-    Contacts::from_flags(Side::BOTH.map(|side| {
-        (0..contacts.frames()).map(|frame| contacts.planted(side.other(), frame)).collect()
-    }))
-}

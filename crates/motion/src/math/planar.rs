@@ -88,6 +88,22 @@ impl Planar {
         Self { yaw: wrap_angle(self.yaw + first.yaw), shift: self.turned(first.shift) + self.shift }
     }
 
+    /// Returns the transform as seen in a mirror in the plane x = 0: with the reflection S it is
+    /// `S · self · S`.
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        // No rounding, so that mirroring twice changes nothing; half a turn is its own mirror image.
+        let yaw = if self.yaw <= -PI { self.yaw } else { -self.yaw };
+        Self { yaw, shift: DVec2::new(-self.shift.x, self.shift.y) }
+    }
+
+    /// Returns a rotation of `yaw` radians about a point of the ground, (x, z) in metres.
+    #[must_use]
+    pub fn turn_about(yaw: f64, point: DVec2) -> Self {
+        let turn = Self { yaw, shift: DVec2::ZERO };
+        Self { yaw, shift: point - turn.turned(point) }
+    }
+
     /// Returns the inverse transform.
     #[must_use]
     pub fn inverse(&self) -> Self {
@@ -135,6 +151,24 @@ mod tests {
         fn planar_after_applies_the_argument_first(a in planar(), b in planar()) {
             let p = Vec3::new(1.0, 2.0, -3.0);
             prop_assert!((a.after(&b).apply(p) - a.apply(b.apply(p))).length() < 1e-4);
+        }
+
+        #[test]
+        fn planar_mirrored_is_the_reflected_transform(
+            a in planar(),
+            x in -5.0f32..5.0,
+            z in -5.0f32..5.0,
+        ) {
+            let (p, reflected) = (Vec3::new(x, 1.0, z), Vec3::new(-1.0, 1.0, 1.0));
+            let image = a.mirrored().apply(p * reflected);
+            prop_assert!((image - a.apply(p) * reflected).length() < 1e-5);
+        }
+
+        #[test]
+        fn planar_turn_about_a_point_leaves_it_in_place(yaw in -3.0f64..3.0, at in planar()) {
+            let turn = Planar::turn_about(yaw, at.shift);
+            prop_assert!(turn.apply_ground(at.shift).distance(at.shift) < 1e-9);
+            prop_assert_eq!(turn.yaw, yaw);
         }
 
         #[test]

@@ -168,6 +168,29 @@ impl FoldedChain {
         &self.file_index
     }
 
+    /// Returns the same joints with all lengths multiplied by `factor`.
+    pub(super) fn scaled(&self, factor: f32) -> Self {
+        let mut scaled = self.clone();
+        for above in &mut scaled.chain {
+            above.joint.offset *= factor;
+            above.joint.end_site = above.joint.end_site.map(|end| end * factor);
+            above.translation *= factor;
+        }
+        scaled.carrier_offset *= factor;
+        for child in &mut scaled.beside {
+            child.offset *= factor;
+        }
+        match &mut scaled.follows {
+            ChainMotion::Still => {}
+            ChainMotion::OnGround { height, shift, .. } => {
+                *height *= factor;
+                *shift = shift.map(|metres| metres * f64::from(factor));
+            }
+            ChainMotion::WithCarrier { translation, .. } => *translation *= factor,
+        }
+        scaled
+    }
+
     /// Returns whether the indices are valid for a skeleton of this many joints. Data from outside
     /// may not be.
     #[must_use]

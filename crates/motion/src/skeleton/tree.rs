@@ -170,7 +170,8 @@ impl Skeleton {
         self.joints.iter().position(|j| j.name == name)
     }
 
-    /// Returns the skeleton with all lengths multiplied by `factor`.
+    /// Returns the skeleton with all lengths multiplied by `factor`, those of the joints that its
+    /// file has above the root included.
     #[must_use]
     pub fn scaled(&self, factor: f32) -> Self {
         let joints = self.joints.iter().map(|joint| Joint {
@@ -178,7 +179,8 @@ impl Skeleton {
             end_site: joint.end_site.map(|end| end * factor),
             ..joint.clone()
         });
-        Self { joints: joints.collect(), above: None }
+        let above = self.above.as_ref().map(|above| Box::new(above.scaled(factor)));
+        Self { joints: joints.collect(), above }
     }
 
     /// Returns the joints' positions in the rest pose with the root at the origin, metres.

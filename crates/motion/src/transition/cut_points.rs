@@ -72,7 +72,8 @@ const CANDIDATES: usize = 16;
 /// that travels, as in the last step of a run that stops: repeated, it would be dragged along. The
 /// search goes from coarse to fine: every minimum of a grid of about 1/30 s is refined frame by
 /// frame. A clip that is exactly one cycle has no window after its last frame: its first and last
-/// frame are compared alone, and taken if nothing matches better.
+/// frame are compared alone, and taken if nothing matches better. A clip that was declared a cycle
+/// ([`Motion::is_cycle`]) is taken whole, of any duration, unless an end is given.
 ///
 /// # Errors
 /// [`LoopError::TooShort`] when no cycle of the shortest duration fits, into the clip or to a given
@@ -81,6 +82,11 @@ pub fn find_cycle(source: &Motion, search: &CycleSearch) -> Result<CutPoints, Lo
     let (clip, contacts) = (source.clip(), source.contacts());
     let body_height = f64::from(source.body_height());
     let (fps, frames) = (clip.fps(), clip.frames());
+    if source.is_cycle() && search.start.is_none() && search.end.is_none() && frames > 2 {
+        let last = frames - 1;
+        let phase_gap = phase_gap(contacts, 0, last);
+        return Ok(CutPoints { cycle: 0..last, rms_cm: 0.0, phase_gap });
+    }
     let too_short = LoopError::TooShort { min_secs: search.min_secs, secs: clip.duration_secs() };
     // `as usize` maps NaN and negative numbers to 0.
     let shortest = ((search.min_secs * fps).ceil() as usize).max(2);

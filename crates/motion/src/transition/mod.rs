@@ -91,6 +91,7 @@
 
 mod concatenate;
 mod cut_points;
+mod declared_cycle;
 mod foot_lock;
 mod inertialize;
 mod loop_curve;
@@ -101,6 +102,7 @@ mod whole_cycle;
 
 pub use concatenate::{Method, TransitionOptions, concatenate};
 pub use cut_points::{CutPoints, CycleSearch, find_cycle};
+pub use declared_cycle::treat_as_cycle;
 pub(crate) use foot_lock::Leg;
 pub use foot_lock::{FootLockError, FootLockOptions, FootLocking, foot_lock, has_legs};
 pub use inertialize::{Inertialization, Inertializer};

@@ -59,11 +59,17 @@ impl WholeCycle {
     /// Analyses a clip as a cycle. `None` for a clip that is not one: of fewer than eight frames;
     /// with ends that are more than half as far apart as any two of its poses; one that is much
     /// faster at one end than at the other, as a start or a stop; or one that rests at an end, as a
-    /// turn on the spot.
+    /// turn on the spot. Nothing is asked of a declared cycle ([`Motion::is_cycle`]) but three
+    /// frames.
     #[must_use]
     pub fn of(source: &Motion) -> Option<Self> {
         let clip = source.clip();
         let (frames, fps) = (clip.frames(), clip.fps());
+        if source.is_cycle() && frames > 2 {
+            let source = source.clone();
+            let (added_frames, gap_cm, gap_share) = (0, 0.0, 0.0);
+            return Some(Self { source, frames: 0..frames - 1, added_frames, gap_cm, gap_share });
+        }
         if frames < 8 {
             return None;
         }

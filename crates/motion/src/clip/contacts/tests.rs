@@ -263,3 +263,20 @@ fn ground_of_a_walk_is_zero_unless_feet_contradict() {
     assert_eq!(estimate_ground(&clip, &roles, &never), 0.0);
     assert_eq!(estimate_ground(&clip, &Roles::default(), &detect(&clip, &roles)), 0.0);
 }
+
+#[test]
+fn mirrored_contacts_are_swapped() {
+    let contacts = Contacts::from_flags([vec![true, false, true], vec![false, false, true]]);
+    let swapped = Contacts::from_flags([vec![false, false, true], vec![true, false, true]]);
+    assert_eq!(contacts.mirrored(), swapped);
+    assert_eq!(swapped.mirrored(), contacts);
+}
+
+#[test]
+fn contacts_of_frames_follow_these_frames() {
+    let contacts = Contacts::from_flags([vec![true, false, true], vec![false, false, true]]);
+    let backwards = contacts.of_frames(&[2, 1, 0, 9]);
+    let wanted = [vec![true, false, true, false], vec![true, false, false, false]];
+    assert_eq!(backwards, Contacts::from_flags(wanted));
+    assert_eq!(contacts.of_frames(&[]).frames(), 0);
+}

@@ -7,7 +7,7 @@ use crate::clip::{
 use crate::gait::SpeedPlayer;
 use crate::registration::fixtures::Walk;
 use crate::synth::{Action, Params, synthesize};
-use crate::transition::{FootLockOptions, foot_lock};
+use crate::transition::{FootLockOptions, foot_lock, treat_as_cycle};
 use proptest::prelude::*;
 
 fn find_cycle(clip: Clip) -> Result<(GaitCycle, Roles), GaitError> {
@@ -475,4 +475,24 @@ fn speed_blend_accepts_other_rates_and_refuses_invalid_input() {
     ] {
         assert!(matches!(find_cycle(still), Err(GaitError::NoCycle { .. })));
     }
+}
+
+/// A third of a second of a run is no cycle by itself.
+#[test]
+fn declared_cycle_is_taken_whole() {
+    let run = synthesize(&Params::new(Action::Run)).unwrap().clip;
+    let source = Motion::analyze(run.crop(0..20).unwrap());
+    assert!(matches!(GaitCycle::find(&source), Err(GaitError::NoCycle { .. })));
+    let declared = treat_as_cycle(&source).unwrap();
+    let last = declared.clip().frames() - 1;
+    let gait = GaitCycle::find(&declared).unwrap();
+    assert_eq!(gait.looped().clip.frames(), last);
+    assert!((gait.secs() - last as f64 / declared.clip().fps()).abs() < 1e-9);
+    assert!(gait.speed_mps() > 2.5, "{} m/s", gait.speed_mps());
+    // It blends with a walk, although its feet do not strike once each.
+    let (walk, roles) = cycle(Action::Walk);
+    let middle = 0.5 * (gait.speed_mps() + walk.speed_mps());
+    let mixed = SpeedBlend::new(&walk, &gait, &roles, &SpeedOptions::default()).unwrap();
+    let made = mixed.cycles_at(middle, 3).unwrap();
+    assert!((measured(&made.clip, &roles) - middle).abs() < 0.1 * middle);
 }

@@ -2,7 +2,7 @@
 
 use super::super::search::{Query, scan};
 use super::*;
-use crate::clip::{Contacts, Interpolation, resample};
+use crate::clip::{Interpolation, resample};
 use glam::Quat;
 
 #[test]
@@ -110,11 +110,4 @@ fn mirrored_motion_has_mirrored_features() {
             }
         }
     }
-}
-
-#[test]
-fn mirrored_contacts_are_swapped() {
-    let contacts = Contacts::from_flags([vec![true, false, true], vec![false, false, true]]);
-    let swapped = Contacts::from_flags([vec![false, false, true], vec![true, false, true]]);
-    assert_eq!(motion::mirrored_contacts(&contacts), swapped);
 }
