@@ -122,6 +122,8 @@ pub struct Seam {
     pub flash: f32,
     /// The joint of [`flash`](Self::flash); `None` where it is the root's step.
     pub flash_joint: Option<usize>,
+    /// The frame of the walk into which that step goes.
+    pub flash_at: usize,
     /// The slide of a foot in the worst stance that overlaps the transition, centimetres; `None`
     /// without such stances.
     pub skate_cm: Option<f32>,
@@ -176,6 +178,23 @@ impl WalkMetrics {
     #[must_use]
     pub fn flashes(&self) -> usize {
         self.seams.iter().filter(|seam| seam.flash > FLASH).count()
+    }
+
+    /// Returns the frame of the walk in the middle of the transition with the largest spin; `None`
+    /// if none [counts](Self::spins).
+    #[must_use]
+    pub fn worst_spin_at(&self) -> Option<usize> {
+        let spins = self.seams.iter().filter(|seam| seam.spin_deg > MIN_SPIN_DEG);
+        let worst = spins.max_by(|a, b| a.spin_deg.total_cmp(&b.spin_deg))?;
+        Some(worst.at + worst.frames / 2)
+    }
+
+    /// Returns the frame of the walk into which the largest flash goes; `None` if none
+    /// [counts](Self::flashes).
+    #[must_use]
+    pub fn worst_flash_at(&self) -> Option<usize> {
+        let flashes = self.seams.iter().filter(|seam| seam.flash > FLASH);
+        flashes.max_by(|a, b| a.flash.total_cmp(&b.flash)).map(|seam| seam.flash_at)
     }
 
     /// Returns the number of transitions in a minute; `None` for an empty walk.
@@ -485,8 +504,9 @@ fn seam(
         })
         .collect();
     let flashes = walked.flashes.get(at..=end).unwrap_or_default().iter();
-    let (flash, flash_joint) =
-        flashes.copied().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default();
+    let flashes = flashes.enumerate().map(|(step, &(flash, joint))| (flash, joint, at + step));
+    let (flash, flash_joint, flash_at) =
+        flashes.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, None, at));
     let stances = stances.iter().filter(|stance| stance.0 <= end && at <= stance.1);
     Seam {
         at,
@@ -496,6 +516,7 @@ fn seam(
         spin_deg: spin(&steps, (SPIN_SECS * fps).round().max(1.0) as usize).to_degrees(),
         flash,
         flash_joint,
+        flash_at,
         skate_cm: stances.map(|stance| stance.2 * 100.0).max_by(f32::total_cmp),
         lag_s: lag(&steps, fps),
     }

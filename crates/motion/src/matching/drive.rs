@@ -6,7 +6,7 @@ use super::features::RATE;
 use super::{Candidate, Controller, ControllerOptions, MatchError, SearchReason};
 use crate::clip::{Clip, Contacts, character_frames};
 use crate::math::{Planar, wrap_angle};
-use crate::metrics::foot_slides_cm;
+use crate::metrics::{Extreme, StanceSlide, foot_slides};
 use std::sync::Arc;
 
 /// The motion of a controller for a recording, and the desired motion.
@@ -56,13 +56,19 @@ pub struct DriveMetrics {
     pub error_cm: f64,
     /// The largest distance, centimetres.
     pub worst_error_cm: f64,
+    /// The frame of the largest distance; `None` where there is no distance.
+    pub worst_error_at: Option<usize>,
     /// The longest time from the input of a turn until the body faces there (within 20°, and
     /// stays), seconds. Infinite if it never does; `None` without turns.
     pub turn_secs: Option<f64>,
+    /// The frame from which on the body faces there; `None` if no turn was completed.
+    pub turned_at: Option<usize>,
     /// Mean slide of a stance, centimetres; `None` without stances.
     pub skate_cm: Option<f64>,
     /// The slide of the worst stance, centimetres.
     pub worst_skate_cm: Option<f64>,
+    /// The frame in which that foot slides fastest; `None` where none slides.
+    pub worst_skate_at: Option<usize>,
     /// Jumps per minute.
     pub seams_per_minute: f64,
     /// The shortest time between two jumps, seconds; `None` for fewer than two.
@@ -124,23 +130,31 @@ impl Drive {
         let errors: Vec<f64> = (self.roots.iter().zip(&self.desired))
             .map(|(root, desired)| root.shift.distance(desired.shift) * 100.0)
             .collect();
+        let worst_error = Extreme::largest(errors.iter().copied().enumerate());
+        let turn = self.longest_turn(database);
         let frames = errors.len().max(1) as f64;
-        let slides = foot_slides_cm(&self.clip, database.roles(), &self.contacts);
+        let slides = foot_slides(&self.clip, database.roles(), &self.contacts);
+        let worst_slide = StanceSlide::worst(&slides);
         let mean = |sum: f64, count: usize| (count > 0).then(|| sum / count as f64);
         let gaps =
             self.jumps.windows(2).map(|pair| (pair[1].frame - pair[0].frame) as f64 / RATE as f64);
         DriveMetrics {
             error_cm: errors.iter().sum::<f64>() / frames,
-            worst_error_cm: errors.iter().copied().fold(0.0, f64::max),
-            turn_secs: self.turn_secs(database),
-            skate_cm: mean(slides.iter().map(|slide| slide.1).sum(), slides.len()),
-            worst_skate_cm: slides.iter().map(|slide| slide.1).reduce(f64::max),
+            worst_error_cm: worst_error.map_or(0.0, |error| error.value),
+            worst_error_at: worst_error.and_then(|error| error.place()),
+            turn_secs: turn.map(|turn| turn.value),
+            turned_at: turn.filter(|turn| turn.value.is_finite()).and_then(|turn| turn.place()),
+            skate_cm: mean(slides.iter().map(|slide| slide.slide_cm).sum(), slides.len()),
+            worst_skate_cm: worst_slide.map(|slide| slide.value),
+            worst_skate_at: worst_slide.and_then(|slide| slide.place()),
             seams_per_minute: self.jumps.len() as f64 * 60.0 * RATE as f64 / frames,
             shortest_secs: gaps.reduce(f64::min),
         }
     }
 
-    fn turn_secs(&self, database: &Database) -> Option<f64> {
+    /// Returns the time of the longest turn, seconds, and the frame from which on the body faces
+    /// where it was asked to.
+    fn longest_turn(&self, database: &Database) -> Option<Extreme> {
         let faces = character_frames(&self.clip, database.roles());
         let asked: Vec<usize> = (1..self.goals.len())
             .filter(|&frame| {
@@ -153,11 +167,11 @@ impl Drive {
                 wrap_angle(faces[frame].yaw - self.goals[frame]).abs() > FACING_TOLERANCE_RADIANS
             };
             match (from..to).rev().find(|&frame| off(frame)) {
-                None => 0.0,
-                Some(last) if last + 1 == to => f64::INFINITY,
-                Some(last) => (last + 1 - from) as f64 / RATE as f64,
+                None => (from, 0.0),
+                Some(last) if last + 1 == to => (last, f64::INFINITY),
+                Some(last) => (last + 1, (last + 1 - from) as f64 / RATE as f64),
             }
         };
-        asked.iter().enumerate().map(turn).reduce(f64::max)
+        Extreme::largest(asked.iter().enumerate().map(turn))
     }
 }

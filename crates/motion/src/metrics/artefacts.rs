@@ -23,8 +23,8 @@ const ARTEFACT_RATIO: f32 = 2.0;
 const MIN_FLASH_DEG: f32 = 2.0;
 /// Flashes with no more frames than this between them count as one.
 const MAX_FLASH_GAP_FRAMES: usize = 3;
-/// Duration of the windows in which spins are detected, seconds.
-const SPIN_SECS: f64 = 0.2;
+/// The duration of the windows in which spins are measured, seconds.
+pub const SPIN_SECS: f64 = 0.2;
 /// The least turn in such a window that counts as a spin, degrees.
 const MIN_SPIN_DEG: f32 = 30.0;
 /// A foot is low within this height of the 5th percentile of its heights, metres.

@@ -91,15 +91,17 @@
 
 mod artefacts;
 mod deviation;
+mod extreme;
 mod lowest;
 mod result;
 mod slide;
 mod transition;
 mod whole;
 
-pub use artefacts::{Artefacts, Flash, MotionTrace, TraceMeter};
+pub use artefacts::{Artefacts, Flash, MotionTrace, SPIN_SECS, TraceMeter};
 pub use deviation::Deviations;
+pub use extreme::Extreme;
 pub use result::{JointFrame, ResultMetrics};
-pub use slide::{SlideMeter, foot_slide_cm, foot_slides_cm};
-pub use transition::{TransitionMetrics, penetration_cm};
+pub use slide::{SlideMeter, StanceSlide, foot_slide_cm, foot_slides, worst_foot_slide};
+pub use transition::{TransitionMetrics, deepest_penetration, penetration_cm};
 pub use whole::{ClipMeter, ClipMetrics};

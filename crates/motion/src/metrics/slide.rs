@@ -1,5 +1,6 @@
 //! Foot slide: the distance that planted feet move.
 
+use super::Extreme;
 use crate::clip::{Clip, Contacts, stillest_step};
 use crate::skeleton::{Roles, Side, WorldPose};
 use glam::Vec3;
@@ -13,22 +14,49 @@ use std::ops::Range;
 /// stances. O(frames × joints).
 #[must_use]
 pub fn foot_slide_cm(clip: &Clip, roles: &Roles, contacts: &Contacts) -> Option<f64> {
-    let mut meter = SlideMeter::new(clip, roles);
-    while meter.advance(clip, contacts, clip.frames()) {}
-    meter.worst_cm()
+    worst_foot_slide(clip, roles, contacts).map(|slide| slide.value)
 }
 
-/// Returns the slide of a planted foot in each stance, centimetres, as defined by
-/// [`foot_slide_cm`]: the stance's frames, and the slide; in the order in which stances end.
-/// Stances of a single frame are left out.
+/// Returns the slide of a planted foot in the worst stance of a clip, as [`foot_slide_cm`], and the
+/// frame of that stance in which the foot slides fastest. O(frames × joints).
 #[must_use]
-pub fn foot_slides_cm(clip: &Clip, roles: &Roles, contacts: &Contacts) -> Vec<(Range<usize>, f64)> {
+pub fn worst_foot_slide(clip: &Clip, roles: &Roles, contacts: &Contacts) -> Option<Extreme> {
+    let mut meter = SlideMeter::new(clip, roles);
+    while meter.advance(clip, contacts, clip.frames()) {}
+    meter.worst()
+}
+
+/// Returns the slide of a planted foot in each stance, in the order in which stances end. Stances
+/// of a single frame are left out.
+#[must_use]
+pub fn foot_slides(clip: &Clip, roles: &Roles, contacts: &Contacts) -> Vec<StanceSlide> {
     let mut meter = SlideMeter::new(clip, roles);
     while meter.advance(clip, contacts, clip.frames()) {}
     meter.finish()
 }
 
-/// The measurement of [`foot_slides_cm`] in slices, for long clips. Every call must be given the
+/// The slide of a foot in a stance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StanceSlide {
+    /// The frames of the stance.
+    pub frames: Range<usize>,
+    /// The slide, centimetres, as defined by [`foot_slide_cm`].
+    pub slide_cm: f64,
+    /// The frame in which the foot slides fastest.
+    pub fastest: usize,
+    /// The step into that frame, metres.
+    largest_step_m: f32,
+}
+
+impl StanceSlide {
+    /// Returns the stance with the largest slide, the first of equal ones.
+    #[must_use]
+    pub fn worst(slides: &[Self]) -> Option<Extreme> {
+        Extreme::largest(slides.iter().map(|slide| (slide.fastest, slide.slide_cm)))
+    }
+}
+
+/// The measurement of [`foot_slides`] in slices, for long clips. Every call must be given the
 /// same clip and contacts.
 #[derive(Debug)]
 pub struct SlideMeter {
@@ -36,9 +64,9 @@ pub struct SlideMeter {
     points: [Vec<(usize, Vec3)>; 2],
     before: [Vec<Vec3>; 2],
     slid: [Vec3; 2],
-    /// The current stances: first frame, and slide so far.
-    stances: [Option<(usize, f32)>; 2],
-    slides: Vec<(Range<usize>, f64)>,
+    /// The current stances, as far as they are measured.
+    stances: [Option<StanceSlide>; 2],
+    slides: Vec<StanceSlide>,
     frame: usize,
 }
 
@@ -50,7 +78,7 @@ impl SlideMeter {
             points: Side::BOTH.map(|side| roles.foot_points(clip.skeleton(), side)),
             before: Default::default(),
             slid: [Vec3::ZERO; 2],
-            stances: [None; 2],
+            stances: [None, None],
             slides: Vec::new(),
             frame: 0,
         }
@@ -76,8 +104,17 @@ impl SlideMeter {
                     contacts.planted(side, frame) && frame > 0 && contacts.planted(side, frame - 1);
                 if let Some(step) = stillest_step(&self.before[index], &now).filter(|_| stands) {
                     self.slid[index] += step;
-                    let (start, farthest) = self.stances[index].unwrap_or((frame - 1, 0.0));
-                    self.stances[index] = Some((start, farthest.max(self.slid[index].length())));
+                    let stance = self.stances[index].get_or_insert(StanceSlide {
+                        frames: frame - 1..frame,
+                        slide_cm: 0.0,
+                        fastest: frame,
+                        largest_step_m: 0.0,
+                    });
+                    let slid_cm = f64::from(self.slid[index].length()) * 100.0;
+                    stance.slide_cm = stance.slide_cm.max(slid_cm);
+                    if step.length() > stance.largest_step_m {
+                        (stance.largest_step_m, stance.fastest) = (step.length(), frame);
+                    }
                 } else {
                     self.slid[index] = Vec3::ZERO;
                     self.end_stance(index, frame);
@@ -91,23 +128,32 @@ impl SlideMeter {
 
     fn end_stance(&mut self, index: usize, frame: usize) {
         let ended = self.stances[index].take();
-        self.slides
-            .extend(ended.map(|(start, farthest)| (start..frame, f64::from(farthest) * 100.0)));
+        self.slides.extend(ended.map(|mut stance| {
+            stance.frames.end = frame;
+            stance
+        }));
     }
 
-    /// Returns the stances, and the slide of the foot in each, centimetres.
+    /// Returns the slide in each stance, in the order in which stances end.
     #[must_use]
-    pub fn finish(mut self) -> Vec<(Range<usize>, f64)> {
+    pub fn finish(mut self) -> Vec<StanceSlide> {
         for side in Side::BOTH {
             self.end_stance(side.index(), self.frame);
         }
         self.slides
     }
 
+    /// Returns the slide of the worst stance, centimetres, and the frame in which the foot slides
+    /// fastest there.
+    #[must_use]
+    pub fn worst(self) -> Option<Extreme> {
+        StanceSlide::worst(&self.finish())
+    }
+
     /// Returns the slide of the worst stance, centimetres.
     #[must_use]
     pub fn worst_cm(self) -> Option<f64> {
-        self.finish().into_iter().map(|(_, slide)| slide).reduce(f64::max)
+        self.worst().map(|slide| slide.value)
     }
 }
 
@@ -144,7 +190,32 @@ mod tests {
         let expected = 10.0 * (longest.unwrap() - 1) as f64 / clip.fps();
         let slid = foot_slide_cm(&pulled, &roles, &contacts).unwrap();
         assert!((slid - expected).abs() < 1.0 + still, "{slid} {expected}");
+        assert_eq!(worst_foot_slide(&pulled, &roles, &contacts).unwrap().value, slid);
         let none = Contacts::from_flags([vec![], vec![]]);
         assert_eq!(foot_slide_cm(&clip, &roles, &none), None);
+    }
+
+    #[test]
+    fn worst_foot_slide_is_at_the_frame_of_a_sudden_slip() {
+        let made = synthesize(&Params::new(Action::Walk)).unwrap();
+        let clip = made.clip;
+        let roles = Roles::detect(clip.skeleton());
+        let flags = Side::BOTH
+            .map(|side| made.truth.contacts.iter().map(|feet| feet[side.index()].any()).collect());
+        let contacts = Contacts::from_flags(flags);
+        let stance = contacts.intervals(Side::Left).into_iter().nth(1).unwrap();
+        let slip = stance.start + stance.len() / 2;
+        // The body is displaced by 20 cm between two frames of the stance.
+        let (mut rotations, mut roots) = (Vec::new(), Vec::new());
+        for frame in 0..clip.frames() {
+            let to_side = if frame >= slip { 0.2 } else { 0.0 };
+            rotations.extend_from_slice(clip.rotations(frame));
+            roots.push(clip.root_translations()[frame] + Vec3::new(to_side, 0.0, 0.0));
+        }
+        let slipped =
+            Clip::new("slipped", clip.skeleton().clone(), clip.fps(), rotations, roots).unwrap();
+        let worst = worst_foot_slide(&slipped, &roles, &contacts).unwrap();
+        assert_eq!(worst.frame, slip);
+        assert!((17.0..=23.0).contains(&worst.value), "{worst:?}");
     }
 }

@@ -1,5 +1,6 @@
 //! Metrics of one transition, measured at its seam.
 
+use super::Extreme;
 use super::lowest::LowPoints;
 use crate::blend::Concatenation;
 use crate::clip::{Clip, Motion, UsualMotion, facing, stillest_step, turn, turn_change};
@@ -63,6 +64,8 @@ pub struct TransitionMetrics {
     /// Position jump, centimetres: the largest step of the character over the ground, minus the
     /// usual one.
     pub jump_cm: Option<f64>,
+    /// The frame into which that step goes; `None` where no step is beyond the usual one.
+    pub jump_at: Option<usize>,
     /// Yaw of the blend, degrees. With `r`, `a`, `b` the yaw of a step of the result and of the
     /// sources: the largest sum, over any run of consecutive steps of the transition, of
     /// `r - max(0, a, b)` or of `min(0, a, b) - r`. That is the turn beyond that of either source.
@@ -77,6 +80,8 @@ pub struct TransitionMetrics {
     /// Penetration, centimetres: the depth of the deepest joint or end site below the ground in the
     /// transition.
     pub penetration_cm: Option<f64>,
+    /// Its frame; `None` where nothing is below the ground.
+    pub penetration_at: Option<usize>,
     /// Lag: seconds from the transition's start until the last step whose velocity (forward and
     /// sideways, in the character's frame) differs from the incoming clip's by more than 10 % of
     /// the difference between the two clips: the root mean square, over the transition, of the
@@ -111,14 +116,18 @@ impl TransitionMetrics {
         let steps = subject.start.max(1)..=subject.end.max(subject.start).min(last);
         let around = SeamPoses::new(subject, &steps);
         let (seam_deg, seam_joint) = seam(subject, &steps);
+        let jump = jump(subject, &steps, &around);
+        let depth = around.lowest.map(|lowest| depth(lowest, subject.ground_m));
         Self {
             seam_deg,
             seam_joint,
             seam_dps: velocity_seam(subject, &steps),
-            jump_cm: jump(subject, &steps, &around),
+            jump_cm: jump.map(|jump| jump.value),
+            jump_at: jump.and_then(|jump| jump.place()),
             spin_deg: spin(subject, &steps, &around),
             skate_cm: skate(subject, &steps, &around),
-            penetration_cm: around.lowest.map(|lowest| depth_cm(lowest, subject.ground_m)),
+            penetration_cm: depth.map(|depth| depth.value),
+            penetration_at: depth.and_then(|depth| depth.place()),
             lag_s: lag(subject, &steps, &around),
         }
     }
@@ -128,17 +137,25 @@ impl TransitionMetrics {
 /// end site below the ground. Frames that do not exist are left out; `None` if none is left.
 #[must_use]
 pub fn penetration_cm(clip: &Clip, frames: Range<usize>, ground_m: f32) -> Option<f64> {
+    deepest_penetration(clip, frames, ground_m).map(|depth| depth.value)
+}
+
+/// Returns the penetration in some frames of a clip, as [`penetration_cm`], and the frame where the
+/// deepest point is deepest.
+#[must_use]
+pub fn deepest_penetration(clip: &Clip, frames: Range<usize>, ground_m: f32) -> Option<Extreme> {
     let low_points = LowPoints::of(clip.skeleton());
     let mut world = WorldPose::default();
     let lowest = (frames.start..frames.end.min(clip.frames())).filter_map(|frame| {
         clip.world_pose_into(frame, &mut world);
-        low_points.lowest(&world)
+        Some((low_points.lowest(&world)?, frame))
     });
-    lowest.min_by(f32::total_cmp).map(|lowest| depth_cm(lowest, ground_m))
+    lowest.min_by(|a, b| a.0.total_cmp(&b.0)).map(|lowest| depth(lowest, ground_m))
 }
 
-fn depth_cm(lowest: f32, ground_m: f32) -> f64 {
-    f64::from((ground_m - lowest).max(0.0)) * 100.0
+/// Returns the depth of a point at a height below the ground, centimetres, in its frame.
+fn depth((lowest_m, frame): (f32, usize), ground_m: f32) -> Extreme {
+    Extreme { value: f64::from((ground_m - lowest_m).max(0.0)) * 100.0, frame }
 }
 
 impl Subject<'_> {
@@ -182,8 +199,8 @@ struct SeamPoses {
     character: Vec<Planar>,
     /// Per side, per frame: the foot's points.
     feet: [Vec<Vec<Vec3>>; 2],
-    /// The lowest point of the body over the transition itself, metres.
-    lowest: Option<f32>,
+    /// The lowest point of the body over the transition itself, metres, and its frame.
+    lowest: Option<(f32, usize)>,
 }
 
 impl SeamPoses {
@@ -215,8 +232,9 @@ impl SeamPoses {
                 feet.push(points.iter().map(|&(joint, point)| world.point(joint, point)).collect());
             }
             if (subject.start.saturating_sub(1)..=*steps.end()).contains(&frame) {
-                let low = low_points.lowest(&world);
-                around.lowest = around.lowest.into_iter().chain(low).min_by(f32::total_cmp);
+                let low = low_points.lowest(&world).map(|low| (low, frame));
+                let lowest = around.lowest.into_iter().chain(low);
+                around.lowest = lowest.min_by(|a, b| a.0.total_cmp(&b.0));
             }
         }
         around
@@ -286,13 +304,18 @@ fn velocity_seam(subject: &Subject<'_>, steps: &RangeInclusive<usize>) -> Option
     worst.map(|change| f64::from(change).to_degrees() * subject.result.fps())
 }
 
-fn jump(subject: &Subject<'_>, steps: &RangeInclusive<usize>, around: &SeamPoses) -> Option<f64> {
+fn jump(
+    subject: &Subject<'_>,
+    steps: &RangeInclusive<usize>,
+    around: &SeamPoses,
+) -> Option<Extreme> {
     let usual = f64::from(subject.a.usual().step.max(subject.b.usual().step));
     let excess = |frame| {
         let own = subject.source_steps(frame).into_iter().flatten().map(|step| step.shift.length());
-        Some((around.step_into(frame)?.shift.length() - own.fold(usual, f64::max)).max(0.0))
+        let metres = around.step_into(frame)?.shift.length() - own.fold(usual, f64::max);
+        Some((frame, metres.max(0.0) * 100.0))
     };
-    steps.clone().filter_map(excess).reduce(f64::max).map(|metres| metres * 100.0)
+    Extreme::largest(steps.clone().filter_map(excess))
 }
 
 fn spin(subject: &Subject<'_>, steps: &RangeInclusive<usize>, around: &SeamPoses) -> Option<f64> {

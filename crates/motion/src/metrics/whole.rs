@@ -1,7 +1,7 @@
 //! Metrics of a clip without sources.
 
-use super::SlideMeter;
 use super::lowest::LowPoints;
+use super::{Extreme, SlideMeter};
 use crate::clip::{Clip, Contacts};
 use crate::math::{Planar, stats};
 use crate::skeleton::{Roles, WorldPose};
@@ -16,11 +16,17 @@ pub struct ClipMetrics {
     /// Foot slide, centimetres: [`foot_slide_cm`](super::foot_slide_cm). `None` without feet or
     /// stances.
     pub foot_slide_cm: Option<f64>,
+    /// The frame in which that foot slides fastest; `None` where none slides.
+    pub foot_slide_at: Option<usize>,
     /// Position jump, centimetres: the largest step of the character over the ground, minus the
     /// 99th percentile of its steps.
     pub jump_cm: Option<f64>,
+    /// The frame into which that step goes; `None` where all steps are the same.
+    pub jump_at: Option<usize>,
     /// Penetration, centimetres: the depth of the deepest joint or end site below the ground.
     pub penetration_cm: Option<f64>,
+    /// Its frame; `None` where nothing is below the ground.
+    pub penetration_at: Option<usize>,
 }
 
 impl ClipMetrics {
@@ -47,7 +53,8 @@ impl ClipMetrics {
 pub struct ClipMeter {
     slide: SlideMeter,
     low_points: LowPoints,
-    lowest: Option<f32>,
+    /// The lowest point, metres, and its frame.
+    lowest: Option<(f32, usize)>,
     ground_m: f32,
     frame: usize,
 }
@@ -76,11 +83,9 @@ impl ClipMeter {
         let mut world = WorldPose::default();
         for frame in self.frame..end {
             clip.world_pose_into(frame, &mut world);
-            self.lowest = self
-                .lowest
-                .into_iter()
-                .chain(self.low_points.lowest(&world))
-                .min_by(f32::total_cmp);
+            let low = self.low_points.lowest(&world).map(|low| (low, frame));
+            let lowest = self.lowest.into_iter().chain(low);
+            self.lowest = lowest.min_by(|a, b| a.0.total_cmp(&b.0));
         }
         self.frame = end;
         true
@@ -98,16 +103,23 @@ impl ClipMeter {
         let steps: Vec<f32> = (ground_frames.windows(2))
             .map(|pair| pair[0].shift.distance(pair[1].shift) as f32)
             .collect();
-        let most = steps.iter().copied().max_by(f32::total_cmp);
-        let beyond = most
-            .zip(stats::percentile(&steps, USUAL_PERCENTILE))
-            .map(|(most, usual)| (most - usual).max(0.0));
+        let usual = stats::percentile(&steps, USUAL_PERCENTILE).unwrap_or(0.0);
+        let jump = Extreme::largest(
+            (steps.iter().enumerate())
+                .map(|(step, metres)| (step + 1, f64::from((metres - usual).max(0.0)) * 100.0)),
+        );
+        let depth = self.lowest.map(|(lowest, frame)| Extreme {
+            value: f64::from((self.ground_m - lowest).max(0.0)) * 100.0,
+            frame,
+        });
+        let slide = self.slide.worst();
         ClipMetrics {
-            foot_slide_cm: self.slide.worst_cm(),
-            jump_cm: beyond.map(|metres| f64::from(metres) * 100.0),
-            penetration_cm: self
-                .lowest
-                .map(|lowest| f64::from((self.ground_m - lowest).max(0.0)) * 100.0),
+            foot_slide_cm: slide.map(|slide| slide.value),
+            foot_slide_at: slide.and_then(|slide| slide.place()),
+            jump_cm: jump.map(|jump| jump.value),
+            jump_at: jump.and_then(|jump| jump.place()),
+            penetration_cm: depth.map(|depth| depth.value),
+            penetration_at: depth.and_then(|depth| depth.place()),
         }
     }
 }
@@ -168,6 +180,8 @@ mod tests {
         let metrics = measured(&sunk, &roles);
         // At right angles to its own direction, and beyond the usual step of 3 cm.
         assert!((6.5..=10.0).contains(&metrics.jump_cm.unwrap()), "{metrics:?}");
+        assert_eq!(metrics.jump_at, Some(half));
+        assert!(metrics.penetration_at.is_some_and(|frame| frame >= half), "{metrics:?}");
         let deeper = metrics.penetration_cm.unwrap() - before.penetration_cm.unwrap();
         assert!((1.5..=3.01).contains(&deeper), "{metrics:?}");
     }

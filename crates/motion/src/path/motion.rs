@@ -5,7 +5,7 @@ use super::{
 };
 use crate::clip::{Clip, Contacts};
 use crate::math::Planar;
-use crate::metrics::foot_slide_cm;
+use crate::metrics::{Extreme, foot_slide_cm, worst_foot_slide};
 use crate::skeleton::Roles;
 use crate::transition::{FootLockOptions, FootLocking};
 use std::sync::Arc;
@@ -49,8 +49,12 @@ pub struct Slide {
     pub original: Option<f64>,
     /// On the edited path, centimetres.
     pub carried: Option<f64>,
+    /// The frame in which the foot slides fastest on the edited path; `None` where none slides.
+    pub carried_at: Option<usize>,
     /// With foot lock, centimetres; equal to `carried` without.
     pub locked: Option<f64>,
+    /// The frame in which the foot slides fastest with foot lock; `None` where none slides.
+    pub locked_at: Option<usize>,
 }
 
 /// The motion of a path that is edited interactively: everything that does not depend on the edit
@@ -91,16 +95,20 @@ impl PathEditor {
         let carried = carry(&self.path, edited, &options.carry)?;
         let contacts = carried.contacts(&self.contacts);
         let hard_turns = hard_turns(&self.path, &carried);
-        let slid = |clip: &Clip| foot_slide_cm(clip, &self.roles, &contacts);
+        let slid = |clip: &Clip| {
+            let worst = worst_foot_slide(clip, &self.roles, &contacts);
+            (worst.map(|slide| slide.value), worst.as_ref().and_then(Extreme::place))
+        };
+        let (of_carried, carried_at) = slid(&carried.clip);
         let mut slide_cm =
-            Slide { original: self.slide_cm, carried: slid(&carried.clip), locked: None };
+            Slide { original: self.slide_cm, carried: of_carried, carried_at, ..Slide::default() };
         let clip = if let Some(lock) = &options.foot_lock {
             let locking = FootLocking::new(Arc::new(carried.clip), &self.roles, &contacts, lock)?;
             let locked = locking.with_body_yaws(&carried.turns).finish()?;
-            slide_cm.locked = slid(&locked);
+            (slide_cm.locked, slide_cm.locked_at) = slid(&locked);
             locked
         } else {
-            slide_cm.locked = slide_cm.carried;
+            (slide_cm.locked, slide_cm.locked_at) = (slide_cm.carried, slide_cm.carried_at);
             carried.clip
         };
         Ok(EditedMotion {
