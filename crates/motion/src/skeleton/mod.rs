@@ -111,6 +111,7 @@ pub use mirror::{Mirror, NoCounterparts};
 pub use pose::Pose;
 pub use retarget::Retargeting;
 pub use role::{Role, Side};
+pub(crate) use roles::is_control;
 pub use roles::{RoleSource, Roles};
 pub use stance::canonical_stance;
 pub(crate) use stance::{rest_is_plausible, uprightness};

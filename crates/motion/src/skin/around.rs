@@ -5,8 +5,8 @@ use super::capsules::capsules;
 use super::contour::{Contour, Contouring};
 use super::field::{Cone, Field};
 use super::shapes::{PlacedShape, Shape, limb_shapes};
-use super::weights::{Neighbours, WeightDiffusion, drawn_together, fair, normals};
-use super::{SkinnedMesh, bind};
+use super::weights::{Neighbours, WeightDiffusion, drawn_together, fair, normals, rates};
+use super::{SkinnedMesh, bind, sheets};
 use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose, canonical_stance};
 use glam::Vec3;
 use std::collections::BTreeMap;
@@ -41,6 +41,8 @@ pub struct SkinBuilder {
     powers: Vec<f32>,
     /// The joints along each shape: see [`path`].
     paths: Vec<Vec<(f32, usize)>>,
+    /// How far weights reach along each shape: [`Shape::spread`].
+    spreads: Vec<f32>,
     /// The remaining shells, the next one last.
     shells: Vec<Shell>,
     done: ProceduralSkin,
@@ -70,6 +72,7 @@ struct Shell {
 #[derive(Clone, Debug)]
 enum Stage {
     Contouring(Box<Contouring>),
+    Separating(Contour, Neighbours),
     Smoothing(Contour, Neighbours, usize),
     WeightDiffusion(Contour, Neighbours, WeightDiffusion),
 }
@@ -90,6 +93,7 @@ impl SkinBuilder {
         let mut skin_builder = Self {
             powers: powers(standing, roles),
             paths: Vec::new(),
+            spreads: Vec::new(),
             shells: Vec::new(),
             done: ProceduralSkin::default(),
             pose: bind::bind_pose(standing, roles, &stance),
@@ -120,6 +124,7 @@ impl SkinBuilder {
         self.paths = (placed.iter())
             .map(|(shape, placed)| path(skeleton, shape, placed, &self.pose))
             .collect();
+        self.spreads = placed.iter().map(|(shape, _)| shape.spread).collect();
         let largest = MAX_CELL * roles.body_height(skeleton);
         // Cells are halved repeatedly, so sizes are rounded accordingly.
         let size = |cone: &Cone| {
@@ -160,8 +165,14 @@ impl SkinBuilder {
             Stage::Contouring(contouring) => {
                 if let Some(surface) = contouring.advance(CELLS_AT_ONCE) {
                     let neighbours = Neighbours::of(surface.positions.len(), &surface.triangles);
-                    *stage = Stage::Smoothing(surface, neighbours, 0);
+                    *stage = Stage::Separating(surface, neighbours);
                 }
+            }
+            Stage::Separating(surface, neighbours) => {
+                if sheets::separate(surface, neighbours) {
+                    *neighbours = Neighbours::of(surface.positions.len(), &surface.triangles);
+                }
+                *stage = Stage::Smoothing(std::mem::take(surface), std::mem::take(neighbours), 0);
             }
             Stage::Smoothing(surface, neighbours, rounds) => {
                 fair(&mut surface.positions, neighbours);
@@ -169,7 +180,12 @@ impl SkinBuilder {
                 if *rounds >= FAIRING_ROUNDS {
                     let first = (surface.owners.iter())
                         .map(|&(shape, share)| joint_at(&self.paths[members[shape]], share) as u16);
-                    let sharing = WeightDiffusion::new(first);
+                    let spreads = surface.owners.iter().map(|&(shape, share)| {
+                        let place = members[shape];
+                        self.spreads[place] * cones[shape].radius(share)
+                    });
+                    let rates = rates(&surface.positions, neighbours, spreads);
+                    let sharing = WeightDiffusion::new(first, rates);
                     *stage = Stage::WeightDiffusion(
                         std::mem::take(surface),
                         std::mem::take(neighbours),
@@ -308,7 +324,16 @@ fn path(
         }
         (from, joint)
     });
-    steps.collect()
+    let mut path: Vec<(f32, usize)> = steps.collect();
+    if shape.held > 0.0
+        && let Some(parent) = skeleton.parent(start)
+    {
+        for (from, _) in &mut path {
+            *from = from.max(shape.held);
+        }
+        path.insert(0, (0.0, parent));
+    }
+    path
 }
 
 fn joint_at(path: &[(f32, usize)], share: f32) -> usize {

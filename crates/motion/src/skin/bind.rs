@@ -1,25 +1,27 @@
 //! The pose in which a mesh is built: limbs apart from each other and from the trunk.
 
 use super::RigidTransform;
+use super::shapes::is_person;
 use crate::math::quat;
 use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose};
 use glam::{Quat, Vec3};
 
 /// The angle of the arms below level, radians (40°): between their most frequent position and the
 /// extreme ones, so that the shoulders deform least.
-const ARMS_DOWN_RADIANS: f32 = 0.70;
-/// The angle of the legs from the vertical, radians (7°): the thighs separate below the crotch.
-const LEGS_OUT_RADIANS: f32 = 0.12;
+const ARMS_DOWN_RADIANS: f32 = 0.52;
+/// The angle of the legs from the vertical, radians (11°): the thighs separate below the crotch.
+const LEGS_OUT_RADIANS: f32 = 0.20;
 
 /// Returns the bind pose of a skeleton that rests in `stance`, with its joints' own axes: limbs
-/// with known roles are spread, and everything else is as in the stance. The root is at the origin.
+/// of a person are spread, and everything else is as in the stance. The root is at the origin.
 pub(super) fn bind_pose(skeleton: &Skeleton, roles: &Roles, stance: &WorldPose) -> WorldPose {
     let rest = skeleton.rest_positions();
     let joint = |role| roles.get_within(role, rest.len());
     let at = |role| joint(role).map(|joint| rest[joint]);
     // The rotation of each joint against its rest, in the world; the rest of the limb follows.
     let mut turns: Vec<Option<Quat>> = vec![None; rest.len()];
-    if let Some((left, up)) = axes(&rest, roles) {
+    let body = is_person(&rest, roles).then(|| axes(&rest, roles)).flatten();
+    if let Some((left, up)) = body {
         for (side, sign) in [(Side::Left, 1.0), (Side::Right, -1.0)] {
             let out = left * sign;
             let arm = out * ARMS_DOWN_RADIANS.cos() - up * ARMS_DOWN_RADIANS.sin();

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 /// Number of frames of a clip from which the height of its ground is computed.
 const SAMPLES: usize = 48;
-/// The least number of parts of limbs of a figure that clips of other bodies can move.
+/// The least number of limbs of a figure that clips of other bodies can move.
 const MIN_LIMBS: usize = 2;
 /// Number of vertices of the sole that are evaluated.
 const SOLE_VERTICES: usize = 32;
@@ -34,15 +34,15 @@ pub struct Character {
 }
 
 impl Character {
-    /// Returns whether it has limbs that clips of other bodies can move: parts of two, such as
-    /// thigh and shin.
+    /// Returns whether it has limbs that clips of other bodies can move: two arms or legs, of which
+    /// both bones are known.
     #[must_use]
     pub fn has_limbs(&self) -> bool {
         self.limbs().count() >= MIN_LIMBS
     }
 
-    /// Returns whether the poses of a skeleton move it as a body: its own skeleton, one with parts
-    /// of limbs in common, or one that moves half of its joints by their names. A figure of which
+    /// Returns whether the poses of a skeleton move it as a body: its own skeleton, one with two
+    /// limbs in common, or one that moves half of its joints by their names. A figure of which
     /// only the hips are moved would stand stiffly.
     #[must_use]
     pub fn is_moved_by(&self, skeleton: &Arc<Skeleton>, roles: &Roles) -> bool {
@@ -50,18 +50,21 @@ impl Character {
             return true;
         }
         let map = JointMap::between(&self.skeleton, &self.roles, skeleton, roles);
-        let limbs = self.limbs().filter(|joint| map.source_of(*joint).is_some()).count();
+        let is_mapped = |joint: &usize| map.source_of(*joint).is_some();
+        let limbs = self.limbs().filter(|limb| limb.iter().all(is_mapped)).count();
         limbs >= MIN_LIMBS || 2 * map.count() >= self.skeleton.len().max(2)
     }
 
-    fn limbs(&self) -> impl Iterator<Item = usize> + '_ {
+    /// Returns the joints at which the two bones of each limb begin.
+    fn limbs(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
         let of_side = |side| {
-            [Role::thigh(side), Role::shin(side), Role::upper_arm(side), Role::forearm(side)]
+            [[Role::thigh(side), Role::shin(side)], [Role::upper_arm(side), Role::forearm(side)]]
         };
+        let joint = |role| self.roles.get_within(role, self.skeleton.len());
         Side::BOTH
             .into_iter()
             .flat_map(of_side)
-            .filter_map(|role| self.roles.get_within(role, self.skeleton.len()))
+            .filter_map(move |[upper, lower]| Some([joint(upper)?, joint(lower)?]))
     }
 
     /// Returns the ratio of its size to that of a body of another skeleton, as

@@ -83,6 +83,11 @@ impl Cone {
         (self.radius_a - 0.5 * self.fall) * self.flatness.min(1.0)
     }
 
+    /// Returns the radius at a share of the length, in the thickest direction.
+    pub(super) fn radius(&self, share: f32) -> f32 {
+        self.radius_a - self.fall * share
+    }
+
     /// Returns the greatest radius.
     fn thickest(&self) -> f32 {
         self.radius_a.max(self.radius_a - self.fall)

@@ -52,6 +52,7 @@ mod contour;
 mod deform;
 mod field;
 pub mod shapes;
+mod sheets;
 mod weights;
 
 pub use around::{ProceduralSkin, SkinBuilder};
@@ -167,5 +168,7 @@ impl SkinnedMesh {
     }
 }
 
+#[cfg(test)]
+mod body_tests;
 #[cfg(test)]
 mod tests;

@@ -3,9 +3,10 @@
 
 use glam::Vec3;
 
-/// Number of diffusion rounds: weights reach about three vertices to each side, and vertices are as
-/// close to each other as the limb is thin.
-const ROUNDS: usize = 10;
+/// Number of diffusion rounds.
+const ROUNDS: usize = 32;
+/// The greatest share of a vertex's weights that one round replaces by those of its neighbours.
+const MAX_RATE: f32 = 0.9;
 /// Number of joints that a vertex keeps during diffusion.
 const KEPT: usize = 6;
 
@@ -53,15 +54,37 @@ type Shares = [(u16, f32); KEPT];
 pub(super) struct WeightDiffusion {
     now: Vec<Shares>,
     next: Vec<Shares>,
+    /// The share of each vertex's weights that a round replaces by those of its neighbours.
+    rates: Vec<f32>,
     rounds: usize,
 }
 
+/// Returns the rate at which weights diffuse at each vertex so that they reach as far as `spreads`
+/// says (the standard deviation of their transition, metres): on a surface with edges of length `e`,
+/// `n` rounds with the rate `r` have a variance of `n r e² / 2`.
+pub(super) fn rates(
+    positions: &[Vec3],
+    neighbours: &Neighbours,
+    spreads: impl Iterator<Item = f32>,
+) -> Vec<f32> {
+    let rate = |(vertex, spread): (usize, f32)| {
+        let around = neighbours.of_vertex(vertex);
+        let squares = around
+            .iter()
+            .map(|&other| positions[vertex].distance_squared(positions[other as usize]));
+        let edge = squares.sum::<f32>() / around.len().max(1) as f32;
+        (2.0 * spread * spread / (ROUNDS as f32 * edge.max(1e-12))).clamp(0.0, MAX_RATE)
+    };
+    spreads.enumerate().map(rate).collect()
+}
+
 impl WeightDiffusion {
-    pub(super) fn new(first: impl Iterator<Item = u16>) -> Self {
+    /// Begins with one joint for each vertex. The `rates` are those of [`rates`].
+    pub(super) fn new(first: impl Iterator<Item = u16>, rates: Vec<f32>) -> Self {
         let now: Vec<Shares> = first
             .map(|joint| std::array::from_fn(|i| (joint, f32::from(u8::from(i == 0)))))
             .collect();
-        Self { next: now.clone(), now, rounds: 0 }
+        Self { next: now.clone(), now, rates, rounds: 0 }
     }
 
     /// Does one more round; returns `true` when none is left.
@@ -85,9 +108,10 @@ impl WeightDiffusion {
                     }
                 }
             };
-            add(&own, 0.5);
+            let rate = self.rates.get(vertex).copied().unwrap_or(0.0);
+            add(&own, 1.0 - rate);
             for &other in around {
-                add(&now[other as usize], 0.5 / around.len() as f32);
+                add(&now[other as usize], rate / around.len() as f32);
             }
             *out = greatest(&mut sum);
         }

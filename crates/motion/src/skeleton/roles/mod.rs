@@ -9,7 +9,7 @@ mod tokens;
 use super::{Role, Side, Skeleton};
 use glam::Vec3;
 use std::collections::BTreeMap;
-pub(crate) use tokens::{Tokens, are_counterparts, read};
+pub(crate) use tokens::{Tokens, are_counterparts, is_control, read};
 
 /// The evidence for the joint of a role; the most trustworthy first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

@@ -43,6 +43,10 @@ const UPPER_ARM: Vocabulary =
 const FOREARM: Vocabulary = &[&["forearm", "lowerarm", "lowarm", "farm", "radius", "elbow"]];
 const HAND: Vocabulary = &[&["wrist"], &["hand"]];
 
+/// The greatest number of limbs of one name on one side of a body with the limbs of a person; a
+/// second one may be a control without a telling name.
+const MAX_EQUAL_LIMBS: usize = 2;
+
 pub(super) fn detect(skeleton: &Skeleton) -> Roles {
     let names: Vec<Tokens> = skeleton.joints().iter().map(|j| tokens::read(&j.name)).collect();
     let search = Search { skeleton, names: &names, depths: depths(skeleton) };
@@ -57,6 +61,10 @@ pub(super) fn detect(skeleton: &Skeleton) -> Roles {
         let arm = Role::arm(side).into_iter().zip([UPPER_ARM, FOREARM, HAND]);
         for limb in [leg.collect::<Vec<_>>(), arm.collect()] {
             let mut above = None;
+            let [(_, first), ..] = limb.as_slice() else { continue };
+            if search.is_ambiguous(first, side) {
+                continue;
+            }
             for (role, words) in limb {
                 let joint = search.best(words, Some(side), above);
                 roles.assign(role, joint, RoleSource::ByName);
@@ -77,7 +85,26 @@ impl Search<'_> {
     /// Returns the joint of that side, below `above`, with the best word; of several the one
     /// nearest the root.
     fn best(&self, words: Vocabulary, side: Option<Side>, above: Option<usize>) -> Option<usize> {
-        let rank = |joint: usize, tokens: &Tokens| {
+        self.ranked(words, side, above).min().map(|(_, _, joint)| joint)
+    }
+
+    /// Returns whether a side has several limbs of the kind of `words`, as spiders have legs: none of
+    /// them is the limb of a person.
+    fn is_ambiguous(&self, words: Vocabulary, side: Side) -> bool {
+        let best = self.ranked(words, Some(side), None).map(|(rank, depth, _)| (rank, depth)).min();
+        let equal = self.ranked(words, Some(side), None);
+        equal.filter(|&(rank, depth, _)| Some((rank, depth)) == best).count() > MAX_EQUAL_LIMBS
+    }
+
+    /// Returns the joints of that side, below `above`, with one of the words: its rank, their depth
+    /// in the tree and their index.
+    fn ranked(
+        &self,
+        words: Vocabulary,
+        side: Option<Side>,
+        above: Option<usize>,
+    ) -> impl Iterator<Item = (usize, usize, usize)> {
+        let rank = move |joint: usize, tokens: &Tokens| {
             if tokens.helper
                 || tokens.side != side
                 || above.is_some_and(|above| !is_below(self.skeleton, joint, above))
@@ -88,11 +115,9 @@ impl Search<'_> {
             // "torso_head" is taken as the base of the head, if no joint is called "head" itself.
             group(&tokens.core).or_else(|| group(&tokens.last).map(|g| g + words.len()))
         };
-        let ranked =
-            self.names.iter().enumerate().filter_map(|(joint, tokens)| {
-                Some((rank(joint, tokens)?, self.depths[joint], joint))
-            });
-        ranked.min().map(|(_, _, joint)| joint)
+        self.names.iter().enumerate().filter_map(move |(joint, tokens)| {
+            Some((rank(joint, tokens)?, self.depths[joint], joint))
+        })
     }
 
     /// Returns the lowest joint of the back in Xsens files, which is named after its vertebra:

@@ -9,6 +9,10 @@ use glam::Vec3;
 const LONG: f32 = 0.55;
 /// The hips lie above the feet by at least this share of the skeleton's height.
 const MIN_LEG: f32 = 0.25;
+/// The feet end within this share of the skeleton's height above the lowest one.
+const MAX_FOOT: f32 = 0.12;
+/// The greatest number of feet of a body whose limbs are taken for those of a person.
+const MAX_FEET: usize = 4;
 /// The hands reach to either side by at least this share of the skeleton's height.
 const MIN_REACH: f32 = 0.05;
 
@@ -116,12 +120,35 @@ impl<'a> Shape<'a> {
         let mut by_height = self.leaves.clone();
         by_height.sort_by(|&a, &b| self.tip(a).y.total_cmp(&self.tip(b).y));
         let &first = by_height.first()?;
-        by_height.iter().skip(1).find_map(|&second| {
-            let meeting = self.meeting(first, second);
-            let lower = self.tip(first).y.max(self.tip(second).y);
-            (self.rest[meeting].y - lower > MIN_LEG * self.height)
-                .then_some((meeting, [first, second]))
-        })
+        by_height
+            .iter()
+            .skip(1)
+            .find_map(|&second| {
+                let meeting = self.meeting(first, second);
+                let lower = self.tip(first).y.max(self.tip(second).y);
+                (self.rest[meeting].y - lower > MIN_LEG * self.height)
+                    .then_some((meeting, [first, second]))
+            })
+            .filter(|_| self.count_feet(&by_height) <= MAX_FEET)
+    }
+
+    /// Returns the number of chains that reach the ground and meet at the height of hips: those of
+    /// the leaves, which are sorted by height.
+    fn count_feet(&self, leaves: &[usize]) -> usize {
+        let lowest = leaves.first().map_or(0.0, |&leaf| self.tip(leaf).y);
+        let mut feet: Vec<usize> = Vec::new();
+        for &leaf in leaves {
+            if self.tip(leaf).y - lowest > MAX_FOOT * self.height || feet.len() > MAX_FEET {
+                break;
+            }
+            let is_apart = |&foot: &usize| {
+                self.rest[self.meeting(leaf, foot)].y - lowest > MIN_LEG * self.height
+            };
+            if feet.iter().all(is_apart) {
+                feet.push(leaf);
+            }
+        }
+        feet.len()
     }
 
     /// Returns the last two long bones of a limb on the path from `top` to the leaf `tip`: (upper,

@@ -178,3 +178,55 @@ fn body_height_follows_from_the_legs() {
         ways.iter().flat_map(|a| ways.iter().map(move |b| between(a, b))).fold(0.0, f32::max);
     assert!((Roles::default().body_height(&skeleton) - longest).abs() < 1e-4);
 }
+
+/// Returns a spider: eight legs of four joints, named by `name` from the side, the leg and the part.
+fn spider(name: impl Fn(&str, usize, usize) -> String) -> Skeleton {
+    let mut joints = vec![Joint {
+        name: "body".into(),
+        parent: None,
+        offset: Vec3::Y * 0.35,
+        end_site: None,
+        channels: vec![],
+    }];
+    for (side, sign) in [("L", 1.0), ("R", -1.0)] {
+        for leg in 0..4 {
+            let angle = 0.75 - 0.5 * leg as f32;
+            let out = Vec3::new(sign * angle.cos(), 0.0, angle.sin());
+            let mut parent = 0;
+            for (part, (reach, rise)) in
+                [(0.12, 0.0), (0.12, 0.12), (0.3, 0.25), (0.3, -0.35)].into_iter().enumerate()
+            {
+                joints.push(Joint {
+                    name: name(side, leg, part),
+                    parent: Some(parent),
+                    offset: out * reach + Vec3::Y * rise,
+                    end_site: (part == 3).then(|| out * 0.18 + Vec3::Y * -0.35),
+                    channels: vec![],
+                });
+                parent = joints.len() - 1;
+            }
+        }
+    }
+    Skeleton::new(joints).unwrap()
+}
+
+#[test]
+fn spider_has_no_limbs_of_a_person() {
+    let named = [
+        spider(|side, leg, part| format!("leg_{side}{leg}_{part}")),
+        spider(|side, leg, part| {
+            format!("{}.{leg}.{side}", ["hip", "thigh", "shin", "foot"][part.min(3)])
+        }),
+        spider(|side, leg, part| format!("j{side}{leg}{part}")),
+    ];
+    for skeleton in named {
+        let roles = Roles::detect(&skeleton);
+        let limbs = Side::BOTH.into_iter().flat_map(|side| {
+            Role::leg(side)
+                .into_iter()
+                .chain(Role::arm(side))
+                .filter(|&role| roles.get(role).is_some())
+        });
+        assert_eq!(limbs.collect::<Vec<_>>(), [], "{}", skeleton.joints()[2].name);
+    }
+}

@@ -42,8 +42,22 @@ const NOISE: &[&str] = &[
 ];
 
 /// Words of joints that move no part of the body.
-const HELPERS: &[&str] =
-    &["effector", "end", "ik", "nub", "pole", "roll", "site", "target", "tip", "top", "twist"];
+const HELPERS: &[&str] = &[
+    "effector", "end", "helper", "ik", "nub", "pole", "roll", "site", "target", "tip", "top",
+    "twist",
+];
+
+/// Words of joints that control others or share their twist, and lead to no end of the body.
+const CONTROLS: &[&str] = &["effector", "helper", "ik", "pole", "roll", "target", "twist"];
+
+/// Returns whether a joint's name is that of a control: an IK target, or a helper that shares the
+/// twist of a limb.
+pub(crate) fn is_control(name: &str) -> bool {
+    let name = name.rsplit(':').next().unwrap_or(name);
+    let parts = name.split(|c: char| !c.is_alphanumeric()).filter(|part| !part.is_empty());
+    let mut all = parts.flat_map(split_by_case).flat_map(|run| words(&run));
+    all.any(|word| CONTROLS.contains(&word.as_str()))
+}
 
 /// The parts of a joint's name.
 #[derive(Debug, PartialEq, Eq)]

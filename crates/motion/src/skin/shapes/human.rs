@@ -4,9 +4,22 @@
 //! (heel, chin, calf) are those of an adult of 1.75 m, rounded from the tables in Winter,
 //! "Biomechanics and Motor Control of Human Movement", and scaled with the body height.
 
-use super::{Anchor, Shape};
-use crate::skeleton::{Role, Roles, Side, Skeleton};
+use super::{Anchor, PlacedShape, Shape};
+use crate::skeleton::{Role, Roles, Side, Skeleton, is_control};
+use crate::skin::field::Cone;
 use glam::Vec3;
+
+/// How far a raised arm draws the flanks and the breast, in their radii: the motion of the shoulder
+/// reaches over the top of it, and ends in the armpit.
+const CHEST_SPREAD: f32 = 0.25;
+/// [`Shape::held`] of the upper arm, as far as the biceps: without it the underside of a raised arm
+/// swells beside the chest.
+const SHOULDER_HELD: f32 = 0.25;
+
+/// The least distance of a thigh's axis from the middle, on an adult: less would melt the thighs into
+/// one. Above the greatest one, which is outside of the pelvis, half of the rest is kept.
+const MIN_HALF_HIPS: f32 = 0.090;
+const MAX_HALF_HIPS: f32 = 0.115;
 
 /// The body axes at rest, where all joint frames agree: left and up span the trunk, forward points
 /// out of the chest.
@@ -28,30 +41,52 @@ struct Human<'a> {
     shapes: Vec<Shape>,
 }
 
-/// Returns the shapes, or `None` where the roles are not those of a human with two legs, two arms
-/// and a head.
+/// The distance between hips and shoulders as a share of an adult's height (Winter, figure 4.1).
+const TRUNK_SHARE: f32 = 0.288;
+/// How much longer than an adult's a trunk is, on legs of one length, before the girths follow it.
+const LONG_TRUNK: f32 = 1.15;
+/// The greatest size of a head, relative to one that is as large as the rest of the body.
+const MAX_HEAD: f32 = 2.0;
+/// How far the end of a bone that is no part of a person must stand out of the body to be shown, on
+/// an adult, metres: twist and helper joints lie in it.
+const MIN_PROTRUSION: f32 = 0.045;
+
+/// The least cosine of the angle between the trunk and either leg of a person, downwards: less is an
+/// animal on four legs, or a body that lies folded.
+const MIN_UPRIGHT: f32 = 0.55;
+
+/// Returns whether a skeleton that rests at `rest` is that of a person: two legs that point down from
+/// the trunk, two arms and a head.
+pub(in crate::skin) fn is_person(rest: &[Vec3], roles: &Roles) -> bool {
+    let at = |role| roles.get_within(role, rest.len()).map(|joint| rest[joint]);
+    let direction = |from, to| Some((at(to)? - at(from)?).normalize_or_zero());
+    let has_arms = Side::BOTH
+        .into_iter()
+        .all(|side| Role::arm(side).into_iter().all(|role| at(role).is_some()));
+    let is_upright = || {
+        let (left, right) = (at(Role::LeftThigh)?, at(Role::RightThigh)?);
+        let up = (at(Role::Head)? - (left + right) * 0.5).try_normalize()?;
+        let legs = Side::BOTH.map(|side| direction(Role::thigh(side), Role::foot(side)));
+        let [left, right] = legs.map(|leg| leg.map_or(0.0, |leg| -leg.dot(up)));
+        Some(left.min(right) >= MIN_UPRIGHT)
+    };
+    has_arms && is_upright().unwrap_or(false)
+}
+
+/// Returns the shapes, or `None` where the roles are not those of a person.
 pub(super) fn shapes(skeleton: &Skeleton, rest: &[Vec3], roles: &Roles) -> Option<Vec<Shape>> {
+    if !is_person(rest, roles) {
+        return None;
+    }
     let joint = |role| roles.get_within(role, rest.len());
     let at = |role| Some(rest[joint(role)?]);
-    for side in Side::BOTH {
-        for role in [
-            Role::thigh(side),
-            Role::shin(side),
-            Role::foot(side),
-            Role::upper_arm(side),
-            Role::forearm(side),
-            Role::hand(side),
-        ] {
-            joint(role)?;
-        }
-    }
     let (hip_left, hip_right) = (at(Role::LeftThigh)?, at(Role::RightThigh)?);
     let (shoulder_left, shoulder_right) = (at(Role::LeftUpperArm)?, at(Role::RightUpperArm)?);
     joint(Role::Hips)?;
     let up = (at(Role::Head)? - (hip_left + hip_right) * 0.5).try_normalize()?;
     let across = (hip_left - hip_right) + (shoulder_left - shoulder_right);
     let left = (across - up * across.dot(up)).try_normalize()?;
-    let scale = roles.body_height(skeleton) / 1.75;
+    let scale = scale(skeleton, rest, roles)?;
     if !(scale.is_finite() && scale > 0.0) {
         return None;
     }
@@ -73,6 +108,18 @@ pub(super) fn shapes(skeleton: &Skeleton, rest: &[Vec3], roles: &Roles) -> Optio
     }
     human.add_other_bones();
     Some(human.shapes)
+}
+
+/// Returns the size of the body relative to an adult of 1.75 m: that of its legs, and more where its
+/// trunk is much longer than an adult's on such legs (a child, a figure of a comic).
+fn scale(skeleton: &Skeleton, rest: &[Vec3], roles: &Roles) -> Option<f32> {
+    let at = |role| roles.get_within(role, rest.len()).map(|joint| rest[joint]);
+    let middle =
+        |role: fn(Side) -> Role| Some((at(role(Side::Left))? + at(role(Side::Right))?) * 0.5);
+    let trunk = middle(Role::thigh)?.distance(middle(Role::upper_arm)?);
+    let height = roles.body_height(skeleton);
+    let longer = (trunk / TRUNK_SHARE / height / LONG_TRUNK).max(1.0);
+    Some(longer.powf(0.75) * height / 1.75)
 }
 
 impl Human<'_> {
@@ -153,7 +200,11 @@ impl Human<'_> {
                 .find(|&j| (this.rest[j] - hip_middle).dot(up) <= level + 1e-4 * height);
             this.anchor(below.unwrap_or(hips), point)
         };
-        let low = Anchor { joint: hips, point: hip_middle + up * (0.082 * s) - self.rest[hips] };
+        // The lowest point of the trunk is between the thighs, whatever its width.
+        let low = Anchor {
+            joint: hips,
+            point: hip_middle + up * ((pelvis - 0.058) * s) - self.rest[hips],
+        };
         let (belly, lower_ribs, upper_ribs) =
             (landmark(self, 0.40, 0.0), landmark(self, 0.60, 0.005), landmark(self, 0.80, 0.0));
         self.add(low, pelvis, belly, waist);
@@ -198,6 +249,7 @@ impl Human<'_> {
         };
         let (breast_left, breast_right) = (breast(self, arm_left), breast(self, arm_right));
         self.add(breast_left, 0.077, breast_right, 0.077);
+        self.spread_last(1, CHEST_SPREAD);
         for (side, arm) in [(1.0, arm_left), (-1.0, arm_right)] {
             let girdle =
                 self.anchor(chest, shoulder_middle + left * (side * 0.05 * s) - up * (0.022 * s));
@@ -212,6 +264,7 @@ impl Human<'_> {
             let armpit =
                 self.anchor(chest, self.rest[arm].lerp(shoulder_middle, 0.16) - up * (0.028 * s));
             self.add(flank, 0.060, armpit, 0.046);
+            self.spread_last(1, CHEST_SPREAD);
             // The muscle of the chest, and that of the back, which narrows towards the waist.
             let at = |this: &Self, share: f32, down: f32, ahead: f32| {
                 this.anchor(
@@ -224,13 +277,14 @@ impl Human<'_> {
             self.add_soft(breast, 0.040, inner, 0.052);
             let (wing, low) = (at(self, 0.26, 0.085, -0.030), at(self, 0.62, 0.235, -0.012));
             self.add_soft(wing, 0.044, low, 0.042);
+            self.spread_last(2, CHEST_SPREAD);
         }
         self.cover(chest);
         Some(())
     }
 
     fn head(&mut self) -> Option<()> {
-        let Axes { left, up, forward } = self.axes;
+        let Axes { up, forward, .. } = self.axes;
         let head = self.joint(Role::Head)?;
         let chest = self.chest()?;
         let neck = self.ancestors(head).skip(1).take_while(|&j| j != chest).last().unwrap_or(chest);
@@ -240,11 +294,22 @@ impl Human<'_> {
         let throat = if neck == head { chest } else { neck };
         let base = self
             .anchor(throat, shoulders.lerp(self.rest[head], 0.10) - forward * (0.004 * self.scale));
-        // The top of the head: from the file, or estimated for a joint at the base of the skull.
-        let from_file =
-            self.skeleton.joints()[head].end_site.map_or(0.0, |end| end.dot(up) / self.scale);
+        // The top of the head: from the file, or estimated for a joint at the base of the skull. A
+        // large head is large all over.
+        let ends = self.skeleton.children(head).filter(|&child| {
+            self.skeleton.children(child).next().is_none()
+                && (self.rest[child] - self.rest[head]).reject_from_normalized(up).length()
+                    < 0.05 * self.scale
+        });
+        let ends = ends.map(|child| self.rest[child] - self.rest[head]);
+        let above = ends.chain(self.skeleton.joints()[head].end_site).map(|end| end.dot(up));
+        let from_file = above.fold(0.0, f32::max) / self.scale;
+        let share = ((from_file - 0.22) / 0.10).clamp(0.0, 1.0);
+        let size = (1.0 + share * (from_file / 0.20 - 1.0)).clamp(1.0, MAX_HEAD);
+        let from_file = from_file / size;
         let crown = if (0.12..0.26).contains(&from_file) { from_file } else { 0.19 };
-        self.add(base, 0.055, self.on(head, up * (crown - 0.13) - forward * 0.004), 0.049);
+        let top = self.on(head, up * ((crown - 0.13) * size) - forward * 0.004);
+        self.add(base, 0.055, top, 0.049);
         for side in Side::BOTH {
             // From the side of the neck down to the shoulder.
             let nape = self.anchor(
@@ -257,6 +322,17 @@ impl Human<'_> {
             };
             self.add(nape, 0.044, shoulder, 0.047);
         }
+        let scale = self.scale;
+        self.scale *= size;
+        self.skull(head, crown);
+        self.scale = scale;
+        self.cover(head);
+        Some(())
+    }
+
+    /// Adds everything above the neck; `crown` is the height of the top over the joint.
+    fn skull(&mut self, head: usize, crown: f32) {
+        let Axes { left, up, forward } = self.axes;
         let (cranium, chin) = (
             self.on(head, up * (crown - 0.094)),
             self.on(head, up * (crown - 0.168) + forward * 0.038),
@@ -287,8 +363,6 @@ impl Human<'_> {
         }
         let nape = self.on(head, up * (crown - 0.105) - forward * 0.026);
         self.add_soft(cranium, 0.080, nape, 0.074);
-        self.cover(head);
-        Some(())
     }
 
     fn arm(&mut self, side: Side) -> Option<()> {
@@ -303,6 +377,9 @@ impl Human<'_> {
         let zero = |joint| Anchor { joint, point: Vec3::ZERO };
         let biceps = middle(self, shoulder, elbow, 0.42);
         self.add(zero(shoulder), 0.058, biceps, 0.048);
+        if let Some(shape) = self.shapes.last_mut() {
+            shape.held = SHOULDER_HELD;
+        }
         self.add(biceps, 0.048, zero(elbow), 0.038);
         let bulge = middle(self, elbow, wrist, 0.24);
         self.add(zero(elbow), 0.038, bulge, 0.042);
@@ -354,10 +431,28 @@ impl Human<'_> {
         Some(())
     }
 
+    /// Sets [`Shape::spread`] of the last shapes.
+    fn spread_last(&mut self, shapes: usize, spread: f32) {
+        for shape in self.shapes.iter_mut().rev().take(shapes) {
+            shape.spread = spread;
+        }
+    }
+
     fn flatten_last(&mut self, flat: Vec3, flatness: f32) {
         if let Some(shape) = self.shapes.last_mut() {
             *shape = shape.flattened(flat, flatness);
         }
+    }
+
+    /// Returns the vector from the hip joint to the axis of the thigh, in units of the adult: some
+    /// rigs have their hip joints near the middle, and some outside of the body.
+    fn thigh_offset(&self, side: Side) -> Option<Vec3> {
+        let at = |side| Some(self.rest[self.joint(Role::thigh(side))?]);
+        let across = at(side)? - at(side.other())?;
+        let half = 0.5 * across.length() / self.scale;
+        let wanted =
+            half.clamp(MIN_HALF_HIPS, MAX_HALF_HIPS + 0.5 * (half - MAX_HALF_HIPS).max(0.0));
+        Some(across.normalize_or_zero() * (wanted - half))
     }
 
     fn leg(&mut self, side: Side) -> Option<()> {
@@ -371,9 +466,13 @@ impl Human<'_> {
         let down = (self.rest[ankle] - self.rest[hip]).normalize_or(-self.axes.up);
         // Forward from the knee, in the frames of the leg. In some files the legs point up at rest.
         let ahead = down.cross(self.axes.left).normalize_or(self.axes.forward);
-        let thigh =
-            self.anchor(hip, self.rest[hip].lerp(self.rest[knee], 0.36) + ahead * (0.010 * s));
-        self.add(zero(hip), 0.086, thigh, 0.079);
+        let aside = self.thigh_offset(side)?;
+        let root = self.on(hip, aside);
+        let thigh = self.anchor(
+            hip,
+            self.rest[hip].lerp(self.rest[knee], 0.36) + (ahead * 0.010 + aside * 0.7) * s,
+        );
+        self.add(root, 0.086, thigh, 0.079);
         self.add(thigh, 0.079, self.on(knee, ahead * 0.004), 0.054);
         let calf =
             self.anchor(knee, self.rest[knee].lerp(self.rest[ankle], 0.30) - ahead * (0.014 * s));
@@ -450,9 +549,11 @@ impl Human<'_> {
     }
 
     /// Adds limbs for bones that are not part of a human body: tails, bags, swords. Bones inside
-    /// the head are left out.
+    /// the head or the rest of the body, controls, and bones beside the hips are left out.
     fn add_other_bones(&mut self) {
-        let head = self.joint(Role::Head);
+        let (head, hips) = (self.joint(Role::Head), self.joint(Role::Hips));
+        let body: Vec<Cone> =
+            self.shapes.iter().map(|shape| Cone::new(&self.at_rest(shape))).collect();
         for joint in 1..self.rest.len() {
             let Some(parent) = self.skeleton.parent(joint) else {
                 continue;
@@ -460,7 +561,22 @@ impl Human<'_> {
             let length = self.skeleton.joints()[joint].offset.length() / self.scale;
             let in_head =
                 head.is_some_and(|head| self.ancestors(joint).any(|a| a == head)) && length < 0.25;
-            if self.covered[joint] || in_head || length < 0.03 || self.between_roles(joint) {
+            let is_below_hips = self.ancestors(joint).any(|above| Some(above) == hips);
+            if self.covered[joint]
+                || in_head
+                || length < 0.03
+                || !is_below_hips
+                || is_control(&self.skeleton.joints()[joint].name)
+                || self.between_roles(joint)
+            {
+                continue;
+            }
+            let ends = self.skeleton.joints()[joint].end_site.map(|end| self.rest[joint] + end);
+            let stands_out = |point: Vec3| {
+                let distances = body.iter().map(|cone| cone.measure(point).distance);
+                distances.fold(f32::INFINITY, f32::min) > MIN_PROTRUSION * self.scale
+            };
+            if !ends.into_iter().chain([self.rest[joint]]).any(stands_out) {
                 continue;
             }
             let radius = (length * 0.16).min(0.028);
@@ -469,6 +585,18 @@ impl Human<'_> {
             if let Some(end) = self.skeleton.joints()[joint].end_site {
                 self.add(zero(joint), radius * 0.75, Anchor { joint, point: end }, radius * 0.5);
             }
+        }
+    }
+
+    /// Returns a shape as it lies in the rest pose.
+    fn at_rest(&self, shape: &Shape) -> PlacedShape {
+        PlacedShape {
+            a: self.rest[shape.a.joint] + shape.a.point,
+            b: self.rest[shape.b.joint] + shape.b.point,
+            radius_a: shape.radius_a,
+            radius_b: shape.radius_b,
+            flat: shape.flat,
+            flatness: shape.flatness,
         }
     }
 

@@ -7,6 +7,8 @@
 mod bones;
 mod human;
 
+pub(super) use human::is_person;
+
 use crate::skeleton::{Roles, Skeleton, WorldPose};
 use glam::Vec3;
 
@@ -41,11 +43,31 @@ pub struct Shape {
     /// Whether the shape is only for surfaces that blend with their neighbours; alone it would look
     /// like a lump.
     pub soft: bool,
+    /// How far the motion of a neighbouring joint reaches into the surface of the shape, in its
+    /// radii: the standard deviation of the transition between the weights of two joints.
+    pub spread: f32,
+    /// The share of the length, from the start, within which the surface follows the joint above
+    /// that of `a`: the top of a shoulder does not turn with the arm.
+    pub held: f32,
 }
+
+/// The usual [`Shape::spread`].
+const SPREAD: f32 = 0.7;
 
 impl Shape {
     fn round(a: Anchor, radius_a: f32, b: Anchor, radius_b: f32) -> Self {
-        Self { a, b, radius_a, radius_b, flat: Vec3::ZERO, flatness: 1.0, shell: 0, soft: false }
+        Self {
+            a,
+            b,
+            radius_a,
+            radius_b,
+            flat: Vec3::ZERO,
+            flatness: 1.0,
+            shell: 0,
+            soft: false,
+            spread: SPREAD,
+            held: 0.0,
+        }
     }
 
     fn flattened(self, flat: Vec3, flatness: f32) -> Self {
@@ -123,7 +145,7 @@ pub struct PlacedShape {
 pub fn limb_shapes(skeleton: &Skeleton, rest: &[Vec3], roles: Option<&Roles>) -> Vec<Shape> {
     let mut shapes = roles
         .and_then(|roles| human::shapes(skeleton, rest, roles))
-        .unwrap_or_else(|| bones::shapes(skeleton, rest));
+        .unwrap_or_else(|| bones::shapes(skeleton, rest, roles));
     shapes.retain(|s| {
         s.radius_a.is_finite()
             && s.radius_b.is_finite()
