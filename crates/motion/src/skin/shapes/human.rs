@@ -203,7 +203,7 @@ impl Human<'_> {
         // The lowest point of the trunk is between the thighs, whatever its width.
         let low = Anchor {
             joint: hips,
-            point: hip_middle + up * ((pelvis - 0.058) * s) - self.rest[hips],
+            point: hip_middle + up * ((pelvis - 0.050) * s) - self.rest[hips],
         };
         let (belly, lower_ribs, upper_ribs) =
             (landmark(self, 0.40, 0.0), landmark(self, 0.60, 0.005), landmark(self, 0.80, 0.0));
@@ -218,12 +218,13 @@ impl Human<'_> {
         let seat = |this: &Self, hip: usize| {
             this.anchor(
                 hips,
-                this.rest[hip].lerp(hip_middle, 0.26) + up * (0.024 * s) - forward * (0.026 * s),
+                this.rest[hip].lerp(hip_middle, 0.26) + up * (0.034 * s) - forward * (0.024 * s),
             )
         };
         let (seat_left, seat_right) = (seat(self, hip_left), seat(self, hip_right));
-        self.add(seat_left, 0.083, seat_right, 0.083);
-        for hip in [hip_left, hip_right] {
+        self.add(seat_left, 0.079, seat_right, 0.079);
+        for (side, hip) in [(Side::Left, hip_left), (Side::Right, hip_right)] {
+            let aside = self.thigh_offset(side)?;
             // Half of the seat, and its transition to the thigh.
             let knee = self
                 .skeleton
@@ -233,12 +234,14 @@ impl Human<'_> {
                 .normalize_or(-up);
             let buttock = self.anchor(
                 hips,
-                self.rest[hip].lerp(hip_middle, 0.30) - up * (0.004 * s) - forward * (0.048 * s),
+                self.rest[hip].lerp(hip_middle, 0.30) + aside * (0.5 * s)
+                    - up * (0.004 * s)
+                    - forward * (0.048 * s),
             );
             // In the frame of a leg that may rest upside down.
             let behind = left.cross(knee).normalize_or(-forward);
-            let fold = self.on(hip, knee * 0.085 + behind * 0.022);
-            self.add_soft(buttock, 0.070, fold, 0.058);
+            let fold = self.on(hip, aside + knee * 0.110 + behind * 0.014);
+            self.add_soft(buttock, 0.070, fold, 0.057);
         }
         let breast = |this: &Self, arm: usize| {
             this.anchor(
