@@ -4,9 +4,9 @@
 use glam::Vec3;
 
 /// Number of diffusion rounds.
-const ROUNDS: usize = 32;
+const ROUNDS: usize = 20;
 /// The greatest share of a vertex's weights that one round replaces by those of its neighbours.
-const MAX_RATE: f32 = 0.9;
+const MAX_RATE: f32 = 0.95;
 /// Number of joints that a vertex keeps during diffusion.
 const KEPT: usize = 6;
 
