@@ -125,6 +125,95 @@ fn figure_that_no_other_clip_moves_is_no_character_for_others() {
     assert_eq!(session.params().text(Key::Character), person_id);
 }
 
+/// Returns a file with a figure of eight legs that are named like those of a person, and `frames`
+/// frames of a motion.
+fn spider_with_legs(frames: usize) -> Arc<[u8]> {
+    use segue_motion::clip::Clip;
+    use segue_motion::skeleton::{Joint, Pose, Skeleton};
+    let joint = |name: String, parent, offset, end_site| Joint {
+        name,
+        parent,
+        offset,
+        end_site,
+        channels: vec![],
+    };
+    let mut joints = vec![joint("body".into(), None, glam::Vec3::ZERO, None)];
+    for leg in 0..8 {
+        let side = if leg < 4 { "L" } else { "R" };
+        let angle = 0.75 - 0.5 * (leg % 4) as f32;
+        let sign = if leg < 4 { 1.0 } else { -1.0 };
+        let out = glam::Vec3::new(sign * angle.cos(), 0.0, angle.sin());
+        let mut parent = 0;
+        for part in 0..3 {
+            let rise = [0.1, 0.3, -0.3][part];
+            let end = (part == 2).then(|| out * 0.2 + glam::Vec3::Y * -0.4);
+            let offset = out * 0.2 + glam::Vec3::Y * rise;
+            joints.push(joint(format!("Leg{}_{part}.{side}", leg % 4), Some(parent), offset, end));
+            parent = joints.len() - 1;
+        }
+    }
+    let skeleton = Arc::new(Skeleton::new(joints).unwrap());
+    let poses = (0..frames).map(|frame| Pose {
+        root_translation: glam::Vec3::new(0.0, 0.3, 0.01 * frame as f32),
+        rotations: (0..skeleton.len())
+            .map(|joint| glam::Quat::from_rotation_x(0.1 * ((joint + frame) % 3) as f32))
+            .collect(),
+        ..Pose::default()
+    });
+    let poses: Vec<Pose> = poses.collect();
+    figure(&Clip::from_poses("spider", skeleton, 30.0, poses).unwrap())
+}
+
+#[test]
+fn figure_with_eight_legs_is_moved_by_its_own_clips_alone() {
+    let mut session = Session::new();
+    let loaded = session.load("spider.glb", spider_with_legs(20)).unwrap();
+    let character = session.character().unwrap();
+    assert!(!character.has_limbs());
+    assert_eq!(session.params().text(Key::A), loaded.ids[0]);
+    for lab in ["view&a=walk", "blend&a=walk&b=run", "loop&a=walk"] {
+        let link = format!("lab={lab}&character={}", loaded.ids[0]);
+        session.apply(Command::OpenLink(link)).unwrap();
+        settle(&mut session);
+        let motion = Arc::clone(&session.main_outcome().unwrap().motion);
+        assert!(!character.is_moved_by(motion.clip().skeleton(), motion.roles()), "{lab}");
+        assert!(session.character_note().is_some(), "{lab}");
+    }
+}
+
+#[test]
+fn figure_that_nothing_moves_is_not_cast_and_can_be_chosen() {
+    // Neither has it limbs, nor a clip of its own.
+    let mut session = Session::new();
+    let loaded = session.load("spider.glb", spider_with_legs(0)).unwrap();
+    assert!(session.character().is_none() && session.character_note().is_none());
+    assert!(
+        loaded
+            .warnings
+            .iter()
+            .any(|warning| warning.to_string().contains("only its own clips can animate it")),
+        "{:?}",
+        loaded.warnings
+    );
+    let choice = (Key::Character, Value::Text(loaded.ids[0].clone()));
+    session.apply(Command::Set(vec![choice])).unwrap();
+    settle(&mut session);
+    assert!(session.character().is_some() && session.character_note().is_some());
+}
+
+#[test]
+fn person_of_any_rig_is_cast_and_moved_by_other_clips() {
+    for (name, skeleton, _) in segue_motion::skeleton::fixtures::all() {
+        let clip = segue_motion::clip::Clip::new(name, Arc::clone(&skeleton), 30.0, vec![], vec![]);
+        let mut session = Session::new();
+        session.apply(Command::OpenLink("lab=view&a=walk".into())).unwrap();
+        let loaded = session.load("person.glb", figure(&clip.unwrap())).unwrap();
+        assert_eq!(session.params().text(Key::Character), loaded.ids[0], "{name}");
+        settle(&mut session);
+        assert_eq!(session.character_note(), None, "{name}");
+    }
+}
+
 #[test]
 fn character_with_a_motion_brings_both() {
     let mut session = Session::new();
