@@ -1,5 +1,6 @@
 //! Lessons: the list of them, and the page that is open.
 
+mod maths;
 mod prose;
 
 use super::kit::{self, Button, Icon, MenuItem};

@@ -226,3 +226,51 @@ fn lesson_that_is_loading_can_be_stopped() {
     press(text::STOP_LOADING.english(), &mut harness);
     assert_eq!(harness.state().out.actions.as_slice(), [Action::StopLesson]);
 }
+
+/// Presses a text, and drags to another.
+fn select(from: egui::Pos2, to: egui::Pos2, harness: &mut Harness<'_, Page>) {
+    step(vec![egui::Event::PointerMoved(from)], harness);
+    step(vec![button(from, true)], harness);
+    step(vec![egui::Event::PointerMoved(from.lerp(to, 0.5))], harness);
+    step(vec![egui::Event::PointerMoved(to)], harness);
+    step(vec![button(to, false)], harness);
+}
+
+/// Copies the selection, and returns it.
+fn copied(harness: &mut Harness<'_, Page>) -> String {
+    step(vec![egui::Event::Copy], harness);
+    let commands = &harness.output().platform_output.commands;
+    let texts = commands.iter().filter_map(|command| match command {
+        egui::OutputCommand::CopyText(text) => Some(text.as_str()),
+        _ => None,
+    });
+    texts.collect()
+}
+
+#[test]
+fn text_of_a_lesson_is_selected_and_copied_across_paragraphs() {
+    let mut harness = harness(DESK, DARK, lesson("lesson=half_life&lab=transition&play=off"));
+    let rect =
+        |words: &str, harness: &Harness<'_, Page>| harness.get_by_label_contains(words).rect();
+    let from = rect("A dissolve plays both", &harness).left_top() + vec2(1.0, 8.0);
+    let to = rect("The name needs care", &harness).right_bottom() - vec2(2.0, 8.0);
+    select(from, to, &mut harness);
+    harness.run();
+    picture("lessons-selected", &mut harness);
+    let text = copied(&mut harness);
+    assert!(text.starts_with("A dissolve plays both clips at once."), "{text}");
+    // Formulas are copied with their exponents.
+    assert!(text.contains("x(t) = e^(−γ t) (x₀ + (v₀ + γ x₀) t)"), "{text}");
+    assert!(text.contains("The name needs care."), "{text}");
+}
+
+#[test]
+fn link_in_a_lesson_is_a_link_to_assistive_technology() {
+    let harness = harness(DESK, DARK, lesson("lesson=contents&lab=blend&play=off"));
+    assert!(harness.query_all_by_role(Role::Heading).count() > 0);
+    let mut page = page("lesson=https://school.example/mine.md");
+    let source = Source::Web("https://school.example/mine.md".to_owned());
+    page.session.finish_lesson(&source, Ok(b"# Mine\n\nSee [this](https://good.example/x).\n"));
+    let harness = self::harness(DESK, DARK, page);
+    harness.get_by_role_and_label(Role::Link, "this");
+}
