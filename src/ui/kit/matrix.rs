@@ -1,14 +1,18 @@
 //! A large square matrix as a picture that can be zoomed: tiles that are made when they are in
 //! sight, marks on them, and the names of its parts along both sides.
+//!
+//! As on a heat map of two clips, what is left runs to the right and what is entered upwards: the
+//! rows of the matrix lie from left to right, its columns from the bottom to the top.
 
 use super::assistive::describe;
 use super::paint::{Run, focus_ring, line_of, put};
 use crate::ui::language::{Word, say};
 use crate::ui::theme::{Type, palette_of, radius, theme_of};
 use eframe::egui::{
-    Align2, Color32, CursorIcon, EventFilter, Id, Key, Pos2, Rect, Role, Sense, Stroke, StrokeKind,
-    TextureId, Ui, Vec2, WidgetInfo, pos2, vec2,
+    Align2, Color32, CursorIcon, EventFilter, Id, Key, Mesh, Pos2, Rect, Role, Sense, Shape,
+    Stroke, StrokeKind, TextureId, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
+use eframe::epaint::Vertex;
 use segue_text::Message;
 
 /// Texels along a side of a tile.
@@ -23,9 +27,9 @@ const MAX_MARKS: usize = 2_500;
 pub(crate) struct Tile {
     /// Cells along a side of a texel.
     pub(crate) factor: usize,
-    /// The row of tiles, from the top.
+    /// The tile of rows, from the left of the picture.
     pub(crate) row: usize,
-    /// The column of tiles, from the left.
+    /// The tile of columns, from the bottom of the picture.
     pub(crate) column: usize,
 }
 
@@ -67,7 +71,7 @@ pub(crate) struct MatrixResponse {
     pub(crate) clicked: Option<usize>,
 }
 
-/// The visible part: its upper left corner in cells, and cells per point.
+/// The visible part: its upper left corner in cells from that of the picture, and cells per point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Window {
     corner: Vec2,
@@ -112,7 +116,7 @@ pub(crate) fn matrix_ui(
     let margin = (16.0 * theme.scale()).round();
     let side = (side.min(ui.available_width()) - margin).max(60.0).floor();
     let (_, whole) = ui.allocate_space(Vec2::splat(side + margin));
-    let field = Rect::from_min_size(whole.min + Vec2::splat(margin), Vec2::splat(side));
+    let field = Rect::from_min_size(whole.min + vec2(margin, 0.0), Vec2::splat(side));
     let id = ui.make_persistent_id(matrix.label.english());
     let size = matrix.size.max(1) as f32;
     let kept: Option<(usize, f32, Window)> = ui.data(|data| data.get_temp(id));
@@ -127,8 +131,9 @@ pub(crate) fn matrix_ui(
     describe(&response, &WidgetInfo::labeled(Role::Image, true, say(matrix.label, ui)));
     window = moved(window, (size, side), field, &response, ui);
     ui.data_mut(|data| data.insert_temp::<(usize, f32, Window)>(id, (matrix.size, side, window)));
-    let place =
-        |row: f32, column: f32| field.min + (vec2(column, row) - window.corner) / window.cells;
+    let place = |row: f32, column: f32| {
+        field.min + (vec2(row, size - column) - window.corner) / window.cells
+    };
 
     let painter = ui.painter_at(field.expand(1.0));
     painter.rect_filled(field, 0.0, palette.ground);
@@ -141,12 +146,13 @@ pub(crate) fn matrix_ui(
     for factor in factors {
         let cells = (TILE * factor) as f32;
         let range = |corner: f32| {
-            let first = (corner / cells).floor().max(0.0) as usize;
+            let corner = corner.max(0.0);
+            let first = (corner / cells).floor() as usize;
             let last = ((corner + window.cells * side).min(size) / cells).ceil() as usize;
             first..last.max(first + 1)
         };
-        for row in range(window.corner.y) {
-            for column in range(window.corner.x) {
+        for row in range(window.corner.x) {
+            for column in range(size - window.corner.y - window.cells * side) {
                 let Some(texture) = tile(Tile { factor, row, column }) else {
                     continue;
                 };
@@ -156,15 +162,19 @@ pub(crate) fn matrix_ui(
                     ((to - from) / factor as f32).ceil().max(1.0) * factor as f32
                 };
                 // A texel at the edge may stand for less than its cells.
-                let corner =
-                    place(from[0] + texels(from[0], to[0]), from[1] + texels(from[1], to[1]));
-                let rect = Rect::from_min_max(place(from[0], from[1]), corner);
-                painter.image(
-                    texture,
-                    rect,
-                    Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0)),
-                    Color32::WHITE,
-                );
+                let to = [0, 1].map(|axis: usize| from[axis] + texels(from[axis], to[axis]));
+                // A texture has its rows from top to bottom.
+                let mut mesh = Mesh::with_texture(texture);
+                for [row, column] in [[0, 0], [1, 0], [0, 1], [1, 1]] {
+                    mesh.vertices.push(Vertex {
+                        pos: place([from[0], to[0]][row], [from[1], to[1]][column]),
+                        uv: pos2(column as f32, row as f32),
+                        color: Color32::WHITE,
+                    });
+                }
+                mesh.add_triangle(0, 1, 2);
+                mesh.add_triangle(2, 1, 3);
+                painter.add(Shape::mesh(mesh));
             }
         }
     }
@@ -212,7 +222,7 @@ pub(crate) fn matrix_ui(
     }
     let at = response.hover_pos().map(|pos| {
         let cell = (pos - field.min) * window.cells + window.corner;
-        [cell.y, cell.x]
+        [cell.x, size - cell.y]
     });
     MatrixResponse { hovered, at, clicked: hovered.filter(|_| response.clicked()) }
 }
@@ -224,8 +234,9 @@ fn seen_marks<'a>(matrix: &Matrix<'a>, window: &Window, side: f32) -> Vec<(usize
     let (margin, cells) = (4.0 * window.cells, window.cells * side);
     let within =
         |at: f32, corner: f32| (corner - margin..=corner + cells + margin).contains(&(at + 0.5));
+    let last = matrix.size.max(1) as f32 - 1.0;
     let is_seen = |mark: &MatrixMark| {
-        within(mark.at[0], window.corner.y) && within(mark.at[1], window.corner.x)
+        within(mark.at[0], window.corner.x) && within(last - mark.at[1], window.corner.y)
     };
     let mut seen: Vec<_> =
         matrix.marks.iter().enumerate().filter(|(_, mark)| is_seen(mark)).take(MAX_MARKS).collect();
@@ -293,7 +304,7 @@ fn moved(
     window.bounded(size, side)
 }
 
-/// Draws the names of the parts: those of the columns above, those of the rows at the left, turned.
+/// Draws the names of the parts: those of the rows below, those of the columns at the left, turned.
 fn names_ui(
     matrix: &Matrix<'_>,
     (field, margin): (Rect, f32),
@@ -306,7 +317,7 @@ fn names_ui(
         let (from, to) = (place(*start as f32, *start as f32), place(end as f32, end as f32));
         for vertical in [false, true] {
             let (low, high) = if vertical {
-                (from.y.max(field.top()), to.y.min(field.bottom()))
+                (to.y.max(field.top()), from.y.min(field.bottom()))
             } else {
                 (from.x.max(field.left()), to.x.min(field.right()))
             };
@@ -322,7 +333,8 @@ fn names_ui(
                     .with_angle(-std::f32::consts::FRAC_PI_2);
                 ui.painter().add(shape);
             } else {
-                put(ui.painter(), pos2(middle, field.top() - margin), Align2::CENTER_TOP, galley);
+                let below = pos2(middle, field.bottom() + margin);
+                put(ui.painter(), below, Align2::CENTER_BOTTOM, galley);
             }
         }
     }
@@ -352,7 +364,7 @@ mod tests {
 
     #[test]
     fn marks_in_view_grow_in_number_with_the_zoom() {
-        // A hundred to a side, in falling importance from the top to the bottom.
+        // A hundred to a side, in falling importance from left to right.
         let marks: Vec<MatrixMark> = (0..10_000)
             .map(|index| MatrixMark {
                 at: [(index / 100) as f32 * 10.0, (index % 100) as f32 * 10.0],
@@ -374,14 +386,14 @@ mod tests {
             (seen.len(), seen[0].0, seen[1].0, seen[MAX_MARKS].0),
             (MAX_MARKS + 1, 9_999, 0, MAX_MARKS - 1)
         );
-        // The lower right corner, where only the highlighted mark was shown.
-        let near = whole.zoomed(4.0, vec2(500.0, 500.0));
+        // The upper right corner, where only the highlighted mark was shown.
+        let near = whole.zoomed(4.0, vec2(500.0, 0.0));
         let seen: Vec<usize> =
             seen_marks(&matrix, &near, 500.0).iter().map(|(index, _)| *index).collect();
         let wanted = (0..10_000).filter(|index| index / 100 >= 75 && index % 100 >= 75);
         assert_eq!(seen, wanted.collect::<Vec<_>>());
         // Out of view, it is not drawn.
-        let away = whole.zoomed(4.0, vec2(0.0, 0.0));
+        let away = whole.zoomed(4.0, vec2(0.0, 500.0));
         assert!(
             seen_marks(&matrix, &away, 500.0)
                 .iter()

@@ -294,7 +294,7 @@ fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     }
     ui.add_space(space::XS);
     if let Some(picture) = &picture {
-        kit::heat_legend_ui(&text::heat_ends(picture.range_cm), ui);
+        kit::heat_legend_ui(&text::heat_ends(picture.high_cm), ui);
     }
     let pair = state.labs.register.hovered_pair.or(now.filter(inside));
     let known = pair.map(|frames| text::pair_apart(secs(frames), map.cm_at(frames)));
@@ -444,8 +444,8 @@ struct Picture {
     map: Arc<DistanceMap>,
     heat: [Color32; 5],
     texture: TextureHandle,
-    /// The distances at the ends of the colours, centimetres.
-    range_cm: [f64; 2],
+    /// The distance at the upper end of the colours, centimetres.
+    high_cm: f64,
 }
 
 /// The greatest number of texels along a side: a map has no more points.
@@ -473,25 +473,24 @@ fn picture_of(map: &Arc<DistanceMap>, ui: &Ui) -> Option<Picture> {
     if rows == 0 || columns == 0 {
         return None;
     }
-    let low = pooled.rms_m().iter().copied().fold(f32::INFINITY, f32::min);
     // The few worst pairs would leave no contrast for the others. A sample of the cells is enough
     // to find where they begin.
     let mut some: Vec<f32> = pooled.rms_m().iter().copied().step_by(SAMPLED_CELLS).collect();
-    let worst = (some.len() - 1) * 98 / 100;
+    let worst = (some.len() - 1) * 95 / 100;
     let (_, &mut high, _) = some.select_nth_unstable_by(worst, f32::total_cmp);
-    let per_metre = (high - low).max(1e-6).recip();
+    let per_metre = high.max(1e-6).recip();
     let shades = kit::Shades::new(&heat);
     let mut pixels = Vec::with_capacity(rows * columns);
     for column in (0..columns).rev() {
         let cells = pooled.rms_m().iter().skip(column).step_by(columns);
-        pixels.extend(cells.map(|rms| shades.at((rms - low) * per_metre)));
+        pixels.extend(cells.map(|rms| shades.at(rms * per_metre)));
     }
     let image = ColorImage::new([rows, columns], pixels);
     let picture = Picture {
         map: Arc::clone(map),
         heat,
         texture: ui.ctx().load_texture("distances", image, TextureOptions::LINEAR),
-        range_cm: [low, high].map(|rms| f64::from(rms) * map.cm_scale()),
+        high_cm: f64::from(high) * map.cm_scale(),
     };
     ui.data_mut(|data| data.insert_temp(id, picture.clone()));
     Some(picture)

@@ -52,7 +52,7 @@ fn graph_lab_reacts_to_its_controls() {
         let size = built.clips().set().frames() as f32;
         let number = |place| built.clips().set().number(place).unwrap() as f32 + 0.5;
         let field = harness.get_by_label(text::ALL_DISTANCES.english()).rect();
-        (vec2(number(jump.enter), number(jump.leave)) / size, field)
+        (vec2(number(jump.leave), size - number(jump.enter)) / size, field)
     };
     let ring = field.min + mark * field.size();
     harness.hover_at(ring);
@@ -188,7 +188,7 @@ fn distances_of_many_frames_are_drawn_at_every_zoom() {
         assert!(frames > 6_000 && matches!(field.distances(), Distances::Overview(_)), "{frames}");
         let jump = built.whole().jumps()[0];
         let number = |place| built.clips().set().number(place).unwrap() as f32 + 0.5;
-        let at = vec2(number(jump.enter), number(jump.leave)) / frames as f32;
+        let at = vec2(number(jump.leave), frames as f32 - number(jump.enter)) / frames as f32;
         (at, [jump.leave, jump.enter], frames)
     };
     let field = harness.get_by_label(text::ALL_DISTANCES.english()).rect();

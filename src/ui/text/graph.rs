@@ -38,7 +38,7 @@ pub(crate) const WALK: Word = Word::new("The walk");
 pub(crate) const ALL_DISTANCES: Word = Word::new("Distances of all windows");
 /// The help below the picture of distances.
 pub(crate) const MATRIX_HELP: Word = Word::new(
-    "Rows: the frame left. Columns: the frame entered. Rings: transitions. Scroll to zoom, drag to pan.",
+    "Across: the frame left. Up: the frame entered. Rings: transitions. Scroll to zoom, drag to pan.",
 );
 /// The accessible name of the histogram.
 pub(crate) const ALL_HISTOGRAM: Word = Word::new("Histogram of window distances");

@@ -50,9 +50,9 @@ pub(crate) fn pair_apart([a, b]: [f64; 2], cm: Option<f64>) -> Message {
     }
 }
 
-/// Returns the ends of the scale of colours.
-pub(crate) fn heat_ends([low, high]: [f64; 2]) -> [Message; 2] {
-    [msg!("{low:.0}", low), msg!("{cm:.0} cm per joint", cm = high)]
+/// Returns the ends of the scale of colours, which begins at no distance.
+pub(crate) fn heat_ends(high_cm: f64) -> [Message; 2] {
+    [Message::data("0"), msg!("{cm:.0} cm per joint", cm = high_cm)]
 }
 
 /// Returns the number of pins.

@@ -185,7 +185,7 @@ pub(crate) fn map_ui(
     let response = kit::matrix_ui(&matrix, most_height, &mut |tile| tiles.texture(tile, &ctx), ui);
     let high_cm = tiles.high_cm;
     tiles.keep(ui);
-    kit::heat_legend_ui(&text::heat_ends([0.0, high_cm]), ui);
+    kit::heat_legend_ui(&text::heat_ends(high_cm), ui);
     let mut words = Message::from(text::MATRIX_HELP);
     if let (Some(drawn), Some(built)) = (&drawn, built) {
         let ends = response.hovered.and_then(|mark| drawn.ends.get(mark));
