@@ -3,7 +3,7 @@
 use super::assistive::describe;
 use super::paint::{Run, line_of, put};
 use crate::ui::language::{Word, say};
-use crate::ui::theme::{Type, palette_of, theme_of};
+use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{
     Align2, Color32, Rangef, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };
@@ -46,6 +46,8 @@ pub(crate) struct Chosen {
 pub(crate) struct Places<'a> {
     /// The accessible name.
     pub(crate) label: Word,
+    /// The words before the name of a clip.
+    pub(crate) title: Word,
     /// The clips.
     pub(crate) bars: &'a [PlaceBar],
     /// 2 where there are mirror images.
@@ -154,10 +156,10 @@ pub(crate) fn places_ui(places: &Places<'_>, height: f32, ui: &mut Ui) -> Option
         painter.rect_filled(square, 2, color.gamma_multiply(0.75));
         x = square.left() - 12.0;
     }
-    if let Some(bar) = named {
-        let galley =
-            line_of(&[Run::new(&bar.name, Type::Small, palette.text)], x - whole.left(), ui);
-        put(&painter, pos2(whole.left(), base), Align2::LEFT_CENTER, galley);
-    }
+    let title = Run::new(places.title, Type::Small, palette.muted);
+    let name = named.map(|bar| Run::new(&bar.name, Type::Small, palette.text).after(space::S));
+    let runs: Vec<Run<'_>> = std::iter::once(title).chain(name).collect();
+    let galley = line_of(&runs, x - whole.left(), ui);
+    put(&painter, pos2(whole.left(), base), Align2::LEFT_CENTER, galley);
     dragged
 }

@@ -67,6 +67,11 @@ pub(crate) const CLIP_STRIP: Word = Word::new("All clips, with the current frame
 pub(crate) const COST: Word = Word::new("cost");
 /// The name of the curve of the cost of continuing.
 pub(crate) const COST_GOING_ON: Word = Word::new("continuing");
+/// The words before the name of a clip below that strip.
+pub(crate) const CLIP_STRIP_TITLE: Word = Word::new("All clips, by tag:");
+/// The note in the place of the curves of costs, until there is one.
+pub(crate) const COSTS_LATER: Word =
+    Word::new("Drive the character: each search adds its costs here.");
 /// The name of the curve of the cost of the best frame.
 pub(crate) const COST_BEST: Word = Word::new("best frame");
 /// The mark on the timeline where the character jumps to another frame.

@@ -4,19 +4,21 @@ use super::present::shown;
 use crate::ui::kit::{
     self, Curves, Moment, PlaceBar, Places, Series, StripPlace, Timeline, TimelineEvent,
 };
-use crate::ui::language::Word;
+use crate::ui::language::{Word, say};
 use crate::ui::out::Out;
 use crate::ui::state::{Layout, UiState};
 use crate::ui::text;
-use crate::ui::theme::{Palette, palette_of, space, theme_of};
+use crate::ui::theme::{Palette, Type, palette_of, space, theme_of};
 use crate::ui::transport_row::{Playhead, transport_row_ui};
-use eframe::egui::{Color32, Ui};
+use eframe::egui::{Color32, Label, RichText, Ui};
 use segue_motion::matching::{Database, Place, RATE, Tag};
 use segue_session::{Command, DriveHistory, Key, Outcome, PlaybackCommand, Session, Value};
 use segue_text::Message;
 
 /// The time for which a jump is shown, seconds.
 const JUMP_SECS: f64 = 0.8;
+/// The length of the axis of time before the first search, seconds.
+const EMPTY_SECS: f64 = 10.0;
 /// The greatest number of marks: more could not be told apart.
 const MAX_MARKS: usize = 160;
 /// The greatest number of clips in the strip: more would have no width.
@@ -103,8 +105,11 @@ fn time_ui(
     if jumps.len() > MAX_MARKS {
         jumps.clear();
     }
+    let lasts = if driven.is_live { outcome.duration_secs() } else { session.duration_secs() };
+    let nothing_yet = current.is_empty();
     let timeline = Timeline {
-        duration: if driven.is_live { outcome.duration_secs() } else { session.duration_secs() },
+        // Without a search there is an axis all the same, and room for a sentence.
+        duration: if nothing_yet { lasts.max(EMPTY_SECS) } else { lasts },
         now: session.now_secs(),
         fps: RATE as f64,
         in_point: session.params().optional(Key::In).filter(|_| !driven.is_live),
@@ -119,7 +124,14 @@ fn time_ui(
         }),
         ..Timeline::default()
     };
-    for event in kit::timeline_ui(&timeline, ui) {
+    let top = ui.cursor().top();
+    let events = kit::timeline_ui(&timeline, ui);
+    if nothing_yet {
+        let plot = ui.max_rect().with_min_y(top).intersect(ui.min_rect());
+        let words = RichText::new(say(text::COSTS_LATER, ui)).font(theme_of(ui).font(Type::Small));
+        ui.put(plot, Label::new(words.color(palette.muted)));
+    }
+    for event in events {
         match event {
             _ if driven.is_live => {}
             TimelineEvent::Seek(secs) => {
@@ -195,6 +207,7 @@ fn strip_ui(
         .collect();
     let places = Places {
         label: text::CLIP_STRIP,
+        title: text::CLIP_STRIP_TITLE,
         bars: &bars,
         rows: if mirrored { 2 } else { 1 },
         now: moment.and_then(|moment| at(moment.place)),
