@@ -15,7 +15,7 @@ use segue_session::{
     Command, Entry, FileCommand, Key, Origin, Session, SourceFile, Value, format_number, joint_of,
     word_of_joint,
 };
-use segue_text::{Message, ToMessage, msg};
+use segue_text::{Message, msg};
 
 /// The height above which the tree of joints scrolls, points.
 const TREE_HEIGHT: f32 = 264.0;
@@ -40,7 +40,7 @@ pub(crate) fn clip_panel_ui(
         }
         return;
     };
-    facts_ui(entry, motion, ui);
+    facts_ui(motion, ui);
     if let Origin::File(file) = &entry.origin {
         ui.add_space(space::XS);
         overrides_ui(entry, file, motion, state, out, ui);
@@ -56,7 +56,7 @@ fn sentence_ui<'a>(sentence: impl Into<Text<'a>>, color: eframe::egui::Color32, 
     ui.label(RichText::new(say(sentence, ui)).font(theme_of(ui).font(Type::Small)).color(color));
 }
 
-fn facts_ui(entry: &Entry, motion: &Motion, ui: &mut Ui) {
+fn facts_ui(motion: &Motion, ui: &mut Ui) {
     let clip = motion.clip();
     let speed = ground_speed(motion.ground_frames(), clip.fps());
     let facts = [
@@ -72,9 +72,6 @@ fn facts_ui(entry: &Entry, motion: &Motion, ui: &mut Ui) {
         kit::value_row_ui(label, &value, Word::new(unit), ui);
     }
     let muted = palette_of(ui).muted;
-    if let Some(about) = &entry.about {
-        sentence_ui(&about.measure.to_sentence(), muted, ui);
-    }
     let channels = channels_in_words(clip.skeleton());
     if !channels.is_empty() {
         sentence_ui(&channels, muted, ui);

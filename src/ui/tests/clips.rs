@@ -80,12 +80,13 @@ fn clip_panel_shows_the_facts_of_the_file() {
         ("view-phone-light", PHONE, LIGHT),
     ] {
         let mut harness = harness(size, theme, with_file("lab=view&play=off"));
-        for label in ["Unit", "Up axis", "Skip the T-pose", "GLB", "Body parts"] {
+        for label in ["Unit", "Up axis", "Skip the T-pose", "Body parts", "Body height"] {
             harness.get_by_label(label);
         }
         harness.get_by_label(&format!("Joints: {joints} "));
         harness.get_by_label_contains("Root: position X Y Z");
-        harness.get_by_label_contains("read as centimetres");
+        // One height, and no other beside it.
+        assert_eq!(harness.query_all_by_label_contains("units tall").count(), 0);
         press("Joints", &mut harness);
         assert!(harness.state().state.joints_open);
         harness.get_by_label("Joints").scroll_to_me();
