@@ -8,7 +8,7 @@ pub(crate) mod stage;
 use crate::ui::kit::{self, Button, Icon};
 use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
 use crate::ui::labs::path::hand::path_of;
-use crate::ui::language::{Word, say};
+use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::rows::{
     Detail, add_clip_ui, clip_sets_ui, foot_rows_ui, lab_label, param_row_ui, save_result_ui,
@@ -116,6 +116,8 @@ pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     save_result_ui(session, state, out, ui);
 }
 
+    let points = path.curve.spline().points();
+    let chosen = state.labs.path.chosen.and_then(|index| Some((index, *points.get(index)?)));
 /// Draws the buttons for single points.
 fn points_ui(path: &PathFacts, session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| {
@@ -131,27 +133,25 @@ fn points_ui(path: &PathFacts, session: &Session, state: &mut UiState, out: &mut
         if kit::button_ui(Button::new(text::ADD_POINT).hint(text::ADD_POINT_HELP), ui).clicked() {
             state.labs.path.add_point(path, session, out);
         }
-        if kit::button_ui(Button::new(text::REMOVE_POINT).hint(text::REMOVE_POINT_HELP), ui)
-            .clicked()
-        {
-            state.labs.path.remove_point(path, session, out);
-        }
-        for key in [Key::PinStart, Key::PinEnd] {
-            let on = session.params().is_on(key);
-            let button = Button::new(Word::new(key.param().label))
-                .hint(Word::new(key.param().help))
-                .selected(on);
-            if kit::button_ui(button, ui).clicked() {
-                state.labs.path.said = None;
-                out.toggle(key, on);
+        ui.add_enabled_ui(chosen.is_some(), |ui| {
+            let remove = Button::new(text::REMOVE_POINT).hint(text::REMOVE_POINT_HELP);
+            let remove = kit::button_ui(remove, ui);
+            if remove.on_disabled_hover_text(say(text::CHOOSE_POINT, ui)).clicked() {
+                state.labs.path.remove_point(path, session, out);
             }
-        }
+        });
     });
-    let points = path.curve.spline().points();
-    let chosen = state.labs.path.chosen.and_then(|index| Some((index, *points.get(index)?)));
     let words = chosen.map_or_else(
         || text::POINTS_HELP.into(),
         |(index, place)| text::chosen_point(index, points.len(), place),
+    let before = out.commands.len();
+    for key in [Key::PinStart, Key::PinEnd] {
+        param_row_ui(key, &Detail::default(), session, out, ui);
+    }
+    if out.commands.len() > before {
+        // What a pin refused may be possible now.
+        state.labs.path.said = None;
+    }
     );
     kit::note_ui(&words, palette_of(ui).muted, ui);
 }

@@ -246,6 +246,34 @@ fn whole_path_is_edited_by_buttons_and_reset() {
     picture("path-company-dark", &mut harness);
 }
 
+/// A button that needs a point is disabled without one, and says so; pins are switches.
+#[test]
+fn remove_button_awaits_a_point_and_pins_are_switches() {
+    let mut harness = lab(DESK, DARK, "lab=path&a=walk&play=off");
+    let remove = |harness: &Harness<'_, Page>| {
+        let node = harness.get_by_label(text::REMOVE_POINT.english());
+        (node.accesskit_node().is_disabled(), node.rect().center())
+    };
+    harness.get_by_label(text::REMOVE_POINT.english()).scroll_to_me();
+    harness.run();
+    let (is_disabled, at) = remove(&harness);
+    assert!(is_disabled);
+    harness.hover_at(at);
+    harness.run_steps(40);
+    harness.get_by_label(text::CHOOSE_POINT.english());
+    harness.get_by_label_contains("Control point 3 of").focus();
+    harness.run_steps(2);
+    assert!(!remove(&harness).0);
+    press(text::REMOVE_POINT.english(), &mut harness);
+    assert_eq!(points(&harness).len(), 7);
+    for (key, label) in [(Key::PinStart, "Pin the start"), (Key::PinEnd, "Pin the end")] {
+        let node = harness.get_by_role_and_label(Role::Switch, label);
+        assert_eq!(node.accesskit_node().toggled(), Some(Toggled::False));
+        press(label, &mut harness);
+        assert!(harness.state().session.params().is_on(key), "{label}");
+    }
+}
+
 #[test]
 fn camera_is_restored_when_the_path_lab_is_left() {
     let mut harness = lab(DESK, DARK, "lab=path&a=walk&play=off");
