@@ -20,11 +20,10 @@ use segue_text::{Message, msg};
 /// The height above which the tree of joints scrolls, points.
 const TREE_HEIGHT: f32 = 264.0;
 
-/// Draws the panel of a clip. `saved` is the id of the motion that is saved from here: the clip, or
-/// a result of it alone.
+/// Draws the panel of a clip. `saved` is the id of the motion that is saved from here, if one is.
 pub(crate) fn clip_panel_ui(
     entry: &Entry,
-    saved: &str,
+    saved: Option<&str>,
     session: &Session,
     state: &mut UiState,
     out: &mut Out,
@@ -45,8 +44,10 @@ pub(crate) fn clip_panel_ui(
         ui.add_space(space::XS);
         overrides_ui(entry, file, motion, state, out, ui);
     }
-    ui.add_space(space::S);
-    save_rows_ui(saved, state, out, ui);
+    if let Some(saved) = saved {
+        ui.add_space(space::S);
+        save_rows_ui(saved, state, out, ui);
+    }
     ui.add_space(space::XS);
     state.joints_open |= kit::folded_ui(text::JOINTS, ui, |ui| joints_ui(motion, session, out, ui));
     kit::folded_ui(text::BODY_PARTS, ui, |ui| roles_ui(entry, motion, out, ui));

@@ -24,13 +24,14 @@ pub(crate) use lab_ui::{Shown, Title};
 pub(crate) use view::compare_clips;
 
 use super::kit;
+use super::kit::{Button, Icon};
 use super::language::Word;
 use super::out::Out;
-use super::rows::{Detail, compare_choice_ui, param_row_ui, slot_row_ui};
+use super::rows::{Detail, compare_choice_ui, footer_ui, lab_label, param_row_ui, slot_row_ui};
 use super::state::UiState;
 use super::text;
 use super::theme::space;
-use eframe::egui::Ui;
+use eframe::egui::{Align, Layout, Ui, UiBuilder};
 use graph::seed_detail;
 use lab_ui::{Compares, LabUi};
 use segue_session::{Command, Group, Key, Kind, LabId, Mark, PARAMS, Session, Slot};
@@ -88,12 +89,37 @@ pub(crate) fn side_panel_ui(session: &Session, state: &mut UiState, out: &mut Ou
 
 /// Draws the right panel: one section for the lab, two that fold for stage and camera.
 pub(crate) fn lab_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    (of(session.params().lab()).panel_ui)(session, state, out, ui);
+    let lab = of(session.params().lab());
+    head_ui(lab, session, state, ui);
+    (lab.panel_ui)(session, state, out, ui);
     ui.add_space(space::S);
     compare_choice_ui(session, out, ui);
     ui.add_space(space::L);
     group_ui(text::STAGE, Group::Stage, session, out, ui);
     group_ui(text::CAMERA, Group::Camera, session, out, ui);
+}
+
+/// Draws the lab's name, with the switch of all help texts behind it, and the line about it.
+fn head_ui(lab: &LabUi, session: &Session, state: &mut UiState, ui: &mut Ui) {
+    let name = lab_label(session);
+    let header = kit::section_header_ui(name, ui);
+    let builder = UiBuilder::new()
+        .max_rect(header)
+        .id_salt("help")
+        .layout(Layout::right_to_left(Align::Center));
+    ui.scope_builder(builder, |ui| {
+        let all = Button::icon_only(Icon::Help, text::ALL_HELP).selected(state.all_help);
+        state.all_help ^= kit::button_ui(all, ui).clicked();
+    });
+    kit::set_all_help(state.all_help, ui.ctx());
+    let [about, more] = lab.about;
+    kit::about_ui(&text::lab(name), about, more, ui);
+}
+
+/// Draws the foot of the right panel, which does not scroll: the buttons that keep and save the
+/// result.
+pub(crate) fn lab_footer_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    footer_ui(session, of(session.params().lab()).kept, state, out, ui);
 }
 
 fn group_ui(title: Word, group: Group, session: &Session, out: &mut Out, ui: &mut Ui) {

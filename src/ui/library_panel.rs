@@ -258,7 +258,7 @@ fn entry_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out
         let card = Frame::new().inner_margin(Margin { left: 10, right: 4, top: 6, bottom: 10 });
         card.show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::XS;
-            clip_panel_ui(entry, &entry.id, session, state, out, ui);
+            clip_panel_ui(entry, Some(&entry.id), session, state, out, ui);
         });
     }
 }

@@ -71,6 +71,20 @@ fn scrolled_ui(horizontal: f32, ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     });
 }
 
+/// Draws the buttons that keep and save the result, below the scrolled content of a
+/// [`scrolling_frame`].
+fn footer_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    let right = (space::L - BAR_MARGIN) as i8;
+    let margin = Margin { right, top: space::S as i8, ..Margin::ZERO };
+    let panel = Panel::bottom("keep and save").frame(Frame::new().inner_margin(margin));
+    let shown = panel.resizable(false).show(ui, |ui| labs::lab_footer_ui(session, state, out, ui));
+    // The panel takes a new height in the next frame.
+    let (id, height) = (shown.response.id.with("height"), shown.response.rect.height());
+    if ui.data_mut(|data| std::mem::replace(data.get_temp_mut_or(id, height), height)) != height {
+        ui.request_repaint();
+    }
+}
+
 /// The least width of the page with room for the map of a graph beside the stage, points.
 const MAP_ROOM: f32 = 1000.0;
 /// The gap between a scroll bar and the edge of its panel, points.
@@ -142,6 +156,7 @@ fn desk_ui(
                 library_panel::library_button_ui(state, ui);
                 ui.add_space(space::S);
             }
+            footer_ui(session, state, out, ui);
             scrolled_ui(space::L, ui, |ui| labs::lab_panel_ui(session, state, out, ui));
         });
     if state.labs.graph.has_map_panel {
@@ -222,6 +237,9 @@ fn phone_ui(
                 lessons_panel::lessons_panel_ui(session, state, out, ui);
                 return;
             }
+        }
+        if !state.library_open {
+            footer_ui(session, state, out, ui);
         }
         scrolled_ui(space::L, ui, |ui| {
             if state.library_open {

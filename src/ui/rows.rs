@@ -1,22 +1,23 @@
 //! The rows that panels of several labs share.
 
 mod clip_sets;
+mod footer;
 mod param;
 mod save;
 
 pub(crate) use clip_sets::clip_sets_ui;
+pub(crate) use footer::{Kept, footer_ui};
 pub(crate) use param::{Detail, compare_choice_ui, param_row_ui};
 pub(crate) use save::save_rows_ui;
 
-use super::kit::{self, Button, Icon};
+use super::kit::{self, Button};
 use super::language::{Text, Word, say};
 use super::out::Out;
-use super::state::UiState;
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, Ui};
 use segue_motion::transition::has_legs;
-use segue_session::{Command, Entry, Key, Mark, NoResult, PARAMS, Session, Slot, split_reference};
+use segue_session::{Command, Entry, Key, Mark, PARAMS, Session, Slot, split_reference};
 use segue_text::{Message, msg};
 /// Draws the rows of the foot lock, those about reading contacts, and why the feet cannot be
 /// locked.
@@ -42,42 +43,6 @@ pub(crate) fn foot_rows_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         }
         rows_ui(Mark::Feet);
     });
-}
-
-/// Draws the rows that keep or save the result, with a choice of the pane where there are several.
-pub(crate) fn save_result_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    let panes = session.panes();
-    state.saved_pane = state.saved_pane.min(panes.len().saturating_sub(1));
-    let names: Vec<Message> =
-        panes.iter().map(|pane| session.variant_name(pane).unwrap_or_default()).collect();
-    if panes.len() > 1 {
-        let options: Vec<(usize, &Message)> = names.iter().enumerate().collect();
-        if let Some(pane) = kit::choice_row_ui(text::SAVED_PANE, state.saved_pane, &options, ui) {
-            state.saved_pane = pane;
-        }
-    }
-    keep_ui(state.saved_pane, session, out, ui);
-    ui.add_space(space::S);
-    let has_result = panes.get(state.saved_pane).is_some_and(|pane| pane.result().is_ok());
-    ui.add_enabled_ui(has_result, |ui| {
-        save_rows_ui(&format!("result:{}", state.saved_pane), state, out, ui);
-    });
-}
-
-/// Draws the button that keeps the result of a pane, or why there is none.
-pub(crate) fn keep_ui(pane: usize, session: &Session, out: &mut Out, ui: &mut Ui) {
-    let missing = session.panes().get(pane).and_then(|pane| pane.result().err());
-    let button = Button::new(text::KEEP).icon(Icon::Plus).outlined();
-    let kept = ui.add_enabled_ui(missing.is_none(), |ui| kit::button_ui(button, ui).clicked());
-    if kept.inner {
-        out.commands.push(Command::Keep(pane));
-    }
-    match missing {
-        // The reason is shown on the stage.
-        Some(NoResult::Refused(_)) => kit::note_ui(text::NOTHING_TO_KEEP, palette_of(ui).muted, ui),
-        Some(NoResult::Awaited) => kit::note_ui(text::STILL_COMPUTED, palette_of(ui).muted, ui),
-        None => {}
-    }
 }
 
 /// Draws the choices of both clips, with notes where B was retargeted or resampled. Returns the
@@ -107,11 +72,10 @@ pub(crate) fn pair_ui(session: &Session, out: &mut Out, ui: &mut Ui) -> f64 {
     outcome.map_or(60.0, |outcome| outcome.motion.clip().fps())
 }
 
-/// Draws the rows of where A is left and B entered, in seconds or in frames of each clip. Both were
-/// found together, so that this is said once: below the second row, or below the automatic one.
+/// Draws the rows of where A is left and B entered, in seconds or in frames of each clip. The help
+/// of each says how its place was found.
 pub(crate) fn place_rows_ui(keys: [Key; 2], session: &Session, out: &mut Out, ui: &mut Ui) {
     let automatic = keys.map(|key| session.params().optional(key).is_none());
-    let said_below = usize::from(automatic != [true, false]);
     let transition = session.main_outcome().and_then(|outcome| outcome.transition);
     let search = transition.and_then(|transition| transition.search);
     for (index, (key, slot)) in keys.into_iter().zip([Slot::A, Slot::B]).enumerate() {
@@ -124,16 +88,16 @@ pub(crate) fn place_rows_ui(keys: [Key; 2], session: &Session, out: &mut Out, ui
             |secs: f64| motion.map_or(secs, |motion| (secs * motion.clip().fps()).round());
         let max =
             latest_secs.map(|secs| if key.param().unit == "s" { secs } else { in_frames(secs) });
-        let help = match (said_below == index, automatic[index]) {
-            (true, _) => found_sentence(session, automatic),
-            (false, true) => Message::default(),
-            (false, false) => text::BY_HAND.into(),
+        let more = if automatic[index] || automatic == [false, false] {
+            found_sentence(session, automatic)
+        } else {
+            text::BY_HAND.into()
         };
         let detail = Detail {
             max,
             used: max
                 .filter(|&max| session.params().optional(key).is_some_and(|given| given > max)),
-            help: Some(help),
+            more: Some(more),
             ..Detail::default()
         };
         param_row_ui(key, &detail, session, out, ui);

@@ -108,6 +108,10 @@ pub(crate) struct UiState {
     pub(crate) layout: Layout,
     /// The options for saving motions.
     pub(crate) export: ExportOptions,
+    /// Whether the options for saving the result are open.
+    pub(crate) save_open: bool,
+    /// Whether all help texts stand open.
+    pub(crate) all_help: bool,
     /// The pane whose result is saved.
     pub(crate) saved_pane: usize,
     /// The language of the interface.
@@ -150,6 +154,8 @@ impl Default for UiState {
             drawing: None,
             layout: Layout::Desk,
             export: ExportOptions::default(),
+            save_open: false,
+            all_help: false,
             saved_pane: 0,
             language: Language::default(),
             filming: Filming::default(),

@@ -27,6 +27,7 @@ mod chinese;
 mod clips;
 mod contacts;
 mod drive;
+mod footer;
 mod graph;
 mod joints;
 mod lab_panels;

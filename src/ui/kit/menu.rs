@@ -1,6 +1,7 @@
 //! Menus behind a button, and a choice among many.
 
 use super::assistive::describe;
+use super::help::Help;
 use super::icon::{Icon, paint_icon};
 use super::paint::{Run, faded, focus_ring, full_width, line_of, put};
 use crate::ui::language::{Text, say};
@@ -118,11 +119,13 @@ pub(crate) fn choice_row_ui<'a, T: Copy + PartialEq>(
 ) -> Option<T> {
     let options: Vec<(T, Text<'_>)> =
         options.iter().map(|&(value, text)| (value, text.into())).collect();
-    shown_choice_row_ui(label.into(), chosen, &options, ui)
+    helped_choice_row_ui(label.into(), Text::EMPTY, chosen, &options, ui)
 }
 
-fn shown_choice_row_ui<T: Copy + PartialEq>(
+/// Draws a choice as [`choice_row_ui`] does, with a help text.
+pub(crate) fn helped_choice_row_ui<T: Copy + PartialEq>(
     label: Text<'_>,
+    help: Text<'_>,
     chosen: T,
     options: &[(T, Text<'_>)],
     ui: &mut Ui,
@@ -130,6 +133,7 @@ fn shown_choice_row_ui<T: Copy + PartialEq>(
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let enabled = ui.is_enabled();
     let id = ui.make_persistent_id(label.english());
+    let help = Help { label, text: help, id };
     let row = full_width(theme.row_height(), ui);
     let response = ui.interact(row, id, Sense::click()).on_hover_cursor(CursorIcon::PointingHand);
     let current =
@@ -164,14 +168,17 @@ fn shown_choice_row_ui<T: Copy + PartialEq>(
     paint_icon(Icon::ChevronDown, at, faded(palette.muted, enabled), ui.painter());
     let label_galley = line_of(
         &[Run::new(label, Type::Label, faded(palette.text, enabled))],
-        field.left() - row.left() - space::S,
+        field.left() - row.left() - space::S - help.sign_width(ui),
         ui,
     );
-    put(ui.painter(), row.left_center(), Align2::LEFT_CENTER, label_galley);
+    let label_rect = put(ui.painter(), row.left_center(), Align2::LEFT_CENTER, label_galley);
     focus_ring(field, radius::M, &response, ui);
     let mut info = WidgetInfo::labeled(Role::ComboBox, enabled, say(label, ui));
     info.current_text_value = Some(say(current, ui));
     describe(&response, &info);
+    help.describe(response.id, ui);
+    let response = response.on_hover_ui(|ui| help.tip_ui(ui));
+    help.sign_ui(label_rect.right_center(), ui);
 
     let picked = menu_ui(&response.with_new_rect(field), RectAlign::BOTTOM_END, |ui| {
         let mut picked = None;
@@ -184,5 +191,6 @@ fn shown_choice_row_ui<T: Copy + PartialEq>(
         }
         picked
     });
+    help.line_ui(ui);
     picked.and_then(|shown| shown.inner).filter(|&value| value != chosen)
 }

@@ -19,6 +19,7 @@ mod field;
 #[cfg(all(test, feature = "ui-tests"))]
 mod gallery;
 mod heat_map;
+mod help;
 mod histogram;
 pub(crate) mod icon;
 mod keys;
@@ -58,10 +59,13 @@ pub(crate) use field::{text_field_ui, value_row_ui};
 pub(crate) use heat_map::{
     Feet, HeatMap, HeatMapEvent, MapCurve, Shades, heat_legend_ui, heat_map_ui,
 };
+pub(crate) use help::{about_ui, set_all_help};
 pub(crate) use histogram::{Histogram, histogram_ui};
 pub(crate) use icon::{Icon, paint_logo};
 pub(crate) use matrix::{Matrix, MatrixMark, TILE, Tile, matrix_ui, tiles_id};
-pub(crate) use menu::{MenuItem, choice_row_ui, menu_item_ui, menu_line_ui, menu_ui};
+pub(crate) use menu::{
+    MenuItem, choice_row_ui, helped_choice_row_ui, menu_item_ui, menu_line_ui, menu_ui,
+};
 pub(crate) use metrics::{Metric, Rank};
 pub(crate) use notice::{
     Notice, NoticeEvent, brief_progress_ui, caption_ui, progress_row_ui, toasts_ui,
@@ -71,11 +75,11 @@ pub(crate) use places::{Chosen, PlaceBar, Places, StripPlace, places_ui};
 pub(crate) use pointer_label::pointer_label_ui;
 pub(crate) use profile::profile_ui;
 pub(crate) use section::{folded_ui, note_ui, section_header_ui, section_mark_ui};
-pub(crate) use segmented::{segmented_label_ui, segmented_ui};
+pub(crate) use segmented::{labelled_segmented_ui, segmented_ui};
 pub(crate) use slider_row::{Mark, SliderResponse, SliderRow, Source, slider_row_ui};
 pub(crate) use stick::{stick_size, stick_ui};
 pub(crate) use strip::{Arc, Fate, Stretch, Strip, strip_ui};
-pub(crate) use switch_row::switch_row_ui;
+pub(crate) use switch_row::{helped_switch_row_ui, switch_row_ui};
 pub(crate) use tabs::tabs_ui;
 pub(crate) use timeline::{
     Moment, StanceEdit, StanceEvent, Stripe, Timeline, TimelineEvent, Track, corrected_hint,

@@ -112,7 +112,7 @@ pub(crate) fn faded(color: Color32, enabled: bool) -> Color32 {
 
 /// Returns whether the keyboard was used last. The focus is then shown by a ring; a click needs
 /// none.
-fn keyboard_in_use(ui: &Ui) -> bool {
+pub(super) fn keyboard_in_use(ui: &Ui) -> bool {
     let id = Id::unique("segue keyboard in use");
     let (pointer, key) = ui.input(|input| {
         let key = input.events.iter().any(|event| {

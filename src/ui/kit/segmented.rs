@@ -1,21 +1,44 @@
 //! A choice among a few options, all of them visible: cut | dissolve | inertialize.
 
 use super::assistive::{describe, set_role};
+use super::help::Help;
 use super::paint::{Run, faded, focus_ring, full_width, line_of, put};
 use super::words;
-use crate::ui::language::{Word, say};
+use crate::ui::language::{Text, Word, say};
 use crate::ui::theme::{Type, palette_of, radius, theme_of};
 use eframe::egui::{
     Align2, Color32, CursorIcon, EventFilter, Id, Key, Label, Rect, RichText, Role, Sense, Stroke,
     StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };
 
-/// Draws the label above a choice among a few options. Returns whether a double click on it asks
-/// for the default.
-pub(crate) fn segmented_label_ui(label: Word, ui: &mut Ui) -> bool {
+/// Draws a choice among a few options as [`segmented_ui`] does, below its label, with a help text.
+/// Returns a new choice, and whether a double click on the label asks for the default.
+pub(crate) fn labelled_segmented_ui<T: Copy + PartialEq>(
+    label: Word,
+    help: Text<'_>,
+    chosen: T,
+    options: &[(T, Word)],
+    ui: &mut Ui,
+) -> (Option<T>, bool) {
+    let id = ui.make_persistent_id(label.english());
+    let help = Help { label: label.into(), text: help, id };
     let words = RichText::new(say(label, ui)).font(theme_of(ui).font(Type::Label));
-    let response = ui.add(Label::new(words).selectable(false).sense(Sense::CLICK));
-    response.on_hover_text(say(words::RESET_HINT, ui)).double_clicked()
+    let title = ui.add(Label::new(words).selectable(false).sense(Sense::CLICK));
+    help.sign_ui(title.rect.right_center(), ui);
+    let title = title.on_hover_ui(|ui| {
+        help.tip_ui(ui);
+        let reset = RichText::new(say(words::RESET_HINT, ui)).color(palette_of(ui).muted);
+        ui.label(reset);
+    });
+    let picked = ui
+        .scope(|ui| {
+            set_role(Role::RadioGroup, label, ui);
+            help.describe(ui.unique_id(), ui);
+            segments_ui(id, chosen, options, ui)
+        })
+        .inner;
+    help.line_ui(ui);
+    (picked.filter(|&value| value != chosen), title.double_clicked())
 }
 
 /// Draws a choice among a few options, as wide as the panel. `label` is its accessible name.

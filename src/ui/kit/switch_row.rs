@@ -1,19 +1,31 @@
 //! A row with a switch: a label, the state as a word, and the switch.
 
 use super::assistive::describe;
+use super::help::Help;
 use super::paint::{Run, faded, focus_ring, full_width, line_of, put};
 use super::words;
-use crate::ui::language::{Word, say};
+use crate::ui::language::{Text, Word, say};
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Align2, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 
 /// Draws a row with a switch that a click anywhere on the row turns. Returns the new state when it
 /// was turned.
 pub(crate) fn switch_row_ui(label: Word, on: bool, ui: &mut Ui) -> Option<bool> {
+    helped_switch_row_ui(label, Text::EMPTY, on, ui)
+}
+
+/// Draws a row with a switch as [`switch_row_ui`] does, with a help text.
+pub(crate) fn helped_switch_row_ui(
+    label: Word,
+    help: Text<'_>,
+    on: bool,
+    ui: &mut Ui,
+) -> Option<bool> {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let enabled = ui.is_enabled();
     let scale = theme.scale();
     let id = ui.make_persistent_id(label.english());
+    let help = Help { label: label.into(), text: help, id };
     let row = full_width(theme.row_height(), ui);
     let response = ui.interact(row, id, Sense::click());
     let switched = response.clicked().then_some(!on);
@@ -54,11 +66,15 @@ pub(crate) fn switch_row_ui(label: Word, on: bool, ui: &mut Ui) -> Option<bool> 
     );
     let label_galley = line_of(
         &[Run::new(label, Type::Label, faded(palette.text, enabled))],
-        word.left() - row.left() - space::S,
+        word.left() - row.left() - space::S - help.sign_width(ui),
         ui,
     );
-    put(ui.painter(), row.left_center(), Align2::LEFT_CENTER, label_galley);
+    let label_rect = put(ui.painter(), row.left_center(), Align2::LEFT_CENTER, label_galley);
     focus_ring(track, 10, &response, ui);
     describe(&response, &WidgetInfo::selected(Role::Switch, enabled, shown, say(label, ui)));
+    help.describe(response.id, ui);
+    response.on_hover_ui(|ui| help.tip_ui(ui));
+    help.sign_ui(label_rect.right_center(), ui);
+    help.line_ui(ui);
     switched
 }

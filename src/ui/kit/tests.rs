@@ -14,6 +14,8 @@ use egui_kittest::{
 };
 use segue_text::Message;
 
+mod help;
+
 /// Returns a panel 300 points wide with one widget and a state.
 fn bench<S: 'static>(state: S, widget: impl Fn(&mut S, &mut Ui) + 'static) -> Harness<'static, S> {
     let builder = Harness::builder()

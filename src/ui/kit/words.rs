@@ -58,6 +58,8 @@ pub(super) const STANCE_HELP: Word = Word::new(
 pub(crate) const DISMISS: Word = Word::new("Dismiss");
 /// The button that stops a task.
 pub(super) const CANCEL: Word = Word::new("Cancel");
+/// The sign of a help text, behind the name of its row.
+pub(super) const HELP: Word = Word::new("help");
 /// The hint on a slider's value.
 pub(super) const TYPE_VALUE: Word = Word::new("Click to type a value");
 /// The hint on the label of a slider or a choice.

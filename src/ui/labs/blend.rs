@@ -1,12 +1,10 @@
 //! The Blend lab: the window, its place and its weight.
 
-use crate::ui::kit;
 use crate::ui::labs::lab_ui::{Compares, Edge, LabUi, Shown, Title};
 use crate::ui::language::Word;
 use crate::ui::out::Out;
 use crate::ui::rows::{
-    Detail, blend_window_ui, compare_ui, foot_rows_ui, lab_label, pair_ui, param_row_ui,
-    place_rows_ui, save_result_ui,
+    Detail, Kept, blend_window_ui, compare_ui, foot_rows_ui, pair_ui, param_row_ui, place_rows_ui,
 };
 use crate::ui::state::UiState;
 use crate::ui::text;
@@ -18,6 +16,8 @@ use segue_text::msg;
 /// The lab's part of the page.
 pub(super) const LAB: LabUi = LabUi {
     panel_ui: blend_ui,
+    about: [text::BLEND_ABOUT, text::BLEND_DETAILS],
+    kept: |_, pane| Kept::result(pane),
     compares: Compares::Key(Key::BlendWindow),
     title,
     hint: welcome,
@@ -62,8 +62,7 @@ pub(super) fn edge_value(edge: Edge, secs: f64, outcome: &Outcome) -> (Key, f64)
     }
 }
 
-pub(super) fn blend_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    kit::section_header_ui(lab_label(session), ui);
+pub(super) fn blend_ui(session: &Session, _: &mut UiState, out: &mut Out, ui: &mut Ui) {
     pair_ui(session, out, ui);
     blend_window_ui(session, out, ui);
     compare_ui(Key::BlendWindow, session, out, ui);
@@ -74,6 +73,4 @@ pub(super) fn blend_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
     param_row_ui(Key::AlignBy, &Detail::default(), session, out, ui);
     param_row_ui(Key::RootBlend, &Detail::default(), session, out, ui);
     foot_rows_ui(session, out, ui);
-    ui.add_space(space::S);
-    save_result_ui(session, state, out, ui);
 }

@@ -3,9 +3,7 @@
 use crate::ui::kit;
 use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
 use crate::ui::out::Out;
-use crate::ui::rows::{
-    Detail, clip_sets_ui, foot_rows_ui, lab_label, param_row_ui, save_result_ui, slot_row_ui,
-};
+use crate::ui::rows::{Detail, Kept, clip_sets_ui, foot_rows_ui, param_row_ui, slot_row_ui};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{palette_of, space};
@@ -16,6 +14,8 @@ use segue_text::ToMessage;
 /// The lab's part of the page.
 pub(super) const LAB: LabUi = LabUi {
     panel_ui: in_place_ui,
+    about: [text::IN_PLACE_ABOUT, text::IN_PLACE_DETAILS],
+    kept: |_, pane| Kept::result(pane),
     compares: Compares::Own(compare_ways),
     title,
     hint: |_| None,
@@ -27,9 +27,7 @@ fn title(shown: &Shown<'_>) -> Title {
 }
 
 /// Draws the rows of the lab.
-fn in_place_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    kit::section_header_ui(lab_label(session), ui);
-    kit::note_ui(text::IN_PLACE_ABOUT, palette_of(ui).muted, ui);
+fn in_place_ui(session: &Session, _: &mut UiState, out: &mut Out, ui: &mut Ui) {
     clip_sets_ui(session, out, ui);
     slot_row_ui(Slot::A, session, out, ui);
     if let Some(problem) = session.panes().first().and_then(|pane| pane.problem.as_ref()) {
@@ -40,8 +38,6 @@ fn in_place_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut U
     param_row_ui(Key::RootWayTurn, &Detail::default(), session, out, ui);
     ui.add_space(space::S);
     foot_rows_ui(session, out, ui);
-    ui.add_space(space::S);
-    save_result_ui(session, state, out, ui);
 }
 
 /// Opens both ways side by side, or goes back to one pane.

@@ -2,6 +2,7 @@
 
 use crate::ui::language::Word;
 use crate::ui::out::Out;
+use crate::ui::rows::Kept;
 use crate::ui::state::UiState;
 use eframe::egui::Ui;
 use glam::DVec2;
@@ -12,6 +13,10 @@ use segue_text::Message;
 pub(crate) struct LabUi {
     /// The rows of its panel.
     pub(crate) panel_ui: fn(&Session, &mut UiState, &mut Out, &mut Ui),
+    /// A line about it, and what there is to say beyond that.
+    pub(crate) about: [Word; 2],
+    /// The motion of a pane that is kept and saved.
+    pub(crate) kept: fn(&Session, usize) -> Kept,
     /// The start of its comparison.
     pub(crate) compares: Compares,
     /// The title of a pane.

@@ -1,11 +1,10 @@
 //! The Layers lab: the part of the body that is B's, its weight and its timing.
 
-use crate::ui::kit;
 use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
 use crate::ui::language::say;
 use crate::ui::out::Out;
-use crate::ui::rows::{Detail, param_row_ui};
-use crate::ui::rows::{compare_ui, foot_rows_ui, lab_label, pair_ui, save_result_ui};
+use crate::ui::rows::{Detail, Kept, param_row_ui};
+use crate::ui::rows::{compare_ui, foot_rows_ui, pair_ui};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
@@ -17,6 +16,8 @@ use segue_text::msg;
 /// The lab's part of the page.
 pub(super) const LAB: LabUi = LabUi {
     panel_ui: layers_ui,
+    about: [text::LAYERS_ABOUT, text::LAYERS_DETAILS],
+    kept: |_, pane| Kept::result(pane),
     compares: Compares::Key(Key::LayerWeight),
     title,
     hint: |_| None,
@@ -32,8 +33,7 @@ fn title(shown: &Shown<'_>) -> Title {
 }
 
 /// Draws the rows of the lab.
-pub(super) fn layers_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    kit::section_header_ui(lab_label(session), ui);
+pub(super) fn layers_ui(session: &Session, _: &mut UiState, out: &mut Out, ui: &mut Ui) {
     pair_ui(session, out, ui);
     let params = session.params();
     let plain = Detail::default();
@@ -61,6 +61,4 @@ pub(super) fn layers_ui(session: &Session, state: &mut UiState, out: &mut Out, u
     }
     param_row_ui(Key::MaskColors, &plain, session, out, ui);
     foot_rows_ui(session, out, ui);
-    ui.add_space(space::S);
-    save_result_ui(session, state, out, ui);
 }

@@ -4,8 +4,8 @@ use crate::ui::kit::{self, Button};
 use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
 use crate::ui::out::Out;
 use crate::ui::rows::clip_sets_ui;
-use crate::ui::rows::{Detail, param_row_ui};
-use crate::ui::rows::{compare_ui, foot_rows_ui, lab_label, save_result_ui, slot_row_ui};
+use crate::ui::rows::{Detail, Kept, param_row_ui};
+use crate::ui::rows::{compare_ui, foot_rows_ui, slot_row_ui};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{palette_of, space};
@@ -17,6 +17,8 @@ use segue_text::Message;
 /// The lab's part of the page.
 pub(super) const LAB: LabUi = LabUi {
     panel_ui: loop_ui,
+    about: [text::LOOP_ABOUT, text::LOOP_DETAILS],
+    kept: |_, pane| Kept::result(pane),
     compares: Compares::Own(compare_loops),
     title,
     hint: |_| None,
@@ -36,9 +38,7 @@ fn title(shown: &Shown<'_>) -> Title {
 const POOR_ENDS_CM: f64 = 8.0;
 
 /// Draws the rows of the lab.
-pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    kit::section_header_ui(lab_label(session), ui);
-    kit::note_ui(text::LOOP_ABOUT, palette_of(ui).muted, ui);
+pub(super) fn loop_ui(session: &Session, _: &mut UiState, out: &mut Out, ui: &mut Ui) {
     clip_sets_ui(session, out, ui);
     slot_row_ui(Slot::A, session, out, ui);
     ui.add_space(space::S);
@@ -50,29 +50,22 @@ pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         CycleMade::Gait { .. } => None,
     });
     let poor = distance_cm.is_some_and(|distance_cm| distance_cm > POOR_ENDS_CM);
-    let place = |key, said_below: bool| Detail {
-        help: Some(match (automatic(key), said_below) {
-            (false, _) => text::BY_HAND.into(),
-            (true, true) => Message::default(),
-            // A warning below says it.
-            (true, false) if poor && automatic(Key::LoopFrom) => Message::default(),
-            (true, false) => found_sentence(cycle),
-        }),
+    let place = |key| Detail {
+        more: Some(if automatic(key) { found_sentence(cycle) } else { text::BY_HAND.into() }),
         ..Detail::default()
     };
-    param_row_ui(Key::LoopFrom, &place(Key::LoopFrom, automatic(Key::LoopTo)), session, out, ui);
-    param_row_ui(Key::LoopTo, &place(Key::LoopTo, false), session, out, ui);
+    param_row_ui(Key::LoopFrom, &place(Key::LoopFrom), session, out, ui);
+    param_row_ui(Key::LoopTo, &place(Key::LoopTo), session, out, ui);
     if let Some(distance_cm) =
         distance_cm.filter(|_| poor && automatic(Key::LoopFrom) && automatic(Key::LoopTo))
     {
         kit::note_ui(&text::poor_ends(distance_cm), palette_of(ui).warning, ui);
     }
-    param_row_ui(Key::LoopMethod, &Detail::default(), session, out, ui);
     // With several methods side by side, the parameters of all of them are shown.
     let methods: Vec<LoopMethod> = session.choices();
-    if let [method] = methods.as_slice() {
-        kit::note_ui(text::loop_method(*method), palette_of(ui).muted, ui);
-    }
+    let more = methods.iter().map(|&method| text::loop_method(method).into()).collect();
+    let detail = Detail { more: Some(Message::joined(more, " ")), ..Detail::default() };
+    param_row_ui(Key::LoopMethod, &detail, session, out, ui);
     if !methods.iter().all(|method| matches!(method, LoopMethod::Linear | LoopMethod::Cubic)) {
         let detail = Detail { help: Some(text::LOOP_HALF_LIFE.into()), ..Detail::default() };
         param_row_ui(Key::HalfLife, &detail, session, out, ui);
@@ -87,8 +80,6 @@ pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     }
     ui.add_space(space::S);
     foot_rows_ui(session, out, ui);
-    ui.add_space(space::S);
-    save_result_ui(session, state, out, ui);
 }
 
 /// Opens several methods side by side, or goes back to one pane.

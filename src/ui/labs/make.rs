@@ -1,11 +1,10 @@
 //! The Make lab: a motion from parameters.
 
-use crate::ui::kit;
 use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
 use crate::ui::out::Out;
-use crate::ui::rows::{Detail, compare_ui, foot_rows_ui, lab_label, param_row_ui, save_result_ui};
+use crate::ui::rows::{Detail, Kept, compare_ui, foot_rows_ui, param_row_ui};
 use crate::ui::state::UiState;
-use crate::ui::theme::space;
+use crate::ui::text;
 use eframe::egui::Ui;
 use segue_session::choices::MadeAction;
 use segue_session::{Command, Group, Key, LabId, PARAMS, Params, Session};
@@ -14,6 +13,8 @@ use segue_text::Message;
 /// The lab's part of the page.
 pub(super) const LAB: LabUi = LabUi {
     panel_ui: make_ui,
+    about: [text::MAKE_ABOUT, text::MAKE_DETAILS],
+    kept: |_, pane| Kept::result(pane),
     compares: Compares::Own(|session, out| {
         out.commands.push(Command::Compare(made_number(session)));
     }),
@@ -36,8 +37,7 @@ pub(crate) fn made_name(params: &Params) -> Option<Message> {
     (params.lab() == LabId::Make).then(|| action(params))
 }
 
-pub(super) fn make_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    kit::section_header_ui(lab_label(session), ui);
+pub(super) fn make_ui(session: &Session, _: &mut UiState, out: &mut Out, ui: &mut Ui) {
     for param in PARAMS.iter().filter(|param| param.group == Group::Lab(LabId::Make)) {
         // Parameters that the chosen motion does not have are left out.
         if session.made_motion_has(param.key) {
@@ -48,8 +48,6 @@ pub(super) fn make_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         }
     }
     foot_rows_ui(session, out, ui);
-    ui.add_space(space::S);
-    save_result_ui(session, state, out, ui);
 }
 
 /// Returns the parameter of a made motion that is compared: standing and turning on the spot have

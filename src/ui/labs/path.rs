@@ -11,8 +11,7 @@ use crate::ui::labs::path::hand::path_of;
 use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::rows::{
-    Detail, add_clip_ui, clip_sets_ui, foot_rows_ui, lab_label, param_row_ui, save_result_ui,
-    slot_row_ui,
+    Detail, Kept, add_clip_ui, clip_sets_ui, foot_rows_ui, param_row_ui, slot_row_ui,
 };
 use crate::ui::state::UiState;
 use crate::ui::text;
@@ -27,6 +26,8 @@ use segue_text::{Message, ToMessage};
 /// The lab's part of the page.
 pub(super) const LAB: LabUi = LabUi {
     panel_ui: path_ui,
+    about: [text::PATH_ABOUT, text::PATH_DETAILS],
+    kept: |_, pane| Kept::result(pane),
     compares: Compares::Own(compare_points),
     title,
     hint: |_| Some(text::PATH_HINT),
@@ -57,8 +58,6 @@ const MAX_WARNINGS: usize = 3;
 /// Draws the rows of the lab.
 pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let palette = palette_of(ui);
-    kit::section_header_ui(lab_label(session), ui);
-    kit::note_ui(text::PATH_ABOUT, palette.muted, ui);
     clip_sets_ui(session, out, ui);
     slot_row_ui(Slot::A, session, out, ui);
     let pane = session.panes().first();
@@ -69,7 +68,7 @@ pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     ui.add_space(space::S);
     let edited = path.filter(|path| path.is_edited);
     let detail = Detail {
-        help: edited.map(|path| text::own_points(path.curve.spline().points().len())),
+        note: edited.map(|path| text::own_points(path.curve.spline().points().len())),
         ..Detail::default()
     };
     param_row_ui(Key::ControlPoints, &detail, session, out, ui);
@@ -99,8 +98,9 @@ pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         warnings_ui(path, ui);
     }
     ui.add_space(space::S);
-    param_row_ui(Key::PathKeep, &Detail::default(), session, out, ui);
-    kit::note_ui(text::path_keep(session.params().choice()), palette.muted, ui);
+    let more = text::path_keep(session.params().choice()).into();
+    let keep = Detail { more: Some(more), ..Detail::default() };
+    param_row_ui(Key::PathKeep, &keep, session, out, ui);
     param_row_ui(Key::PathFacing, &Detail::default(), session, out, ui);
     param_row_ui(Key::PathOffset, &Detail::default(), session, out, ui);
     ui.add_space(space::XS);
@@ -112,14 +112,12 @@ pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     fit_ui(path, session, out, ui);
     ui.add_space(space::S);
     company_ui(path.is_some(), session, state, out, ui);
-    ui.add_space(space::S);
-    save_result_ui(session, state, out, ui);
 }
 
-    let points = path.curve.spline().points();
-    let chosen = state.labs.path.chosen.and_then(|index| Some((index, *points.get(index)?)));
 /// Draws the buttons for single points.
 fn points_ui(path: &PathFacts, session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    let points = path.curve.spline().points();
+    let chosen = state.labs.path.chosen.and_then(|index| Some((index, *points.get(index)?)));
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(space::XS, space::XS);
         let draw = Button::new(text::DRAW)
@@ -133,17 +131,20 @@ fn points_ui(path: &PathFacts, session: &Session, state: &mut UiState, out: &mut
         if kit::button_ui(Button::new(text::ADD_POINT).hint(text::ADD_POINT_HELP), ui).clicked() {
             state.labs.path.add_point(path, session, out);
         }
-        ui.add_enabled_ui(chosen.is_some(), |ui| {
-            let remove = Button::new(text::REMOVE_POINT).hint(text::REMOVE_POINT_HELP);
-            let remove = kit::button_ui(remove, ui);
-            if remove.on_disabled_hover_text(say(text::CHOOSE_POINT, ui)).clicked() {
-                state.labs.path.remove_point(path, session, out);
-            }
-        });
+    });
+    // In a row of its own: a part of the panel that is disabled does not wrap.
+    ui.add_enabled_ui(chosen.is_some(), |ui| {
+        let remove = Button::new(text::REMOVE_POINT).hint(text::REMOVE_POINT_HELP);
+        let remove = kit::button_ui(remove, ui);
+        if remove.on_disabled_hover_text(say(text::CHOOSE_POINT, ui)).clicked() {
+            state.labs.path.remove_point(path, session, out);
+        }
     });
     let words = chosen.map_or_else(
         || text::POINTS_HELP.into(),
         |(index, place)| text::chosen_point(index, points.len(), place),
+    );
+    kit::note_ui(&words, palette_of(ui).muted, ui);
     let before = out.commands.len();
     for key in [Key::PinStart, Key::PinEnd] {
         param_row_ui(key, &Detail::default(), session, out, ui);
@@ -152,8 +153,6 @@ fn points_ui(path: &PathFacts, session: &Session, state: &mut UiState, out: &mut
         // What a pin refused may be possible now.
         state.labs.path.said = None;
     }
-    );
-    kit::note_ui(&words, palette_of(ui).muted, ui);
 }
 
 /// Draws the buttons for the whole path.

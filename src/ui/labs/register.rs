@@ -8,10 +8,8 @@ use crate::ui::labs::lab_ui::{Compares, Edge, LabUi, Shown, Title};
 use crate::ui::language::{Text, Word, say};
 use crate::ui::out::Out;
 use crate::ui::rows::clip_sets_ui;
-use crate::ui::rows::{Detail, param_row_ui};
-use crate::ui::rows::{
-    clip_choice_ui, compare_ui, foot_rows_ui, frames_of_both, lab_label, pair_ui, save_result_ui,
-};
+use crate::ui::rows::{Detail, Kept, param_row_ui};
+use crate::ui::rows::{clip_choice_ui, compare_ui, foot_rows_ui, frames_of_both, pair_ui};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{Palette, Type, palette_of, space, theme_of};
@@ -29,6 +27,8 @@ use std::sync::Arc;
 /// The lab's part of the page.
 pub(super) const LAB: LabUi = LabUi {
     panel_ui: register_ui,
+    about: [text::REGISTER_ABOUT, text::REGISTER_DETAILS],
+    kept: |_, pane| Kept::result(pane),
     compares: Compares::Own(compare_warps),
     title,
     hint: |_| Some(text::REGISTER_HINT),
@@ -72,8 +72,6 @@ const FIRST_SHARE: f64 = 0.25;
 
 /// Draws the rows of the lab.
 pub(super) fn register_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    kit::section_header_ui(lab_label(session), ui);
-    kit::note_ui(text::REGISTER_ABOUT, palette_of(ui).muted, ui);
     clip_sets_ui(session, out, ui);
     pair_ui(session, out, ui);
     map_ui(session, state, out, ui);
@@ -107,8 +105,6 @@ pub(super) fn register_ui(session: &Session, state: &mut UiState, out: &mut Out,
     if params.choice::<choices::Ends>() == choices::Ends::Free {
         param_row_ui(Key::EndSlack, &plain, session, out, ui);
     }
-    ui.add_space(space::S);
-    save_result_ui(session, state, out, ui);
 }
 
 /// Draws one weight, or a curve of weights.

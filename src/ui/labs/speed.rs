@@ -2,11 +2,10 @@
 
 use crate::ui::kit::{self, Button, Mark, Part};
 use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
-use crate::ui::language::Word;
 use crate::ui::out::Out;
 use crate::ui::rows::clip_sets_ui;
-use crate::ui::rows::{Detail, param_row_ui};
-use crate::ui::rows::{foot_rows_ui, lab_label, pair_ui, save_result_ui};
+use crate::ui::rows::{Detail, Kept, param_row_ui};
+use crate::ui::rows::{foot_rows_ui, pair_ui};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{palette_of, space};
@@ -18,6 +17,8 @@ use segue_text::{Message, msg};
 /// The lab's part of the page.
 pub(super) const LAB: LabUi = LabUi {
     panel_ui: speed_ui,
+    about: [text::SPEED_ABOUT, text::SPEED_DETAILS],
+    kept: |_, pane| Kept::result(pane),
     compares: Compares::Own(compare_speeds),
     title,
     hint: |_| None,
@@ -42,9 +43,7 @@ const SLIDER_MPS: f64 = 6.0;
 const SLIDER_BEYOND: f64 = 1.6;
 
 /// Draws the rows of the lab.
-pub(super) fn speed_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    kit::section_header_ui(lab_label(session), ui);
-    kit::note_ui(text::SPEED_ABOUT, palette_of(ui).muted, ui);
+pub(super) fn speed_ui(session: &Session, _: &mut UiState, out: &mut Out, ui: &mut Ui) {
     clip_sets_ui(session, out, ui);
     pair_ui(session, out, ui);
     let palette = palette_of(ui);
@@ -54,7 +53,8 @@ pub(super) fn speed_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
     if let Some(CycleMade::Gait { facts, clips_mps, cuts_secs, .. }) = made {
         let mark = |part: Part, value| Mark { value, color: part.fill(palette).0 };
         detail.marks = vec![mark(Part::A, clips_mps[0]), mark(Part::B, clips_mps[1])];
-        detail.help = Some(text::gaits(clips_mps, cuts_secs));
+        detail.more = Some(text::gaits(clips_mps, cuts_secs));
+        detail.note = Some(text::gait_speeds(clips_mps));
         let most = clips_mps[0].max(clips_mps[1]);
         detail.max = Some((SLIDER_BEYOND * most).max(session.params().number(Key::Speed)));
         warning = text::beyond_gaits(&facts, clips_mps);
@@ -70,10 +70,7 @@ pub(super) fn speed_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
     }
     ui.add_space(space::S);
     param_row_ui(Key::PhaseAlign, &Detail::default(), session, out, ui);
-    kit::note_ui(Word::new(Key::PhaseAlign.param().help), palette.muted, ui);
     foot_rows_ui(session, out, ui);
-    ui.add_space(space::S);
-    save_result_ui(session, state, out, ui);
 }
 
 /// Opens the speed of A, that of B and the one between them side by side, or goes back to one pane.

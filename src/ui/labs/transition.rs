@@ -6,8 +6,7 @@ use crate::ui::labs::lab_ui::{Compares, Edge, LabUi, Shown, Title};
 use crate::ui::language::Word;
 use crate::ui::out::Out;
 use crate::ui::rows::{
-    Detail, blend_window_ui, compare_ui, foot_rows_ui, lab_label, pair_ui, param_row_ui,
-    place_rows_ui, save_result_ui,
+    Detail, Kept, blend_window_ui, compare_ui, foot_rows_ui, pair_ui, param_row_ui, place_rows_ui,
 };
 use crate::ui::state::UiState;
 use crate::ui::text;
@@ -21,6 +20,8 @@ use segue_text::msg;
 /// The lab's part of the page.
 pub(super) const LAB: LabUi = LabUi {
     panel_ui: transition_ui,
+    about: [text::TRANSITION_ABOUT, text::TRANSITION_DETAILS],
+    kept: |_, pane| Kept::result(pane),
     compares: Compares::Key(Key::HalfLife),
     title,
     hint: |_| None,
@@ -70,8 +71,7 @@ pub(super) fn edge_value(
 }
 
 /// Draws the parameters of the methods, and those that they share.
-pub(super) fn transition_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    kit::section_header_ui(lab_label(session), ui);
+pub(super) fn transition_ui(session: &Session, _: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let fps = pair_ui(session, out, ui);
     let params = session.params();
     param_row_ui(Key::Method, &Detail::default(), session, out, ui);
@@ -111,8 +111,6 @@ pub(super) fn transition_ui(session: &Session, state: &mut UiState, out: &mut Ou
     param_row_ui(Key::AlignBy, &Detail::default(), session, out, ui);
     param_row_ui(Key::RootBlend, &Detail::default(), session, out, ui);
     foot_rows_ui(session, out, ui);
-    ui.add_space(space::S);
-    save_result_ui(session, state, out, ui);
 }
 
 /// Draws the times after which shares of the offset remain, and the equivalent dissolve.

@@ -5,9 +5,7 @@ use crate::ui::kit::{self, Button};
 use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
 use crate::ui::labs::toggle_compare;
 use crate::ui::out::Out;
-use crate::ui::rows::{
-    Detail, clip_choice_ui, foot_rows_ui, keep_ui, lab_label, param_row_ui, slot_row_ui,
-};
+use crate::ui::rows::{Detail, Kept, clip_choice_ui, foot_rows_ui, param_row_ui, slot_row_ui};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use eframe::egui::Ui;
@@ -17,6 +15,8 @@ use segue_text::msg;
 /// The lab's part of the page.
 pub(super) const LAB: LabUi = LabUi {
     panel_ui: view_ui,
+    about: [text::VIEW_ABOUT, text::VIEW_DETAILS],
+    kept,
     compares: Compares::Own(|session, out| {
         compare_clips(session.params().text(Key::A), session.params().text(Key::B), out);
     }),
@@ -41,19 +41,24 @@ pub(crate) fn compare_clips(reference: &str, other: &str, out: &mut Out) {
 }
 
 pub(super) fn view_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    kit::section_header_ui(lab_label(session), ui);
     compared_clips_ui(session, out, ui);
     foot_rows_ui(session, out, ui);
     for key in [Key::RootMotion, Key::PlaceX, Key::PlaceZ, Key::PlaceHeading] {
         param_row_ui(key, &Detail::default(), session, out, ui);
     }
-    let is_made = session.view_is_changed();
-    if is_made {
-        keep_ui(0, session, out, ui);
-    }
     if let Some(entry) = session.slot(Slot::A) {
-        let saved = if is_made { "result:0" } else { entry.id.as_str() };
-        ui.push_id(&entry.id, |ui| clip_panel_ui(entry, saved, session, state, out, ui));
+        ui.push_id(&entry.id, |ui| clip_panel_ui(entry, None, session, state, out, ui));
+    }
+}
+
+/// Returns the clip with the changes of this lab; a clip without any is in the library already.
+fn kept(session: &Session, pane: usize) -> Kept {
+    let unchanged = session.slot(Slot::A).filter(|_| !session.view_is_changed());
+    match unchanged {
+        Some(entry) if session.panes().len() < 2 => {
+            Kept { saved: entry.id.clone(), not_kept: text::KEPT_ALREADY, ..Kept::result(pane) }
+        }
+        _ => Kept::result(pane),
     }
 }
 

@@ -74,6 +74,15 @@ impl<'a> Text<'a> {
         }
     }
 
+    /// Returns the text as a message, to be a part of another one.
+    pub(crate) fn to_message(self) -> Message {
+        match self {
+            Self::Word(word) => word.into(),
+            Self::Message(message) => message.clone(),
+            Self::Data(data) => Message::data(data),
+        }
+    }
+
     /// Returns the text in English, which tells widgets apart in every language.
     pub(crate) fn english(self) -> Cow<'a, str> {
         match self {

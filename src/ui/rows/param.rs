@@ -1,7 +1,7 @@
 //! One parameter of the table as a row of a panel.
 
 use crate::ui::kit::{self, Button, Icon, Mark, SliderResponse, SliderRow, Source};
-use crate::ui::language::{Text, Word, say};
+use crate::ui::language::{Text, Word};
 use crate::ui::out::Out;
 use crate::ui::text;
 use crate::ui::theme::palette_of;
@@ -20,6 +20,10 @@ pub(crate) struct Detail {
     pub(crate) used: Option<f64>,
     /// A help text in place of the table's.
     pub(crate) help: Option<Message>,
+    /// What is known besides, such as how an automatic value was found, behind the help text.
+    pub(crate) more: Option<Message>,
+    /// A sentence below the row, always in sight.
+    pub(crate) note: Option<Message>,
     /// Marks on the track, besides those of a comparison.
     pub(crate) marks: Vec<Mark>,
 }
@@ -36,12 +40,15 @@ pub(crate) fn param_row_ui(
     if param.is_comparable() {
         out.rows.push(key);
     }
-    let row = ui.push_id(param.name, |ui| match param.kind {
-        Kind::Number { .. } => number_ui(key, detail, session, out, ui),
+    let help = detail.help.as_ref().map_or(Word::new(param.help).into(), Text::from);
+    let more = detail.more.as_ref().filter(|more| !more.is_empty());
+    let whole = more.map(|more| Message::joined(vec![help.to_message(), more.clone()], " "));
+    let help = whole.as_ref().map_or(help, Text::from);
+    ui.push_id(param.name, |ui| match param.kind {
+        Kind::Number { .. } => number_ui(key, detail, help, session, out, ui),
         Kind::Switch => {
-            if let Some(on) =
-                kit::switch_row_ui(Word::new(param.label), session.params().is_on(key), ui)
-            {
+            let (label, on) = (Word::new(param.label), session.params().is_on(key));
+            if let Some(on) = kit::helped_switch_row_ui(label, help, on, ui) {
                 out.set_once(key, Value::Switch(on));
             }
         }
@@ -50,49 +57,63 @@ pub(crate) fn param_row_ui(
             let options: Vec<(&'static str, Word)> =
                 choices.iter().map(|choice| (choice.key, Word::new(choice.label))).collect();
             if let Some(compare) = session.compare().filter(|compare| compare.key == key) {
-                return compared_choices_ui(compare, &options, out, ui);
+                return compared_choices_ui(compare, help, &options, out, ui);
             }
             let chosen = session.params().word(key);
             let picked = if choices.len() <= 4 {
-                if kit::segmented_label_ui(label, ui) {
+                let (picked, resets) =
+                    kit::labelled_segmented_ui(label, help, chosen, &options, ui);
+                if resets {
                     out.commands.push(Command::Reset(key));
                 }
-                kit::segmented_ui(label, chosen, &options, ui)
+                picked
             } else {
-                kit::choice_row_ui(label, chosen, &options, ui)
+                helped_choice_ui(label, help, chosen, &options, ui)
             };
             if let Some(word) = picked {
                 out.set_once(key, Value::Choice(word));
             }
         }
-        Kind::Joint => joint_ui(key, session, out, ui),
-        Kind::Character => character_ui(key, session, out, ui),
+        Kind::Joint => joint_ui(key, help, session, out, ui),
+        Kind::Character => character_ui(key, help, session, out, ui),
         Kind::Clip | Kind::Text | Kind::List(_) | Kind::Compare => {}
     });
-    // A slider has its help below it.
-    if matches!(param.kind, Kind::Switch | Kind::Choice(_)) {
-        row.response.on_hover_text(say(Word::new(param.help), ui));
+    if let Some(note) = &detail.note {
+        kit::note_ui(note, palette_of(ui).muted, ui);
     }
+}
+
+/// Draws a choice among many, with a help text. Returns a new choice.
+fn helped_choice_ui<'a, T: Copy + PartialEq>(
+    label: impl Into<Text<'a>>,
+    help: Text<'_>,
+    chosen: T,
+    options: &[(T, Word)],
+    ui: &mut Ui,
+) -> Option<T> {
+    let options: Vec<(T, Text<'_>)> =
+        options.iter().map(|&(value, word)| (value, word.into())).collect();
+    kit::helped_choice_row_ui(label.into(), help, chosen, &options, ui)
 }
 
 /// Draws a choice of body parts. A joint that the link names and that is no body part stays an
 /// option until another is chosen.
-fn joint_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
+fn joint_ui(key: Key, help: Text<'_>, session: &Session, out: &mut Out, ui: &mut Ui) {
     let chosen = session.params().text(key);
     let mut options: Vec<(&str, Text<'_>)> =
         Role::ALL.iter().map(|role| (role.name(), Word::new(role.name()).into())).collect();
     if !options.iter().any(|(name, _)| *name == chosen) {
         options.insert(0, (chosen, Text::Data(chosen)));
     }
-    let label = Word::new(key.param().label);
-    if let Some(name) = kit::choice_row_ui(label, chosen, &options, ui) {
+    let label = Word::new(key.param().label).into();
+    if let Some(name) = kit::helped_choice_row_ui(label, help, chosen, &options, ui) {
         out.set_once(key, Value::Text(name.to_owned()));
     }
 }
 
 /// Draws a choice of the characters of files and of the body around the bones; nothing where no
 /// file has a character.
-fn character_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
+fn character_ui(key: Key, help: Text<'_>, session: &Session, out: &mut Out, ui: &mut Ui) {
     let brought = session.library().entries().iter().filter(|entry| entry.mesh.is_some());
     let brought: Vec<(&str, Message)> =
         brought.map(|entry| (entry.id.as_str(), entry.title())).collect();
@@ -105,13 +126,20 @@ fn character_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
     let chosen =
         session.library().find(session.params().text(key)).filter(|entry| entry.mesh.is_some());
     let chosen = chosen.map_or("", |entry| entry.id.as_str());
-    let label = Word::new(key.param().label);
-    if let Some(id) = kit::choice_row_ui(label, chosen, &options, ui) {
+    let label = Word::new(key.param().label).into();
+    if let Some(id) = kit::helped_choice_row_ui(label, help, chosen, &options, ui) {
         out.set_once(key, Value::Text(id.to_owned()));
     }
 }
 
-fn number_ui(key: Key, detail: &Detail, session: &Session, out: &mut Out, ui: &mut Ui) {
+fn number_ui(
+    key: Key,
+    detail: &Detail,
+    help: Text<'_>,
+    session: &Session,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
     let param = key.param();
     let Kind::Number { min, max, step, auto, logarithmic } = param.kind else {
         return;
@@ -143,7 +171,6 @@ fn number_ui(key: Key, detail: &Detail, session: &Session, out: &mut Out, ui: &m
     let fps = param.has(InSeconds).then(|| frame_rate(session));
     let in_seconds =
         |value: f64| fps.map_or_else(String::new, |fps| format!("{:.2} s", value / fps));
-    let help = detail.help.as_ref().map_or(Word::new(param.help).into(), Text::from);
     if let Some(compare) = compare {
         return compared_ui(compare, session.range_of(key), &row, &in_seconds, help, out, ui);
     }
@@ -214,7 +241,6 @@ fn compared_ui(
 ) {
     let param = compare.key.param();
     let mut panes = compare.clone();
-    let last = compare.values.len() - 1;
     for (pane, value) in compare.values.iter().enumerate() {
         let Some(value) = number_of(value) else {
             continue;
@@ -222,7 +248,7 @@ fn compared_ui(
         let (label, secondary) = (label_of(param.label, pane), in_seconds(value));
         let row = row.clone().label(&label).secondary(&secondary);
         let response =
-            kit::slider_row_ui(value, &row.help(if pane == last { help } else { Text::EMPTY }), ui);
+            kit::slider_row_ui(value, &row.help(if pane == 0 { help } else { Text::EMPTY }), ui);
         if let Some(value) = response.changed {
             panes.values[pane] = Value::Number(value);
             out.set(Key::Compare, Value::Compare(Some(panes.clone())));
@@ -240,6 +266,7 @@ fn label_of(label: &'static str, pane: usize) -> Message {
 /// Draws a choice that differs from pane to pane: a row for each pane.
 fn compared_choices_ui(
     compare: &Compare,
+    help: Text<'_>,
     options: &[(&'static str, Word)],
     out: &mut Out,
     ui: &mut Ui,
@@ -250,7 +277,9 @@ fn compared_choices_ui(
             continue;
         };
         let label = label_of(label, pane);
-        let picked = ui.push_id(pane, |ui| kit::choice_row_ui(&label, *chosen, options, ui)).inner;
+        let help = if pane == 0 { help } else { Text::EMPTY };
+        let picked =
+            ui.push_id(pane, |ui| helped_choice_ui(&label, help, *chosen, options, ui)).inner;
         if let Some(word) = picked {
             let mut panes = compare.clone();
             panes.values[pane] = Value::Choice(word);

@@ -9,7 +9,7 @@ use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Align, Align2, Layout, UiBuilder, pos2, vec2};
 use eframe::egui::{Rect, Ui};
 use segue_formats::bvh::RotationOrder;
-use segue_session::export::{ExportBody, ExportFormat};
+use segue_session::export::{ExportBody, ExportFormat, ExportOptions};
 
 /// Metres per unit of length of saved files, with the name of the unit.
 const UNITS: [(Option<f64>, Word); 3] =
@@ -39,6 +39,20 @@ const RATES: [(Option<f64>, Word); 4] = [
 /// Draws the row that saves a motion, and its options, folded. `which` is a clip's id, or
 /// `result:1` for the second pane.
 pub(crate) fn save_rows_ui(which: &str, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    format_row_ui(which, state, out, ui);
+    if state.export.format != ExportFormat::Csv {
+        kit::folded_ui(text::SAVE_OPTIONS, ui, |ui| options_ui(&mut state.export, ui));
+    }
+}
+
+/// Draws the row that saves a motion, and its options below it.
+pub(super) fn save_options_ui(which: &str, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    format_row_ui(which, state, out, ui);
+    options_ui(&mut state.export, ui);
+}
+
+/// Draws the choice of the format, and the button that saves.
+fn format_row_ui(which: &str, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let theme = theme_of(ui);
     let rect = kit::paint::full_width((30.0 * theme.scale()).round(), ui);
     let label = [kit::paint::Run::new(text::SAVE_AS, Type::Label, palette_of(ui).text)];
@@ -67,33 +81,31 @@ pub(crate) fn save_rows_ui(which: &str, state: &mut UiState, out: &mut Out, ui: 
     if ui.scope_builder(builder, |ui| kit::button_ui(save, ui)).inner.clicked() {
         out.actions.push(Action::Save { which: which.to_owned(), how: state.export });
     }
-    let export = &mut state.export;
+}
+
+/// Draws the options of the chosen format.
+fn options_ui(export: &mut ExportOptions, ui: &mut Ui) {
     match export.format {
-        ExportFormat::Csv => {}
+        ExportFormat::Csv => return,
         ExportFormat::Glb => {
-            kit::folded_ui(text::SAVE_OPTIONS, ui, |ui| {
-                if let Some(body) = kit::choice_row_ui(text::SAVE_BODY, export.body, &BODIES, ui) {
-                    export.body = body;
-                }
-                rate_ui(&mut export.fps, ui);
-            });
+            if let Some(body) = kit::choice_row_ui(text::SAVE_BODY, export.body, &BODIES, ui) {
+                export.body = body;
+            }
         }
         ExportFormat::Bvh => {
-            kit::folded_ui(text::SAVE_OPTIONS, ui, |ui| {
-                if let Some(unit) =
-                    kit::choice_row_ui(text::SAVE_UNIT, export.metres_per_unit, &UNITS, ui)
-                {
-                    export.metres_per_unit = unit;
-                }
-                if let Some(order) =
-                    kit::choice_row_ui(text::ROTATION_ORDER, export.rotation_order, &ORDERS, ui)
-                {
-                    export.rotation_order = order;
-                }
-                rate_ui(&mut export.fps, ui);
-            });
+            if let Some(unit) =
+                kit::choice_row_ui(text::SAVE_UNIT, export.metres_per_unit, &UNITS, ui)
+            {
+                export.metres_per_unit = unit;
+            }
+            if let Some(order) =
+                kit::choice_row_ui(text::ROTATION_ORDER, export.rotation_order, &ORDERS, ui)
+            {
+                export.rotation_order = order;
+            }
         }
     }
+    rate_ui(&mut export.fps, ui);
 }
 
 fn rate_ui(fps: &mut Option<f64>, ui: &mut Ui) {

@@ -83,6 +83,8 @@ fn loop_lab_describes_its_cut_and_method() {
         picture(name, &mut harness);
     }
     let mut harness = harness(DESK, DARK, page("lab=loop&play=off"));
+    // The help of the method is about the chosen one.
+    press("Method: help", &mut harness);
     harness.get_by_label_contains("solved so that pose and velocity match");
     press("Compare methods", &mut harness);
     assert_eq!(harness.state().session.panes().len(), 3);

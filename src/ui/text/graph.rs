@@ -4,10 +4,11 @@ use crate::ui::language::Word;
 use segue_session::{BuiltGraph, FollowedPath, GraphClips};
 use segue_text::{Message, msg};
 
-/// The description of the Graph lab.
-pub(crate) const GRAPH_ABOUT: Word = Word::new(
-    "A motion graph: the transitions between clips, and an endless random walk through them, set by the seed.",
-);
+/// The line about the Graph lab.
+pub(crate) const GRAPH_ABOUT: Word = Word::new("Walks endlessly through a graph of clips.");
+/// What there is to say beyond the line about the Graph lab.
+pub(crate) const GRAPH_DETAILS: Word =
+    Word::new("The graph has the transitions between the clips; the seed sets the walk.");
 /// The hint over the stage in the Graph lab.
 pub(crate) const GRAPH_HINT: Word = Word::new(
     "Point at a ring or an arc to see both poses. Click it to play that transition alone.",

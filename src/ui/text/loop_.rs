@@ -4,10 +4,11 @@ use crate::ui::language::Word;
 use segue_session::choices::LoopMethod;
 use segue_text::{Message, msg};
 
-/// The description of the Loop lab.
-pub(crate) const LOOP_ABOUT: Word = Word::new(
-    "Makes a seamless loop from a part of A: the difference between its ends is spread over it.",
-);
+/// The line about the Loop lab.
+pub(crate) const LOOP_ABOUT: Word = Word::new("Makes a seamless loop from a part of A.");
+/// What there is to say beyond the line about the Loop lab.
+pub(crate) const LOOP_DETAILS: Word =
+    Word::new("The difference between the ends of that part is spread over it.");
 /// The help of the half-life in this lab.
 pub(crate) const LOOP_HALF_LIFE: Word =
     Word::new("How far into the cycle the correction reaches from its ends.");

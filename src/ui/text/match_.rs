@@ -6,10 +6,14 @@ use segue_session::HandTag;
 use segue_session::choices::Hysteresis;
 use segue_text::{Message, msg};
 
-/// The description of the Match lab.
-pub(crate) const MATCH_ABOUT: Word = Word::new(
-    "Drive the character: W A S D or arrows, Shift to run, Q to strafe. Several times a second, all clips are searched for the best-matching frame.",
+/// The line about the Match lab.
+pub(crate) const MATCH_ABOUT: Word = Word::new("Drives a character by motion matching.");
+/// What there is to say beyond the line about the Match lab.
+pub(crate) const MATCH_DETAILS: Word = Word::new(
+    "Drive with W A S D or the arrows, Shift to run, Q to strafe. Several times a second, all clips are searched for the best-matching frame.",
 );
+/// The reason why a live drive is not saved.
+pub(crate) const LIVE_NOT_SAVED: Word = Word::new("Press Replay to save the drive as a file.");
 /// The hint over the stage in the Match lab.
 pub(crate) const MATCH_HINT: Word = Word::new(
     "Drive with W A S D or the arrows, Shift to run, or the stick. Orange: the requested trajectory. Blue: the trajectory of the current frame.",
@@ -63,15 +67,15 @@ pub(crate) const MADE_SET: Word =
     Word::new("The synthesised set: standing, walks and runs, turns, starts, stops and spins.");
 /// The accessible name of the strip of clips.
 pub(crate) const CLIP_STRIP: Word = Word::new("All clips, with the current frame");
-/// The title of the curves of costs.
-pub(crate) const COST: Word = Word::new("cost");
-/// The name of the curve of the cost of continuing.
-pub(crate) const COST_GOING_ON: Word = Word::new("continuing");
 /// The words before the name of a clip below that strip.
 pub(crate) const CLIP_STRIP_TITLE: Word = Word::new("All clips, by tag:");
 /// The note in the place of the curves of costs, until there is one.
 pub(crate) const COSTS_LATER: Word =
     Word::new("Drive the character: each search adds its costs here.");
+/// The title of the curves of costs.
+pub(crate) const COST: Word = Word::new("cost");
+/// The name of the curve of the cost of continuing.
+pub(crate) const COST_GOING_ON: Word = Word::new("continuing");
 /// The name of the curve of the cost of the best frame.
 pub(crate) const COST_BEST: Word = Word::new("best frame");
 /// The mark on the timeline where the character jumps to another frame.

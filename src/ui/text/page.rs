@@ -92,6 +92,14 @@ pub(crate) const FRAME_ALL: Word = Word::new("Frame all");
 pub(crate) const TOP_VIEW: Word = Word::new("Top view");
 pub(crate) const FOLLOW: Word = Word::new("Camera follows");
 pub(crate) const KEEP: Word = Word::new("Keep in library");
+pub(crate) const KEEP_HELP: Word = Word::new("Adds the result to the library as a clip");
+/// The button that opens the format and the options of a file.
+pub(crate) const SAVE_MENU: Word = Word::new("Save…");
+pub(crate) const SAVE_MENU_HELP: Word = Word::new("Saves the result as a file: BVH, CSV or GLB");
+/// The reason why an unchanged clip is not kept.
+pub(crate) const KEPT_ALREADY: Word = Word::new("This clip is in the library already.");
+/// The button that opens the help texts of all rows.
+pub(crate) const ALL_HELP: Word = Word::new("Show all help");
 pub(crate) const STAGE: Word = Word::new("Stage");
 pub(crate) const CAMERA: Word = Word::new("Camera");
 pub(crate) const CURVES: Word = Word::new("curves");
@@ -133,6 +141,22 @@ pub(crate) const WELCOME_HINT: Word = Word::new(
     "The same walk, in sync. Watch the feet and hips: the shorter the blend window, the more abrupt the change to the run.",
 );
 pub(crate) const EMPTY_PANE: Word = Word::new("Nothing to show yet");
+/// Returns the name of a lab in a sentence, or alone.
+pub(crate) fn lab(name: Word) -> Message {
+    msg!("{name} lab", name)
+}
+
+/// The line about the View lab.
+pub(crate) const VIEW_ABOUT: Word = Word::new("Plays a clip as it is.");
+/// What there is to say beyond the line about the View lab.
+pub(crate) const VIEW_DETAILS: Word = Word::new(
+    "Move it over the ground, remove its root motion or lock its feet to make another clip of it. Its joints and body parts are at the end.",
+);
+/// The line about the Make lab.
+pub(crate) const MAKE_ABOUT: Word = Word::new("Synthesises a motion from a few numbers.");
+/// What there is to say beyond the line about the Make lab.
+pub(crate) const MAKE_DETAILS: Word =
+    Word::new("Keep it in the library to use it as A or B in the other labs.");
 /// The chip of a pane that still shows an earlier result.
 pub(crate) const OUTDATED: Word = Word::new("updating…");
 /// The note below the buttons that keep and save, without a result.

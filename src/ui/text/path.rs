@@ -6,10 +6,11 @@ use segue_session::PathFacts;
 use segue_session::choices::PathKeep;
 use segue_text::{Message, msg};
 
-/// The description of the Path lab.
-pub(crate) const PATH_ABOUT: Word = Word::new(
-    "The path of the hips is fitted with a spline. Drag its control points to reshape it; the character follows and keeps its local motion.",
-);
+/// The line about the Path lab.
+pub(crate) const PATH_ABOUT: Word = Word::new("Fits a path to the hips, and lets you reshape it.");
+/// What there is to say beyond the line about the Path lab.
+pub(crate) const PATH_DETAILS: Word =
+    Word::new("Drag its control points: the character follows and keeps its local motion.");
 /// The hint over the stage in the Path lab.
 pub(crate) const PATH_HINT: Word = Word::new(
     "Drag a point to bend the path; the character follows. Double-click the path to add a point.",

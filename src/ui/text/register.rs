@@ -3,10 +3,11 @@
 use crate::ui::language::Word;
 use segue_text::{Message, msg};
 
-/// The description of the Register lab.
-pub(crate) const REGISTER_ABOUT: Word = Word::new(
-    "Time-warps B so that matching poses line up. Watch the foot contacts on the timeline: A, B and the result strike together.",
-);
+/// The line about the Register lab.
+pub(crate) const REGISTER_ABOUT: Word = Word::new("Time-warps B so that matching poses line up.");
+/// What there is to say beyond the line about the Register lab.
+pub(crate) const REGISTER_DETAILS: Word =
+    Word::new("Watch the foot contacts on the timeline: A, B and the result strike together.");
 /// The hint over the stage in the Register lab.
 pub(crate) const REGISTER_HINT: Word = Word::new(
     "A and B play beside the result, in sync. Compare with plain: steps double, and feet slide.",

@@ -4,17 +4,26 @@ use crate::ui::language::Word;
 use segue_motion::gait::GaitFacts;
 use segue_text::{Message, msg};
 
-/// The description of the In place lab.
+/// The line about the In place lab.
 pub(crate) const IN_PLACE_ABOUT: Word =
-    Word::new("Removes the root motion of a clip, or rebuilds it from the planted feet.");
-/// The description of the Speed lab.
-pub(crate) const SPEED_ABOUT: Word = Word::new(
-    "Blends two gaits, such as a walk and a run, to any speed between them. Drag the speed while it plays.",
-);
+    Word::new("Removes the root motion of a clip, or rebuilds it.");
+/// What there is to say beyond the line about the In place lab.
+pub(crate) const IN_PLACE_DETAILS: Word =
+    Word::new("It is rebuilt from the planted feet, which stay where they are on the ground.");
+/// The line about the Speed lab.
+pub(crate) const SPEED_ABOUT: Word = Word::new("Blends two gaits to any speed between them.");
+/// What there is to say beyond the line about the Speed lab.
+pub(crate) const SPEED_DETAILS: Word =
+    Word::new("For example a walk and a run. Drag the speed while it plays.");
 /// The button that compares the speeds of A and B and the one between them.
 pub(crate) const THREE_SPEEDS: Word = Word::new("A, midway, B");
 /// The chip over a pane whose speed lies beyond both clips.
 pub(crate) const BEYOND: Word = Word::new("extrapolated");
+
+/// Returns the speed of one cycle of each clip.
+pub(crate) fn gait_speeds([a, b]: [f64; 2]) -> Message {
+    msg!("A: {a:.2} m/s · B: {b:.2} m/s", a, b)
+}
 
 /// Returns the speed and the place of the cycle of each clip.
 pub(crate) fn gaits([a, b]: [f64; 2], [[from_a, to_a], [from_b, to_b]]: [[f64; 2]; 2]) -> Message {

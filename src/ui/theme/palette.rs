@@ -274,6 +274,8 @@ mod tests {
             }
             pairs.extend([
                 ("text", p.text, "pressed", p.pressed),
+                // An automatic value on a card, and a selected formula.
+                ("accent", p.accent_ink, "its wash, raised", over(p.accent_wash, p.panel_raised)),
                 ("on a", p.on_a, "a", p.a),
                 ("on b", p.on_b, "b", p.b),
                 ("accent text", p.accent_text, "accent fill", p.accent_fill),

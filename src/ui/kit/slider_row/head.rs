@@ -2,20 +2,22 @@
 //! the field to type one.
 
 use super::super::assistive::describe;
+use super::super::help::Help;
 use super::super::paint::{Run, faded, focus_ring, line_of, put};
 use super::super::words;
 use super::row::{SliderResponse, SliderRow, Source};
 use crate::ui::language::{Text, say};
 use crate::ui::theme::{self, Type, palette_of, space, theme_of};
 use eframe::egui::{
-    self, Align2, CursorIcon, Id, Key, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui,
-    WidgetInfo, pos2, vec2,
+    self, Align2, CursorIcon, Id, Key, Pos2, Rect, Response, RichText, Role, Sense, Stroke,
+    StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };
 
 /// Draws the line with label and value. Returns the label, which may be double-clicked.
 pub(super) fn head_ui(
     value: f64,
     row: &SliderRow<'_>,
+    help: Help<'_>,
     head: Rect,
     id: Id,
     out: &mut SliderResponse,
@@ -81,10 +83,14 @@ pub(super) fn head_ui(
         right = auto_tag_ui(row, pos2(right - space::XS, head.center().y), id, out, ui).left();
     }
 
-    let label =
-        line_of(&[Run::new(row.label, Type::Label, text)], right - head.left() - space::S, ui);
+    let room = right - head.left() - space::S - help.sign_width(ui);
+    let label = line_of(&[Run::new(row.label, Type::Label, text)], room, ui);
     let rect = put(ui.painter(), head.left_center(), Align2::LEFT_CENTER, label);
-    ui.interact(rect, id.with("label"), Sense::CLICK).on_hover_text(say(words::RESET_HINT, ui))
+    help.sign_ui(rect.right_center(), ui);
+    ui.interact(rect, id.with("label"), Sense::CLICK).on_hover_ui(|ui| {
+        help.tip_ui(ui);
+        ui.label(RichText::new(say(words::RESET_HINT, ui)).color(palette.muted));
+    })
 }
 
 /// Draws the word `auto`: filled while the value is automatic, an outlined button while it could

@@ -9,13 +9,14 @@ pub(crate) use self::row::{Mark, SliderResponse, SliderRow, Source};
 use self::head::head_ui;
 use self::track::{drag, keys, paint_track};
 use super::assistive::{Adjustable, requested};
-use super::paint::{faded, full_width, paragraph, put};
+use super::help::Help;
+use super::paint::full_width;
 use crate::ui::language::say;
-use crate::ui::theme::{self, Type, palette_of, space, theme_of};
-use eframe::egui::{Align2, Rect, Sense, Ui, pos2};
+use crate::ui::theme::{self, space, theme_of};
+use eframe::egui::{Rect, Sense, Ui, pos2};
 
-/// Draws a parameter: label, value and unit on one line, the track below, and a sentence of help
-/// where there is one.
+/// Draws a parameter: label, value and unit on one line, and the track below. A help text has a
+/// sign behind the label.
 ///
 /// Drag the track; hold Shift for a tenth of the speed. Arrow keys step (shift: finely), page keys
 /// step tenfold, home and end go to the ends. Click the number to type one; Enter takes it, Esc
@@ -23,7 +24,6 @@ use eframe::egui::{Align2, Rect, Sense, Ui, pos2};
 pub(crate) fn slider_row_ui(value: f64, row: &SliderRow<'_>, ui: &mut Ui) -> SliderResponse {
     let theme = theme_of(ui);
     let scale = theme.scale();
-    let enabled = ui.is_enabled();
     let id = ui.make_persistent_id(row.label.english());
     let previous_spacing = std::mem::replace(&mut ui.spacing_mut().item_spacing.y, 0.0);
 
@@ -47,7 +47,8 @@ pub(crate) fn slider_row_ui(value: f64, row: &SliderRow<'_>, ui: &mut Ui) -> Sli
     if let Some(asked) = requested(id, value, &row.range, row.step, ui) {
         out.changed = Some(row.snapped(asked, row.fine));
     }
-    let label = head_ui(value, row, head, id, &mut out, ui);
+    let help = Help { label: row.label, text: row.help, id };
+    let label = head_ui(value, row, help, head, id, &mut out, ui);
     if label.double_clicked() || out.response.double_clicked() {
         out.reset = true;
     }
@@ -69,17 +70,7 @@ pub(crate) fn slider_row_ui(value: f64, row: &SliderRow<'_>, ui: &mut Ui) -> Sli
     };
     adjustable.describe(&out.response, ui);
 
-    if !row.help.is_empty() {
-        let galley = paragraph(
-            row.help,
-            Type::Small,
-            faded(palette_of(ui).muted, enabled),
-            ui.available_width(),
-            ui,
-        );
-        let rect = full_width(galley.size().y + space::XS, ui);
-        put(ui.painter(), rect.left_top(), Align2::LEFT_TOP, galley);
-    }
+    help.line_ui(ui);
     ui.spacing_mut().item_spacing.y = previous_spacing;
     ui.add_space(space::XS);
     out

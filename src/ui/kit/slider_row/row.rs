@@ -85,7 +85,7 @@ impl<'a> SliderRow<'a> {
         self
     }
 
-    /// Sets the sentence below the track.
+    /// Sets the help text.
     pub(crate) fn help(mut self, help: impl Into<Text<'a>>) -> Self {
         self.help = help.into();
         self

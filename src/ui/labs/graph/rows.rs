@@ -5,10 +5,7 @@ use super::{map, table};
 use crate::ui::kit::{self, Button, Histogram, Icon};
 use crate::ui::language::{Text, Word, say};
 use crate::ui::out::{Action, Out};
-use crate::ui::rows::{
-    Detail, add_clip_ui, clip_sets_ui, compare_ui, foot_rows_ui, lab_label, param_row_ui,
-    save_result_ui,
-};
+use crate::ui::rows::{Detail, add_clip_ui, clip_sets_ui, compare_ui, foot_rows_ui, param_row_ui};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
@@ -24,8 +21,6 @@ use std::sync::Arc;
 /// Draws the rows of the lab.
 pub(crate) fn graph_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let palette = palette_of(ui);
-    kit::section_header_ui(lab_label(session), ui);
-    kit::note_ui(text::GRAPH_ABOUT, palette.muted, ui);
     clip_sets_ui(session, out, ui);
     progress_ui(session, out, ui);
     if shows_jump(session)
@@ -53,8 +48,6 @@ pub(crate) fn graph_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
         kit::folded_ui(text::NUMBERS, ui, |ui| table::table_ui(session, out, ui));
     }
     files_ui(session, out, ui);
-    ui.add_space(space::S);
-    save_result_ui(session, state, out, ui);
 }
 
 fn progress_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
@@ -157,8 +150,7 @@ fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
             compare_ui(Key::SegmentSize, session, out, ui);
         });
     }
-    let quiet = Detail { help: Some(Message::default()), ..Detail::default() };
-    param_row_ui(Key::EdgeThreshold, &quiet, session, out, ui);
+    param_row_ui(Key::EdgeThreshold, &Detail::default(), session, out, ui);
     if let Some(field) = session.graph_field() {
         let histogram = Histogram {
             label: text::ALL_HISTOGRAM,

@@ -19,6 +19,8 @@ use segue_session::Key;
 /// The lab's part of the page.
 pub(super) const LAB: LabUi = LabUi {
     panel_ui: drive_ui,
+    about: [text::MATCH_ABOUT, text::MATCH_DETAILS],
+    kept: rows::kept,
     compares: Compares::Own(compare_hysteresis),
     title,
     hint: |session| session.is_driven().then_some(text::MATCH_HINT),

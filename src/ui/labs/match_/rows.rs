@@ -6,9 +6,7 @@ use super::why::why_ui;
 use crate::ui::kit::{self, Button, Icon};
 use crate::ui::language::{Word, say};
 use crate::ui::out::Out;
-use crate::ui::rows::{
-    Detail, add_clip_ui, clip_sets_ui, keep_ui, lab_label, param_row_ui, save_result_ui,
-};
+use crate::ui::rows::{Detail, Kept, add_clip_ui, clip_sets_ui, param_row_ui};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
@@ -21,8 +19,6 @@ use segue_text::{Message, ToMessage};
 /// Draws the rows of the lab.
 pub(crate) fn drive_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let palette = palette_of(ui);
-    kit::section_header_ui(lab_label(session), ui);
-    kit::note_ui(text::MATCH_ABOUT, palette.muted, ui);
     clip_sets_ui(session, out, ui);
     if let Some(problem) = session.panes().first().and_then(|pane| pane.problem.as_ref()) {
         kit::note_ui(&problem.to_sentence(), palette.warning, ui);
@@ -67,12 +63,12 @@ pub(crate) fn drive_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
     kit::folded_ui(text::TAGS, ui, |ui| tags_ui(session, state, out, ui));
     kit::folded_ui(text::GOING_OVER, ui, |ui| going_over_ui(session, out, ui));
     kit::folded_ui(text::MATCH_CLIPS, ui, |ui| clips_ui(session, out, ui));
-    ui.add_space(space::S);
-    if session.is_driven() {
-        keep_ui(state.saved_pane, session, out, ui);
-    } else {
-        save_result_ui(session, state, out, ui);
-    }
+}
+
+/// Returns the recorded drive; a live one is kept, and saved when it is replayed.
+pub(super) fn kept(session: &Session, pane: usize) -> Kept {
+    let not_saved = if session.is_driven() { text::LIVE_NOT_SAVED } else { Word::default() };
+    Kept { not_saved, ..Kept::result(pane) }
 }
 
 fn row(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
@@ -127,8 +123,9 @@ fn any_pane_has<C: Selected>(choice: C, session: &Session) -> bool {
 }
 
 fn hysteresis_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
-    row(Key::Hysteresis, session, out, ui);
-    kit::note_ui(text::hysteresis(session.params().choice()), palette_of(ui).muted, ui);
+    let more = text::hysteresis(session.params().choice()).into();
+    let detail = Detail { more: Some(more), ..Detail::default() };
+    param_row_ui(Key::Hysteresis, &detail, session, out, ui);
     if any_pane_has(choices::Hysteresis::Bias, session) {
         row(Key::BiasShare, session, out, ui);
         row(Key::BiasConstant, session, out, ui);
