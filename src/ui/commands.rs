@@ -12,6 +12,7 @@ pub(crate) use help::help;
 pub(super) use keys::LAB_KEYS;
 pub(crate) use keys::take_keys;
 
+use super::clip_drag::swap_values;
 use super::kit::Icon;
 use super::labs::toggle_compare;
 use super::language::Word;
@@ -24,7 +25,7 @@ use super::theme::theme_of;
 use eframe::egui::{Key as Keyboard, Ui};
 use keys::{COMMAND, COMMAND_SHIFT, Focus, NONE, SHIFT, Trigger};
 use segue_session::choices::{Camera, Follow, Look};
-use segue_session::{Command, Key, Kind, PlaybackCommand, Session, Value};
+use segue_session::{Command, Key, Kind, PlaybackCommand, Session, Slot, Value};
 
 /// A command that a button, a line of a menu or a key gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,6 +52,7 @@ pub(crate) enum UiCommand {
     ToggleFollow,
     NextLook,
     ToggleStrafe,
+    SwapClips,
     Undo,
     Redo,
     CopyLink,
@@ -127,6 +129,7 @@ impl UiCommand {
             Self::ToggleFollow => named(text::FOLLOW, Icon::Follow, &[Keys(NONE, Keyboard::G)]),
             Self::NextLook => keys(&[Keys(NONE, Keyboard::B)], Ignored),
             Self::ToggleStrafe => keys(&[Keys(NONE, Keyboard::Q)], Ignored),
+            Self::SwapClips => named(text::SWAP_CLIPS, Icon::Swap, &[Keys(NONE, Keyboard::X)]),
             Self::Undo => named(text::UNDO, Icon::Undo, &[Keys(COMMAND, Keyboard::Z)]),
             Self::Redo => named(
                 text::REDO,
@@ -149,6 +152,7 @@ impl UiCommand {
     /// Returns whether the command can be given now.
     fn is_enabled(self, session: &Session) -> bool {
         match self {
+            Self::SwapClips => session.uses(Slot::A) && session.uses(Slot::B),
             Self::Undo => session.can_undo(),
             Self::Redo => session.can_redo(),
             // A driven character is steered by the arrows.
@@ -218,6 +222,10 @@ impl UiCommand {
                 out.set_once(Key::Look, next.into());
             }
             Self::ToggleStrafe => out.toggle(Key::Strafe, params.is_on(Key::Strafe)),
+            Self::SwapClips => {
+                out.commands.push(Command::Set(swap_values(session)));
+                out.commands.push(Command::Settle);
+            }
             Self::Undo => out.commands.push(Command::Undo),
             Self::Redo => out.commands.push(Command::Redo),
             Self::CopyLink => out.actions.push(Action::CopyLink),
@@ -238,8 +246,12 @@ impl UiCommand {
     }
 }
 
-/// Closes the layers in front of the lesson, or else the lesson.
+/// Ends the search or the selection in the library, or closes the layers in front of the lesson, or
+/// else the lesson.
 fn close(session: &Session, state: &mut UiState, out: &mut Out) {
+    if !state.help_open && state.library.close() {
+        return;
+    }
     let lies_in_front = state.help_open || state.library_open || state.drawing.is_some();
     if lessons_panel::is_open(session) && !lies_in_front {
         toggle_lessons(session, out);

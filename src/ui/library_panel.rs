@@ -1,276 +1,229 @@
 //! The left panel: the library of clips.
 
-use super::clip_panel::clip_panel_ui;
-use super::kit::{self, Button, ClipRow, Icon, MenuItem, Part};
-use super::labs::compare_clips;
+mod arrange;
+mod files;
+mod row;
+mod selection;
+mod state;
+
+pub(crate) use state::{ClipOrder, LibraryState};
+
+use self::arrange::{Section, arrange};
+use self::files::files_ui;
+use self::row::entry_ui;
+use self::selection::selection_ui;
+use super::commands::{UiCommand, command_icon_ui};
+use super::kit::{self, Button, Icon, MenuItem};
 use super::language::{Text, Word, say};
-use super::out::{Action, Out};
-use super::state::{Typing, UiState};
+use super::notices::NoticePlace;
+use super::out::Out;
+use super::state::UiState;
 use super::text;
-use super::theme::{Type, palette_of, space, theme_of};
+use super::theme::{palette_of, space, theme_of};
 use eframe::egui::accesskit::Role;
-use eframe::egui::{self, Frame, Id, Key as Keyboard, Margin, Panel, RichText, ScrollArea, Ui};
-use segue_session::export::{ExportFormat, ExportOptions};
-use segue_session::{Command, Entry, FileCommand, Key, Origin, Session, Slot};
-use segue_text::{Message, msg};
+use eframe::egui::style::ScrollAnimation;
+use eframe::egui::{
+    Align, Frame, Id, Layout as Flow, Margin, Panel, Rect, RectAlign, ScrollArea, Ui, UiBuilder,
+    pos2, vec2,
+};
+use segue_session::{Entry, Origin, Session, Slot, StorageState};
 
-/// The share of the memory in use from which on it is shown.
-const MEMORY_SHOWN_FROM: f32 = 0.25;
+/// The number of clips from which on they can be searched and sorted.
+const SEARCHED_FROM: usize = 9;
 
-/// Draws the panel: the list, and below it, always in sight, the drop zone.
+/// Draws the panel: its head, the list, and below it, always in sight, the selection and the drop
+/// zone.
 pub(crate) fn library_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let frame = Frame::new().inner_margin(Margin { top: space::S as i8, ..Margin::ZERO });
-    Panel::bottom("drop files here")
-        .frame(frame)
-        .show_separator_line(false)
-        .show(ui, |ui| drop_ui(session, state, out, ui));
+    Panel::bottom("drop files here").frame(frame).show_separator_line(false).show(ui, |ui| {
+        selection_ui(session, state, out, ui);
+        files_ui(session, state, out, ui);
+    });
+    head_ui(session, false, state, out, ui);
     ScrollArea::vertical()
         .auto_shrink(false)
         .show(ui, |ui| library_list_ui(session, state, out, ui));
 }
 
-/// Draws the list of clips: first the user's, then the built-in ones.
-pub(crate) fn library_list_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    let header = kit::section_header_ui(text::LIBRARY, ui);
-    if let Some(stored) = state.stored {
-        kit::section_mark_ui(text::stored(stored), header, ui);
+/// Draws the library of a phone, which takes the place of the parameters. `frame` is that of what
+/// scrolls.
+pub(crate) fn library_drawer_ui(
+    session: &Session,
+    frame: Frame,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
+    let is_new = !state.library.was_shown;
+    if !state.library.picked.is_empty() {
+        let frame = Frame::new().inner_margin(Margin::symmetric(0, space::S as i8));
+        Panel::bottom("selected clips")
+            .frame(frame)
+            .show(ui, |ui| selection_ui(session, state, out, ui));
     }
+    frame.show(ui, |ui| head_ui(session, true, state, out, ui));
+    ScrollArea::vertical().id_salt("library").auto_shrink(false).show(ui, |ui| {
+        if is_new {
+            ui.scroll_to_cursor_animation(Some(Align::TOP), ScrollAnimation::none());
+        }
+        frame.show(ui, |ui| {
+            files_ui(session, state, out, ui);
+            ui.add_space(space::S);
+            library_list_ui(session, state, out, ui);
+        });
+    });
+}
+
+/// Draws the heading with what concerns the whole library, and the row of the search.
+fn head_ui(session: &Session, closes: bool, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    state.library.is_shown = true;
+    let row = ui.available_rect_before_wrap();
+    let header = kit::section_header_ui(text::LIBRARY, ui);
+    let row = Rect::from_min_max(row.min, pos2(row.right(), header.bottom()));
+    let side = theme_of(ui).row_height();
+    let swaps = session.uses(Slot::A) && session.uses(Slot::B);
+    let buttons = usize::from(swaps) + usize::from(closes);
+    let mut inner = ui.new_child(
+        UiBuilder::new()
+            .id_salt("library head")
+            .max_rect(Rect::from_center_size(row.center(), vec2(row.width(), side)))
+            .layout(Flow::right_to_left(Align::Center)),
+    );
+    inner.spacing_mut().item_spacing.x = 0.0;
+    if closes && kit::icon_button_ui(Icon::Close, text::CLOSE, &mut inner).clicked() {
+        state.library_open = false;
+    }
+    if swaps {
+        command_icon_ui(UiCommand::SwapClips, session, state, out, &mut inner);
+    }
+    let free = row.with_max_x(row.right() - buttons as f32 * side - space::XS);
+    let has_notices = !session.notices().list().is_empty() || session.notices().added().is_some();
+    if let Some(stored) =
+        state.stored.filter(|stored| !has_notices || *stored != StorageState::Done)
+    {
+        kit::section_mark_ui(text::stored(stored), free, ui);
+    }
+    let heading_end = free.left() + kit::section_header_width(text::LIBRARY, ui);
+    state.notice_place = Some(NoticePlace { row: free, heading_end });
+    if session.library().entries().len() >= SEARCHED_FROM {
+        search_ui(state, ui);
+        ui.add_space(space::XS);
+    } else {
+        state.library.search.clear();
+    }
+}
+
+/// Draws the field of the search, and the menu of orders.
+fn search_ui(state: &mut UiState, ui: &mut Ui) {
+    let row = kit::paint::full_width(theme_of(ui).row_height(), ui);
+    let side = row.height();
+    let field = row.with_max_x(row.right() - side - space::XS);
+    ui.scope_builder(UiBuilder::new().id_salt("search").max_rect(field), |ui| {
+        kit::search_field_ui(text::SEARCH_CLIPS, &mut state.library.search, ui);
+    });
+    let place = row.with_min_x(row.right() - side);
+    let mut inner = ui.new_child(UiBuilder::new().id_salt("sort").max_rect(place));
+    let order = state.library.order;
+    let button = Button::icon_only(Icon::Sort, text::SORT).selected(order != ClipOrder::Added);
+    let opener = kit::button_ui(button, &mut inner);
+    kit::menu_ui(&opener, RectAlign::BOTTOM_END, |ui| {
+        for (known, words) in [
+            (ClipOrder::Added, text::ORDER_ADDED),
+            (ClipOrder::Name, text::ORDER_NAME),
+            (ClipOrder::Length, text::ORDER_LENGTH),
+        ] {
+            let item =
+                MenuItem { text: words.into(), chosen: known == order, ..MenuItem::default() };
+            if kit::menu_item_ui(item, ui).clicked() {
+                state.library.order = known;
+            }
+        }
+    });
+}
+
+/// Draws the list of clips: first the user's, then the built-in ones.
+fn library_list_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     ui.spacing_mut().item_spacing.y = 1.0;
     let entries = session.library().entries();
-    let is_built_in = |entry: &Entry| matches!(entry.origin, Origin::Preset);
-    let ordered = entries
+    state.library.picked.retain(|id| session.library().get(id).is_some());
+    let search = state.library.search.clone();
+    let sections = arrange(entries, state.library.order, &search, |entry| say(&entry.title(), ui));
+    if sections.is_empty() && !search.is_empty() {
+        kit::note_ui(text::NO_SUCH_CLIP, palette_of(ui).muted, ui);
+    }
+    // A search looks into folded groups as well.
+    let is_open = |section: &Section<'_>, state: &UiState| {
+        let folded = &state.library.folded;
+        !search.is_empty() || section.head.as_ref().is_none_or(|(key, _)| !folded.contains(key))
+    };
+    let arrived = arrived_clip(entries.iter().map(|entry| &**entry), ui);
+    let shown: Vec<&str> = sections
         .iter()
-        .filter(|entry| !is_built_in(entry))
-        .chain(entries.iter().filter(|entry| is_built_in(entry)));
-    // The newest clip is scrolled into sight once.
-    let newest = entries
-        .iter()
-        .rfind(|entry| !is_built_in(entry) && entry.motion.is_some())
-        .map(|entry| entry.id.clone());
+        .filter(|section| is_open(section, state))
+        .flat_map(|section| section.entries.iter().map(|entry| entry.id.as_str()))
+        .collect();
+    ui.scope(|ui| {
+        kit::set_role(Role::List, text::LIBRARY, ui);
+        for section in &sections {
+            head_of_section_ui(section, is_open(section, state), state, ui);
+            if !is_open(section, state) {
+                continue;
+            }
+            for entry in &section.entries {
+                let row = ui.push_id(&entry.id, |ui| {
+                    kit::set_role(Role::ListItem, Word::default(), ui);
+                    entry_ui(entry, &shown, session, state, out, ui);
+                });
+                if arrived.as_ref() == Some(&entry.id) {
+                    row.response.scroll_to_me(None);
+                }
+            }
+        }
+    });
+}
+
+/// Returns the newest clip in the frame in which it arrives: it is scrolled into sight once.
+fn arrived_clip<'a>(
+    entries: impl DoubleEndedIterator<Item = &'a Entry>,
+    ui: &Ui,
+) -> Option<String> {
+    let is_own = |entry: &&Entry| !matches!(entry.origin, Origin::Preset) && entry.motion.is_some();
+    let newest = entries.rev().find(is_own).map(|entry| entry.id.clone());
     let seen_id = Id::unique("newest clip seen");
     let seen: Option<Option<String>> = ui.data(|data| data.get_temp(seen_id));
     let arrived = newest.clone().filter(|_| seen.is_some_and(|seen| seen != newest));
     ui.data_mut(|data| data.insert_temp(seen_id, newest));
-    ui.scope(|ui| {
-        kit::set_role(Role::List, text::LIBRARY, ui);
-        for entry in ordered {
-            let row = ui.push_id(&entry.id, |ui| {
-                kit::set_role(Role::ListItem, Word::default(), ui);
-                entry_ui(entry, session, state, out, ui);
-            });
-            if arrived.as_ref() == Some(&entry.id) {
-                row.response.scroll_to_me(None);
-            }
-        }
-    });
+    arrived
 }
 
-/// Draws the tasks under way, the bundled takes and the drop zone.
-pub(crate) fn drop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    let memory = session.memory().filter(|memory| memory.share() > MEMORY_SHOWN_FROM);
-    // A panel has the size of its contents in the last frame: when they grow, the frame is laid out
-    // again before it is shown.
-    let rows = (
-        state.fetching.len(),
-        session.jobs().iter().filter(|job| job.size.is_some()).count(),
-        session.samples_progress().is_some(),
-        state.samples_open,
-        memory.is_some(),
-    );
-    let rows_id = Id::unique("rows of the drop zone");
-    if ui.data_mut(|data| std::mem::replace(data.get_temp_mut_or_default(rows_id), rows)) != rows {
-        ui.ctx().request_discard("drop_zone");
-    }
-    for (name, done) in &state.fetching {
-        let detail = done.map_or_else(String::new, |done| format!("{:.0} %", done * 100.0));
-        if kit::progress_row_ui(
-            Text::Data(name),
-            done.map(|done| done as f32),
-            Text::Data(&detail),
-            ui,
-        ) {
-            out.actions.push(Action::StopFetching(name.clone()));
-        }
-    }
-    for job in session.jobs() {
-        let (Some(task), Some(size)) = (job.task, job.size) else {
-            continue;
-        };
-        let megabytes = size as f64 / 1e6;
-        let detail =
-            msg!("{done:.0} of {all:.0} MB", done = job.progress * megabytes, all = megabytes);
-        let name = Text::Data(job.kind.name());
-        if kit::progress_row_ui(name, Some(job.progress as f32), &detail, ui) {
-            out.commands.push(Command::File(FileCommand::StopReading(task)));
-        }
-    }
-    if let Some((come, asked)) = session.samples_progress() {
-        let detail = format!("{come} / {asked}");
-        let share = come as f32 / asked as f32;
-        kit::brief_progress_ui(text::LOADING_SAMPLES, share, Text::Data(&detail), ui);
-    }
-    if let Some(memory) = memory {
-        kit::brief_progress_ui(text::MEMORY, memory.share(), &text::memory(memory), ui);
-    }
-    if state.samples_open {
-        samples_ui(session, out, ui);
-        ui.add_space(space::S);
-    }
-    let hot = ui.input(|input| !input.raw.hovered_files.is_empty());
-    match kit::drop_zone_ui(text::DROP_HERE, &[text::OPEN_FILES, text::SAMPLES], hot, ui) {
-        Some(0) => out.actions.push(Action::OpenFiles),
-        Some(_) => state.samples_open = !state.samples_open,
-        None => {}
-    }
-}
-
-fn samples_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
-    let (theme, palette) = (theme_of(ui), palette_of(ui));
-    for set in Session::sample_sets() {
-        let text = Word::new(set.label).into();
-        let item = MenuItem { text, icon: Some(Icon::Download), ..MenuItem::default() };
-        if kit::menu_item_ui(item, ui).clicked() {
-            out.commands.push(Command::File(FileCommand::LoadSamples(set)));
-        }
-    }
-    for sample in Session::samples() {
-        let text = Word::new(sample.label).into();
-        let item = MenuItem { text, icon: Some(Icon::Download), ..MenuItem::default() };
-        if kit::menu_item_ui(item, ui).clicked() {
-            out.commands.push(Command::Assign(free_slot(session), sample.id.to_owned()));
-        }
-    }
-    ui.add_space(space::XS);
-    ui.label(
-        RichText::new(say(Word::new(segue_session::SAMPLES_CREDIT), ui))
-            .font(theme.font(Type::Small))
-            .color(palette.muted),
-    );
-}
-
-/// Returns the slot for a new clip: A, or B where A has a clip of the user's and B has none.
-fn free_slot(session: &Session) -> Slot {
-    let built_in =
-        |slot| session.slot(slot).is_none_or(|entry| matches!(entry.origin, Origin::Preset));
-    if !session.uses(Slot::B) || built_in(Slot::A) || !built_in(Slot::B) {
-        Slot::A
-    } else {
-        Slot::B
-    }
-}
-
-fn part_of(session: &Session, entry: &Entry) -> Part {
-    let holds = |slot| session.slot(slot).is_some_and(|held| held.id == entry.id);
-    if holds(Slot::A) && session.uses(Slot::A) {
-        Part::A
-    } else if holds(Slot::B) && session.uses(Slot::B) {
-        Part::B
-    } else {
-        Part::None
-    }
-}
-
-/// Returns the facts below the name of a clip: `3.9 s · 468 frames · 30 joints`.
-fn facts(entry: &Entry) -> Message {
-    match &entry.motion {
-        Some(motion) => {
-            let clip = motion.clip();
-            msg!(
-                "{secs:.1} s · {frames} frames · {joints} joints",
-                secs = clip.duration_secs(),
-                frames = clip.frames(),
-                joints = clip.skeleton().len()
-            )
-        }
-        None => text::status(entry).into(),
-    }
-}
-
-fn entry_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    if let Some(renaming) = state.renaming.as_mut().filter(|renaming| renaming.id == entry.id) {
-        let field =
-            kit::text_field_ui(text::RENAME, Text::Data(&entry.name), &mut renaming.text, ui);
-        field.response.request_focus();
-        if field.committed {
-            out.commands.push(Command::Rename(entry.id.clone(), renaming.text.clone()));
-        }
-        if field.committed || ui.input(|input| input.key_pressed(Keyboard::Escape)) {
-            state.renaming = None;
-        }
+/// Draws the head row of a group: a click folds it, with Ctrl or Cmd it selects its clips.
+fn head_of_section_ui(section: &Section<'_>, open: bool, state: &mut UiState, ui: &mut Ui) {
+    let Some((key, title)) = &section.head else {
+        return;
+    };
+    let count = (!section.is_counted).then_some(section.entries.len());
+    let head = ui.push_id(key, |ui| kit::group_head_ui(Text::from(title), count, open, ui));
+    if !head.inner.clicked() {
         return;
     }
-    let part = part_of(session, entry);
-    let open = state.details.as_ref() == Some(&entry.id);
-    let blending = session.uses(Slot::B);
-    let warnings: Vec<String> = entry.warnings.iter().map(|warning| say(warning, ui)).collect();
-    let warning = warnings.join("\n");
-    let actions =
-        [(Icon::Sliders, text::DETAILS), (Icon::Pencil, text::RENAME), (Icon::Trash, text::REMOVE)];
-    let (name, facts) = (entry.title(), facts(entry));
-    let row = ClipRow {
-        name: (&name).into(),
-        detail: (&facts).into(),
-        part,
-        warning: Text::Data(&warning),
-        selected: open,
-        actions: &actions,
-    };
-    let response = kit::clip_row_ui(row, ui);
-    match response.action {
-        Some(0) => state.details = if open { None } else { Some(entry.id.clone()) },
-        Some(1) => {
-            state.renaming = Some(Typing { id: entry.id.clone(), text: entry.name.clone() });
-        }
-        Some(_) => out.commands.push(Command::Remove(entry.id.clone())),
-        None if response.clicked || response.badge_clicked => {
-            // With two slots, a click assigns the clip to A, or to B if it is in A.
-            let slot = if blending && part == Part::A { Slot::B } else { Slot::A };
-            out.commands.push(Command::Assign(slot, entry.id.clone()));
-        }
-        None => {}
-    }
-    let menu = egui::Popup::context_menu(&response.response);
-    menu.show(|ui| {
-        for slot in [Slot::A, Slot::B] {
-            let words = if slot == Slot::A { text::USE_AS_A } else { text::USE_AS_B };
-            if kit::menu_item_ui(MenuItem { text: words.into(), ..MenuItem::default() }, ui)
-                .clicked()
-            {
-                out.commands.push(Command::Assign(slot, entry.id.clone()));
-            }
-        }
-        let text = text::COMPARE_WITH_A.into();
-        let compare = MenuItem { text, icon: Some(Icon::Swap), ..MenuItem::default() };
-        if part != Part::A && kit::menu_item_ui(compare, ui).clicked() {
-            compare_clips(session.params().text(Key::A), &entry.id, out);
-        }
-        for format in ExportFormat::ALL {
-            let words = msg!("Save as {format}", format = text::format(format));
-            let text = Text::from(&words);
-            let save = MenuItem { text, icon: Some(Icon::Download), ..MenuItem::default() };
-            if kit::menu_item_ui(save, ui).clicked() {
-                let how = ExportOptions { format, ..state.export };
-                out.actions.push(Action::Save { which: entry.id.clone(), how });
-            }
-        }
-    });
-    if open {
-        let card = Frame::new().inner_margin(Margin { left: 10, right: 4, top: 6, bottom: 10 });
-        card.show(ui, |ui| {
-            ui.spacing_mut().item_spacing.y = space::XS;
-            clip_panel_ui(entry, Some(&entry.id), session, state, out, ui);
-        });
+    let library = &mut state.library;
+    if ui.input(|input| input.modifiers.command) {
+        library.picked.extend(section.entries.iter().map(|entry| entry.id.clone()));
+    } else if open {
+        library.folded.insert(key.clone());
+    } else {
+        library.folded.remove(key);
     }
 }
 
-/// Draws the button that opens the library where it is a drawer.
+/// Draws the button that opens the library where it is a drawer. The notices stand beside it.
 pub(crate) fn library_button_ui(state: &mut UiState, ui: &mut Ui) {
-    if kit::button_ui(
-        Button::new(text::LIBRARY).icon(Icon::Folder).selected(state.library_open),
-        ui,
-    )
-    .clicked()
-    {
+    let button = Button::new(text::LIBRARY).icon(Icon::Folder).selected(state.library_open);
+    let response = kit::button_ui(button, ui);
+    let row = response.rect.with_max_x(ui.max_rect().right() - space::L);
+    let row = row.with_min_x(response.rect.right() + space::S);
+    state.notice_place.get_or_insert(NoticePlace { row, heading_end: row.left() });
+    if response.clicked() {
         state.library_open = !state.library_open;
     }
 }

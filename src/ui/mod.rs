@@ -1,6 +1,7 @@
 //! The user interface: the theme, the kit of widgets, and the panels built from them.
 
 mod appearance;
+mod clip_drag;
 mod clip_panel;
 mod commands;
 pub(crate) mod kit;
@@ -8,6 +9,7 @@ mod labs;
 mod language;
 mod lessons_panel;
 mod library_panel;
+mod notices;
 mod out;
 mod overlays;
 mod page;

@@ -1,15 +1,17 @@
-//! Overlays of the whole page: notices, the list of shortcuts, and the hint while files are held
-//! over the window.
+//! Overlays of the whole page: notices, the list of shortcuts, a clip that is dragged, and the hint
+//! while files are held over the window.
 
+use super::clip_drag::dragged_clip_ui;
 use super::commands;
-use super::kit::{self, Mood, Notice, NoticeEvent};
-use super::language::{Word, say};
+use super::kit;
+use super::language::say;
+use super::notices::notices_ui;
 use super::out::Out;
 use super::state::UiState;
 use super::text;
 use super::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{self, Align2, Grid, RichText, Stroke, StrokeKind, Ui};
-use segue_session::{Command, FileCommand, Level, Session};
+use segue_session::Session;
 
 /// Draws the overlays.
 pub(crate) fn overlays_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
@@ -18,37 +20,7 @@ pub(crate) fn overlays_ui(session: &Session, state: &mut UiState, out: &mut Out,
         help_ui(state, ui);
     }
     drop_ui(state, ui);
-}
-
-fn notices_ui(session: &Session, state: &UiState, out: &mut Out, ui: &mut Ui) {
-    let list = session.notices().list();
-    let mood = |level| match level {
-        Level::Info => Mood::default(),
-        Level::Warning => Mood::Warning,
-        Level::Error => Mood::Bad,
-    };
-    let notices: Vec<Notice<'_>> = list
-        .iter()
-        .map(|notice| Notice {
-            text: &notice.text,
-            mood: mood(notice.level),
-            action: match notice.corrections.len() {
-                0 => Word::default(),
-                1 => text::CORRECT,
-                _ => text::CORRECT_ALL,
-            },
-        })
-        .collect();
-    // Notices are above the metrics, which stay visible.
-    let free = state.stage.with_max_y(state.numbers_top.max(state.stage.center().y));
-    if let Some((index, event)) = kit::toasts_ui(&notices, free, ui)
-        && let Some(notice) = list.get(index)
-    {
-        out.commands.push(match event {
-            NoticeEvent::Acted => Command::File(FileCommand::Correct(notice.id)),
-            NoticeEvent::Dismissed => Command::Dismiss(notice.id),
-        });
-    }
+    dragged_clip_ui(session, ui);
 }
 
 fn help_ui(state: &mut UiState, ui: &mut Ui) {

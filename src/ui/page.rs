@@ -5,6 +5,7 @@ use super::kit;
 use super::labs::{self, in_time, on_stage};
 use super::lessons_panel;
 use super::library_panel;
+use super::notices::NoticePlace;
 use super::out::Out;
 use super::overlays;
 use super::stage::{Paint, stage_panel_ui};
@@ -14,7 +15,7 @@ use super::theme::{palette_of, space, theme_of};
 use super::timeline::{CurveCache, timeline_panel_ui};
 use super::top_bar;
 use eframe::egui::accesskit::Role;
-use eframe::egui::{self, Frame, Margin, Panel, ScrollArea, Stroke, Ui};
+use eframe::egui::{self, Frame, Margin, Panel, Rect, ScrollArea, Stroke, Ui, vec2};
 use segue_session::{Key, Session};
 
 /// Draws the page. `paint` draws the 3D picture into the stage.
@@ -27,6 +28,8 @@ pub(crate) fn show(
 ) -> Out {
     let mut out = Out::default();
     state.joints_open = false;
+    state.library.begin_frame();
+    state.notice_place = None;
     on_stage::begin_frame(session, state);
     commands::take_keys(session, state, &mut out, ui);
     let layout = Layout::of(ui.available_width(), theme_of(ui).scale());
@@ -45,8 +48,19 @@ pub(crate) fn show(
         }
     }
     in_time::steer(session, state, &mut out, ui.ctx());
+    let under_title = notices_on_stage(state.stage, theme_of(ui).scale());
+    state.notice_place.get_or_insert(under_title);
     overlays::overlays_ui(session, state, &mut out, ui);
     out
+}
+
+/// Returns the place of the notices where no panel has one: under the title of the first pane, left
+/// of the buttons.
+fn notices_on_stage(stage: Rect, scale: f32) -> NoticePlace {
+    let corner = stage.min + vec2(space::M, 40.0 * scale);
+    let width = (stage.width() - 2.0 * space::M - 96.0 * scale).min(420.0 * scale);
+    let row = Rect::from_min_size(corner, vec2(width, 24.0 * scale));
+    NoticePlace { row, heading_end: row.left() - space::S }
 }
 
 fn panel_frame(ui: &Ui, horizontal: f32, vertical: f32) -> Frame {
@@ -238,25 +252,20 @@ fn phone_ui(
                 return;
             }
         }
-        if !state.library_open {
-            footer_ui(session, state, out, ui);
+        if state.library_open {
+            let margin = Margin { right: (space::L - BAR_MARGIN) as i8, ..Margin::ZERO };
+            let frame = Frame::new().inner_margin(margin);
+            library_panel::library_drawer_ui(session, frame, state, out, ui);
+            return;
         }
+        footer_ui(session, state, out, ui);
         scrolled_ui(space::L, ui, |ui| {
-            if state.library_open {
-                library_panel::drop_ui(session, state, out, ui);
-                library_panel::library_list_ui(session, state, out, ui);
+            // On a small stage the hint would cover the motion.
+            if let Some(hint) = labs::welcome(session) {
+                kit::note_ui(hint, palette_of(ui).muted, ui);
                 ui.add_space(space::M);
-                if kit::button_ui(kit::Button::new(text::CLOSE), ui).clicked() {
-                    state.library_open = false;
-                }
-            } else {
-                // On a small stage the hint would cover the motion.
-                if let Some(hint) = labs::welcome(session) {
-                    kit::note_ui(hint, palette_of(ui).muted, ui);
-                    ui.add_space(space::M);
-                }
-                labs::lab_panel_ui(session, state, out, ui);
             }
+            labs::lab_panel_ui(session, state, out, ui);
         });
     });
 }

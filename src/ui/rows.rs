@@ -10,6 +10,7 @@ pub(crate) use footer::{Kept, footer_ui};
 pub(crate) use param::{Detail, compare_choice_ui, param_row_ui};
 pub(crate) use save::save_rows_ui;
 
+use super::clip_drag::clip_dropped_on;
 use super::kit::{self, Button};
 use super::language::{Text, Word, say};
 use super::out::Out;
@@ -118,9 +119,22 @@ fn found_sentence(session: &Session, automatic: [bool; 2]) -> Message {
 /// Draws the choice of the clip in a slot.
 pub(crate) fn slot_row_ui(slot: Slot, session: &Session, out: &mut Out, ui: &mut Ui) {
     let chosen = session.params().text(slot.key());
-    if let Some(id) = clip_choice_ui(Word::new(slot.label()), chosen, session, ui) {
+    let row = ui.scope(|ui| clip_choice_ui(Word::new(slot.label()), chosen, session, ui));
+    let what = |clip| text::use_as(clip, slot);
+    let dropped = clip_dropped_on(row.response.rect, session, what, ui);
+    if let Some(id) = row.inner.or(dropped) {
         out.commands.push(Command::Assign(slot, id));
     }
+}
+
+/// Draws a list of clips. Returns the id of a clip that was dropped on it.
+pub(crate) fn clip_list_ui(
+    session: &Session,
+    ui: &mut Ui,
+    content: impl FnOnce(&mut Ui),
+) -> Option<String> {
+    let list = ui.scope(content);
+    clip_dropped_on(list.response.rect, session, text::add_to_list, ui)
 }
 
 /// Draws a choice of the library's clips. Returns the id of a new choice.

@@ -13,6 +13,7 @@ use self::pane::pane_ui;
 use self::pick::pick_ui;
 use self::verdicts::verdicts;
 use crate::ui::appearance::stage_theme;
+use crate::ui::clip_drag::take_drop_on_pane;
 use crate::ui::kit;
 use crate::ui::labs::on_stage;
 use crate::ui::out::Out;
@@ -69,11 +70,11 @@ fn stage_ui(
             let line = egui::Stroke::new(theme_of(ui).hairline(), palette_of(ui).line);
             ui.painter().vline(rect.left(), rect.y_range(), line);
         }
+        take_drop_on_pane(index, rect, session, out, ui);
         if let Some(pane) = panes.get(index) {
             numbers_top = numbers_top.min(pane_ui(pane, index, &verdicts, session, rect, ui));
         }
     }
-    state.numbers_top = numbers_top;
     if !takes_drag {
         pick_ui(session, &shown, &response, state, out, ui);
     }

@@ -2,6 +2,8 @@
 
 use super::labs::states::LabStates;
 use super::language::Language;
+use super::library_panel::LibraryState;
+use super::notices::NoticePlace;
 use eframe::egui::Rect;
 use glam::{DVec2, Vec3};
 use segue_scene::Camera;
@@ -72,8 +74,14 @@ pub(crate) struct Gamepad {
 pub(crate) struct UiState {
     /// Whether the drawer with the library is open.
     pub(crate) library_open: bool,
+    /// The search, the order and the selection in the library.
+    pub(crate) library: LibraryState,
     /// Whether the list of bundled takes is open.
     pub(crate) samples_open: bool,
+    /// The row with the chip of the notices, until it is drawn.
+    pub(crate) notice_place: Option<NoticePlace>,
+    /// The number of the first notice that was never in the open list.
+    pub(crate) seen_notices: u64,
     /// Whether the list of shortcuts is open.
     pub(crate) help_open: bool,
     /// Whether the parameters are in front of the lesson, where they share a place.
@@ -122,8 +130,6 @@ pub(crate) struct UiState {
     pub(crate) hint: bool,
     /// The place of the stage, points.
     pub(crate) stage: Rect,
-    /// The upper edge of the panes' numbers on the stage, points.
-    pub(crate) numbers_top: f32,
     /// Files that are being fetched, with the share of each that has arrived, 0 to 1, where it is
     /// known.
     pub(crate) fetching: Vec<(String, Option<f64>)>,
@@ -137,7 +143,10 @@ impl Default for UiState {
     fn default() -> Self {
         Self {
             library_open: false,
+            library: LibraryState::default(),
             samples_open: false,
+            notice_place: None,
+            seen_notices: 0,
             help_open: false,
             lesson_behind: false,
             answered: None,
@@ -161,7 +170,6 @@ impl Default for UiState {
             filming: Filming::default(),
             hint: true,
             stage: Rect::NOTHING,
-            numbers_top: 0.0,
             fetching: Vec::new(),
             host_reads: false,
             stored: None,

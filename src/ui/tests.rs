@@ -32,6 +32,7 @@ mod graph;
 mod joints;
 mod lab_panels;
 mod lessons;
+mod library;
 mod path;
 mod register;
 mod samples;
@@ -367,6 +368,12 @@ fn every_lab_has_a_key() {
     }
 }
 
+/// Opens the list of notices.
+fn open_notices(chip: &str, harness: &mut Harness<'_, Page>) {
+    harness.get_by_role_and_label(Role::Button, chip).click();
+    harness.run();
+}
+
 #[test]
 fn notice_of_any_length_can_be_closed() {
     for size in [DESK, PHONE] {
@@ -375,20 +382,18 @@ fn notice_of_any_length_can_be_closed() {
             page.session.say(Level::Error, format!("{n}: {}", "word ".repeat(400)));
         }
         let mut harness = harness(size, DARK, page);
-        for left in (0..harness.state().session.notices().list().len()).rev() {
-            let cross = |harness: &Harness<'_, Page>| {
-                harness
-                    .get_all_by_label(kit::DISMISS.english())
-                    .last()
-                    .map(|cross| cross.rect().center())
-            };
+        let count = harness.state().session.notices().list().len();
+        open_notices(&format!("{count} errors"), &mut harness);
+        picture(&format!("notices-{}", size.x), &mut harness);
+        for left in (0..count).rev() {
             harness
                 .get_all_by_label(kit::DISMISS.english())
                 .last()
                 .expect("a cross")
                 .scroll_to_me();
             harness.run();
-            let at = cross(&harness).expect("a cross");
+            let cross = harness.get_all_by_label(kit::DISMISS.english()).last();
+            let at = cross.expect("a cross").rect().center();
             assert!(
                 Rect::from_min_size(egui::Pos2::ZERO, size).contains(at),
                 "{left} left, and the cross is at {at}"
@@ -399,6 +404,7 @@ fn notice_of_any_length_can_be_closed() {
             harness.run();
             assert_eq!(harness.state().session.notices().list().len(), left);
         }
+        assert!(harness.query_by_role(Role::Alert).is_none(), "without notices there is no chip");
     }
 }
 
@@ -421,6 +427,7 @@ fn notice_about_a_damaged_clip_offers_to_correct_it() {
     let wild = text.replace(rows[row], &format!("1e9 {rest}"));
     page.session.load("x.bvh", Arc::from(wild.as_bytes())).expect("a file that is read");
     let mut harness = harness(DESK, DARK, page);
+    open_notices("1 clip added · 1 with notes", &mut harness);
     press(text::CORRECT.english(), &mut harness);
     let commands = &harness.state().out.commands;
     assert!(

@@ -11,6 +11,7 @@
 
 mod graph;
 mod lessons;
+mod library;
 mod loop_;
 mod match_;
 mod page;
@@ -21,6 +22,7 @@ mod transition;
 
 pub(crate) use graph::*;
 pub(crate) use lessons::*;
+pub(crate) use library::*;
 pub(crate) use loop_::*;
 pub(crate) use match_::*;
 pub(crate) use page::*;

@@ -44,6 +44,11 @@ const HELP: &[HelpRow] = &[
         Word::new("W A S D, arrows"),
         Word::new("drive the character of the Match lab; Shift runs, Q strafes"),
     ),
+    HelpRow::Commands(&[UiCommand::SwapClips], Word::new("swap A and B")),
+    HelpRow::Gesture(
+        Word::new("Shift, Ctrl + click"),
+        Word::new("select several clips of the library"),
+    ),
     HelpRow::Commands(&[UiCommand::Undo], Word::new("undo")),
     HelpRow::Commands(&[UiCommand::Redo], Word::new("redo")),
     HelpRow::Commands(

@@ -53,7 +53,7 @@ pub(in crate::ui) const LAB_KEYS: [Keyboard; 12] = [
 ];
 
 /// The commands that the keyboard gives, besides [`UiCommand::OpenLab`].
-const WITH_KEYS: [UiCommand; 25] = [
+const WITH_KEYS: [UiCommand; 26] = [
     UiCommand::Redo,
     UiCommand::Undo,
     UiCommand::CopyLink,
@@ -75,6 +75,7 @@ const WITH_KEYS: [UiCommand; 25] = [
     UiCommand::ToggleLessons,
     UiCommand::ToggleCompare,
     UiCommand::ToggleStrafe,
+    UiCommand::SwapClips,
     UiCommand::ToggleTopView,
     UiCommand::FrameEverything,
     UiCommand::ToggleFollow,

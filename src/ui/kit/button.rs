@@ -203,28 +203,3 @@ pub(crate) fn button_ui(button: Button<'_>, ui: &mut Ui) -> Response {
 pub(crate) fn icon_button_ui<'a>(icon: Icon, name: impl Into<Text<'a>>, ui: &mut Ui) -> Response {
     button_ui(Button::icon_only(icon, name), ui)
 }
-
-/// Draws an underlined text that acts as a button: `open…`.
-pub(crate) fn link_ui(text: Text<'_>, ui: &mut Ui) -> Response {
-    let palette = palette_of(ui);
-    let enabled = ui.is_enabled();
-    let galley = line_of(&[Run::new(text, Type::Body, palette.text)], f32::INFINITY, ui);
-    let size = vec2(galley.size().x, galley.size().y.max(HIT));
-    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-    let response = response.on_hover_cursor(CursorIcon::PointingHand);
-    let ink = faded(
-        if response.hovered() || response.has_focus() { palette.accent_ink } else { palette.text },
-        enabled,
-    );
-    let galley = line_of(&[Run::new(text, Type::Body, ink)], f32::INFINITY, ui);
-    let at = super::paint::put(ui.painter(), rect.center(), Align2::CENTER_CENTER, galley);
-    let under = if response.hovered() { ink } else { palette.line_strong };
-    ui.painter().hline(
-        at.x_range(),
-        at.bottom() - 1.0,
-        Stroke::new(theme_of(ui).hairline(), under),
-    );
-    focus_ring(at, radius::S, &response, ui);
-    describe(&response, &WidgetInfo::labeled(Role::Link, enabled, say(text, ui)));
-    response
-}

@@ -1,10 +1,10 @@
-//! Chips: short texts on a coloured ground, and the letter of a clip.
+//! Chips: short texts on a coloured ground.
 
 use super::assistive::describe;
 use super::icon::Icon;
 use super::paint::{Run, line_of, put};
 use crate::ui::language::{Text, Word, say};
-use crate::ui::theme::{Palette, Type, palette_of, radius, theme_of};
+use crate::ui::theme::{Palette, Type, palette_of, theme_of};
 use eframe::egui::{
     Align2, Color32, Painter, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo,
     vec2,
@@ -105,25 +105,6 @@ pub(crate) fn paint_chip(text: Text<'_>, mood: Mood, right_center: Pos2, ui: &Ui
     ui.painter().rect_filled(rect, rect.height() / 2.0, ground);
     put(ui.painter(), rect.center(), Align2::CENTER_CENTER, galley);
     rect
-}
-
-/// Draws the square letter of a clip.
-pub(crate) fn paint_badge(part: Part, rect: Rect, ui: &Ui) {
-    let palette = palette_of(ui);
-    let (fill, ink) = part.fill(palette);
-    if part == Part::None {
-        let line = Stroke::new(theme_of(ui).hairline(), palette.line_strong);
-        ui.painter().rect_stroke(rect, radius::S + 1, line, StrokeKind::Inside);
-        dot(rect.center(), ink, 1.6 * theme_of(ui).scale(), ui.painter());
-    } else {
-        ui.painter().rect_filled(rect, radius::S + 1, fill);
-        let galley = line_of(
-            &[Run::new(Text::Data(part.letter()), Type::SmallStrong, ink)],
-            f32::INFINITY,
-            ui,
-        );
-        put(ui.painter(), rect.center(), Align2::CENTER_CENTER, galley);
-    }
 }
 
 /// Draws a red dot and the length of the recording so far, `0:07`, left of `right_center`.

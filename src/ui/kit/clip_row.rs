@@ -1,139 +1,292 @@
 //! The row of a clip in the library.
 
 use super::assistive::describe;
-use super::chip::{Part, paint_badge};
+use super::chip::Part;
 use super::icon::{Icon, paint_icon};
-use super::paint::{Run, focus_ring, full_width, line_of, paragraph, put};
+use super::paint::{
+    PointerKind, Run, focus_ring, full_width, line_of, name_line, paragraph, pointer_in_use, put,
+};
+use super::words;
 use crate::ui::language::{Text, Word, say};
 use crate::ui::theme::{HIT, Type, palette_of, radius, space, theme_of};
 use eframe::egui::{
-    Align2, Color32, CursorIcon, Id, Rect, Response, Role, Sense, Stroke, Ui, Vec2, WidgetInfo,
-    pos2, vec2,
+    Align2, Color32, CursorIcon, Id, Key, Modifiers, Pos2, Rect, Response, Role, Sense, Stroke,
+    StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
+
+/// The least side of a target for a finger, points.
+const FINGER: f32 = 44.0;
+
+/// A letter of a row: a slot that the clip can take.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SlotLetter<'a> {
+    /// The slot.
+    pub(crate) part: Part,
+    /// Whether the clip is in it.
+    pub(crate) held: bool,
+    /// Its accessible name: `Use walk as A`.
+    pub(crate) name: Text<'a>,
+}
 
 /// A clip as its row shows it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ClipRow<'a> {
     /// Its name.
     pub(crate) name: Text<'a>,
-    /// Length, rate, joints: `3.9 s · 120 fps · 30 joints`. Wraps.
+    /// Its length: `3.9 s · 468 frames`.
     pub(crate) detail: Text<'a>,
-    /// Its part in the result.
-    pub(crate) part: Part,
+    /// More about it, for its hint: `30 joints`; empty for nothing.
+    pub(crate) more: Text<'a>,
+    /// The slots that it can take.
+    pub(crate) letters: &'a [SlotLetter<'a>],
     /// The warnings about its file, for the hint of the sign; empty for none.
     pub(crate) warning: Text<'a>,
     /// Whether its details are open.
-    pub(crate) selected: bool,
-    /// The icons of its actions, shown while the pointer is on the row, with their names.
+    pub(crate) open: bool,
+    /// Whether it is one of the clips that were selected.
+    pub(crate) picked: bool,
+    /// The icons of its actions, shown while the pointer or the focus is on the row, with their
+    /// names. A finger has a menu instead.
     pub(crate) actions: &'a [(Icon, Word)],
 }
 
 /// The user's input to a row of the library.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ClipRowEvent {
+    /// The row was chosen.
+    Chosen,
+    /// The letter of that index was pressed.
+    Letter(usize),
+    /// The action of that index was pressed.
+    Action(usize),
+    /// Its menu was asked for: at the pointer, or from the keyboard.
+    Menu {
+        /// Whether the pointer asked for it.
+        by_pointer: bool,
+    },
+    /// A finger was held on it.
+    Held,
+}
+
+/// What a row of the library returns.
 #[derive(Debug)]
 pub(crate) struct ClipRowResponse {
-    /// The row was chosen.
-    pub(crate) clicked: bool,
-    /// The one of [`ClipRow::actions`] that was pressed.
-    pub(crate) action: Option<usize>,
-    /// The letter was pressed: the clip gets another part.
-    pub(crate) badge_clicked: bool,
-    /// The row, which can be dragged; give it a payload with `dnd_set_drag_payload`.
+    /// The user's input, if there was any.
+    pub(crate) event: Option<ClipRowEvent>,
+    /// The row, which a mouse can drag; give it a payload with `dnd_set_drag_payload`.
     pub(crate) response: Response,
 }
 
-/// Draws the row of a clip: its letter, name and facts, a sign if there are warnings, and the
-/// actions while the pointer is on it.
+/// The widths of the parts of a row, points.
+#[derive(Clone, Copy, Debug)]
+struct Widths {
+    /// The side of a letter.
+    badge: f32,
+    /// The target around a letter.
+    letter: f32,
+    /// From the left edge of the row to the first letter.
+    before: f32,
+    /// From the left edge of the row to the text.
+    text_left: f32,
+    /// The text between the letters and the signs.
+    text: f32,
+    /// The button of the menu, which only a finger has.
+    menu: f32,
+}
+
+impl Widths {
+    fn of(row: &ClipRow<'_>, by_finger: bool, width: f32, scale: f32) -> Self {
+        let badge = (20.0 * scale).round();
+        let (letter, before) = if by_finger { (FINGER, 0.0) } else { (badge + 4.0, space::XS) };
+        let gap = if row.letters.is_empty() { space::S } else { space::S - 2.0 };
+        let text_left = before + row.letters.len() as f32 * letter + gap;
+        let menu = if by_finger && !row.actions.is_empty() { FINGER } else { 0.0 };
+        let signs = usize::from(!row.warning.is_empty()) + usize::from(row.picked);
+        let text = width - space::XS - menu - signs as f32 * HIT - text_left - 2.0;
+        Self { badge, letter, before, text_left, text, menu }
+    }
+}
+
+/// Draws the row of a clip: a letter for each slot, name and facts, a sign if there are warnings,
+/// and the actions.
 pub(crate) fn clip_row_ui(row: ClipRow<'_>, ui: &mut Ui) -> ClipRowResponse {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
-    let scale = theme.scale();
-    let badge_side = (22.0 * scale).round();
-    let pad = space::S;
-    let width = ui.available_width();
-    let text_left = pad + badge_side + space::M - 2.0;
-    let warn = if row.warning.is_empty() { 0.0 } else { HIT };
-    let text_width = width - text_left - pad - warn;
-    let detail = paragraph(row.detail, Type::Small, palette.muted, text_width, ui);
-    let name_height = (18.0 * scale).round();
-    let height = (name_height + detail.size().y + 2.0 * pad).max(44.0 * scale).round();
-    let rect = full_width(height, ui);
+    let pointer = pointer_in_use(ui);
+    let by_finger = pointer == PointerKind::Finger;
+    let widths = Widths::of(&row, by_finger, ui.available_width(), theme.scale());
+    let name_height = (18.0 * theme.scale()).round();
+    let detail = paragraph(row.detail, Type::Small, palette.muted, widths.text, ui);
+    let text_height = name_height + detail.size().y;
+    let height = (text_height + 12.0).max(if by_finger { FINGER } else { 0.0 });
+    let rect = full_width(height.round(), ui);
     let id = ui.make_persistent_id(("clip", row.name.english()));
-    let response =
-        ui.interact(rect, id, Sense::click_and_drag()).on_hover_cursor(CursorIcon::PointingHand);
+    // A finger scrolls the list with the same movement.
+    let drags = pointer == PointerKind::Mouse;
+    let sense = if drags { Sense::click_and_drag() } else { Sense::click() };
+    let response = ui.interact(rect, id, sense).on_hover_cursor(CursorIcon::PointingHand);
 
     // The pointer may be on a button inside the row: the row is hovered then as well.
-    let hovered = response.contains_pointer();
-    let ground = match (row.selected, hovered) {
-        (true, _) => palette.pressed,
-        (false, true) => palette.hover,
-        (false, false) => Color32::TRANSPARENT,
+    let hovered = !by_finger && response.contains_pointer();
+    let ground = match (row.picked, row.open, hovered) {
+        (true, ..) => palette.accent_wash,
+        (false, true, _) => palette.pressed,
+        (false, false, true) => palette.hover,
+        (false, false, false) => Color32::TRANSPARENT,
     };
     ui.painter().rect_filled(rect, radius::M, ground);
-    let badge = Rect::from_min_size(
-        pos2(rect.left() + pad, rect.top() + pad + 3.0),
-        Vec2::splat(badge_side),
-    );
-    paint_badge(row.part, badge, ui);
-
-    let show_actions = (hovered || response.has_focus()) && !row.actions.is_empty();
-    let actions_width = if show_actions { row.actions.len() as f32 * HIT + 2.0 } else { 0.0 };
-    let name =
-        line_of(&[Run::new(row.name, Type::Strong, palette.text)], text_width - actions_width, ui);
-    let middle = rect.top() + pad + name_height / 2.0;
-    put(ui.painter(), pos2(rect.left() + text_left, middle), Align2::LEFT_CENTER, name);
-    put(
-        ui.painter(),
-        pos2(rect.left() + text_left, rect.top() + pad + name_height),
-        Align2::LEFT_TOP,
-        detail,
-    );
+    let name = name_line(row.name, Type::Strong, palette.text, widths.text, ui);
+    let corner = pos2(rect.left() + widths.text_left, rect.center().y - text_height / 2.0);
+    let name_at = corner + vec2(0.0, name_height / 2.0);
+    put(ui.painter(), name_at, Align2::LEFT_CENTER, name);
+    put(ui.painter(), corner + vec2(0.0, name_height), Align2::LEFT_TOP, detail);
     focus_ring(rect.shrink(2.0), radius::M, &response, ui);
-    let name = say(row.name, ui);
-    let said = format!("{name}, {}", say(row.detail, ui));
-    describe(&response, &WidgetInfo::selected(Role::Button, ui.is_enabled(), row.selected, said));
+    let (name, detail) = (say(row.name, ui), say(row.detail, ui));
+    let is_on = row.open || row.picked;
+    let said = format!("{name}, {detail}");
+    describe(&response, &WidgetInfo::selected(Role::Button, ui.is_enabled(), is_on, said));
 
-    let badge_hit = badge.expand((HIT - badge_side).max(0.0) / 2.0 + 4.0);
-    let badge_response = ui
-        .interact(badge_hit, id.with("badge"), Sense::click())
-        .on_hover_cursor(CursorIcon::PointingHand);
-    focus_ring(badge, radius::S, &badge_response, ui);
-    let said = format!("{name}: {}", row.part.letter());
-    describe(&badge_response, &WidgetInfo::labeled(Role::Button, ui.is_enabled(), said));
-    if badge_response.hovered() {
-        let ring = Stroke::new(1.5, palette.text);
-        ui.painter().rect_stroke(
-            badge.expand(2.0),
-            radius::M,
-            ring,
-            eframe::egui::StrokeKind::Middle,
-        );
+    let mut event = row_event(&response, ui);
+    for (index, letter) in row.letters.iter().enumerate() {
+        let left = rect.left() + widths.before + index as f32 * widths.letter;
+        let hit = Rect::from_x_y_ranges(left..=left + widths.letter, rect.y_range());
+        let place = Rect::from_center_size(hit.center(), Vec2::splat(widths.badge));
+        if letter_ui(*letter, inner_id(id, LETTER, index), hit, place, ui).clicked() {
+            event = Some(ClipRowEvent::Letter(index));
+        }
     }
+    let has_focus = response.has_focus() || has_inner_focus(id, &row, ui);
+    let pressed = if by_finger {
+        menu_button_ui(id, rect, widths.menu, ui)
+    } else if hovered || has_focus {
+        // They lie over the facts, so that the name stays whole.
+        let line = rect.with_min_y(corner.y + name_height).with_max_y(corner.y + text_height);
+        let ground = if ground == Color32::TRANSPARENT { palette.panel } else { ground };
+        actions_ui(id, row.actions, line, ground, ui)
+    } else {
+        None
+    };
+    let signs_right = rect.right() - space::XS - widths.menu;
+    signs_ui(&row, id, pos2(signs_right, name_at.y), ui);
+    let event = pressed.or(event);
+    if !hovered || ui.ctx().any_popup_open() {
+        return ClipRowResponse { event, response };
+    }
+    let more = say(row.more, ui);
+    let dot = if more.is_empty() { "" } else { " · " };
+    let response = response.on_hover_text(format!("{name}\n{detail}{dot}{more}"));
+    ClipRowResponse { event, response }
+}
 
-    let mut right = rect.right() - pad / 2.0;
+/// The kinds of widgets in a row, which their ids contain.
+const LETTER: &str = "letter";
+const ACTION: &str = "action";
+
+fn inner_id(row: Id, kind: &str, index: usize) -> Id {
+    row.with((kind, index))
+}
+
+/// Returns whether a letter or an action of the row has the focus.
+fn has_inner_focus(id: Id, row: &ClipRow<'_>, ui: &Ui) -> bool {
+    let Some(focused) = ui.memory(|memory| memory.focused()) else {
+        return false;
+    };
+    let letters = (0..row.letters.len()).map(|index| inner_id(id, LETTER, index));
+    let actions = (0..row.actions.len()).map(|index| inner_id(id, ACTION, index));
+    letters.chain(actions).any(|inner| inner == focused)
+}
+
+/// Draws the button that opens the menu of the row.
+fn menu_button_ui(id: Id, row: Rect, width: f32, ui: &Ui) -> Option<ClipRowEvent> {
+    if width == 0.0 {
+        return None;
+    }
+    let at = row.with_max_x(row.right() - space::XS).with_min_x(row.right() - space::XS - width);
+    let ground = Color32::TRANSPARENT;
+    let more = small_icon_ui(Icon::More, words::MORE, id.with("more"), at, ground, ui);
+    more.clicked().then_some(ClipRowEvent::Menu { by_pointer: false })
+}
+
+/// Draws the actions at the right end of a line.
+fn actions_ui(
+    id: Id,
+    actions: &[(Icon, Word)],
+    line: Rect,
+    ground: Color32,
+    ui: &Ui,
+) -> Option<ClipRowEvent> {
+    let mut pressed = None;
+    let left = line.right() - space::XS - actions.len() as f32 * HIT;
+    for (index, &(icon, hint)) in actions.iter().enumerate() {
+        let center = pos2(left + (index as f32 + 0.5) * HIT, line.center().y + 2.0);
+        let at = Rect::from_center_size(center, Vec2::splat(HIT));
+        if small_icon_ui(icon, hint, inner_id(id, ACTION, index), at, ground, ui).clicked() {
+            pressed = Some(ClipRowEvent::Action(index));
+        }
+    }
+    pressed
+}
+
+/// Draws the signs of a selected clip and of warnings, the last one ending at `right`.
+fn signs_ui(row: &ClipRow<'_>, id: Id, right: Pos2, ui: &Ui) {
+    let palette = palette_of(ui);
+    let mut center = right - vec2(HIT / 2.0, 0.0);
+    if row.picked {
+        let at = Rect::from_center_size(center, Vec2::splat(HIT));
+        paint_icon(Icon::Check, at.shrink(4.5), palette.accent_ink, ui.painter());
+        center.x -= HIT;
+    }
     if !row.warning.is_empty() {
-        let at = Rect::from_center_size(pos2(right - HIT / 2.0, middle), Vec2::splat(HIT));
+        let at = Rect::from_center_size(center, Vec2::splat(HIT));
         let sign = ui.interact(at, id.with("warning"), Sense::hover());
         paint_icon(Icon::Warning, at.shrink(4.5), palette.warning, ui.painter());
         describe(&sign, &WidgetInfo::labeled(Role::Label, true, say(row.warning, ui)));
         sign.on_hover_text(say(row.warning, ui));
-        right -= HIT;
     }
-    let mut action = None;
-    if show_actions {
-        for (index, &(icon, hint)) in row.actions.iter().enumerate().rev() {
-            let at = Rect::from_center_size(pos2(right - HIT / 2.0, middle), Vec2::splat(HIT));
-            if small_icon_ui(icon, hint, id.with(("action", index)), at, ground, ui).clicked() {
-                action = Some(index);
-            }
-            right -= HIT;
-        }
+}
+
+/// Returns the input to the row itself.
+fn row_event(response: &Response, ui: &Ui) -> Option<ClipRowEvent> {
+    let asks_by_key = response.has_focus()
+        && ui.input_mut(|input| {
+            input.consume_key(Modifiers::NONE, Key::Menu)
+                || input.consume_key(Modifiers::SHIFT, Key::F10)
+        });
+    if asks_by_key {
+        Some(ClipRowEvent::Menu { by_pointer: false })
+    } else if response.long_touched() {
+        Some(ClipRowEvent::Held)
+    } else if response.secondary_clicked() {
+        Some(ClipRowEvent::Menu { by_pointer: true })
+    } else {
+        response.clicked().then_some(ClipRowEvent::Chosen)
     }
-    let badge_clicked = badge_response.clicked();
-    ClipRowResponse {
-        clicked: response.clicked() && action.is_none() && !badge_clicked,
-        action,
-        badge_clicked,
-        response,
+}
+
+/// Draws a letter, filled with the colour of its slot where the clip is in it.
+fn letter_ui(letter: SlotLetter<'_>, id: Id, hit: Rect, place: Rect, ui: &Ui) -> Response {
+    let palette = palette_of(ui);
+    let response = ui.interact(hit, id, Sense::click()).on_hover_cursor(CursorIcon::PointingHand);
+    let hot = response.hovered() || response.has_focus();
+    let (fill, on_fill) = letter.part.fill(palette);
+    let ink = match (letter.held, hot) {
+        (true, _) => on_fill,
+        (false, true) => letter.part.ink(palette),
+        (false, false) => palette.muted,
+    };
+    if letter.held {
+        ui.painter().rect_filled(place, radius::S + 1, fill);
+    } else {
+        let line = if hot { letter.part.ink(palette) } else { palette.line_strong };
+        let stroke = Stroke::new(theme_of(ui).hairline(), line);
+        ui.painter().rect_stroke(place, radius::S + 1, stroke, StrokeKind::Inside);
     }
+    let run = Run::new(Text::Data(letter.part.letter()), Type::SmallStrong, ink);
+    put(ui.painter(), place.center(), Align2::CENTER_CENTER, line_of(&[run], f32::INFINITY, ui));
+    focus_ring(place, radius::S, &response, ui);
+    let name = say(letter.name, ui);
+    let info = WidgetInfo::selected(Role::Button, ui.is_enabled(), letter.held, name.as_str());
+    describe(&response, &info);
+    response.on_hover_text(name)
 }
 
 /// Draws an icon inside another widget, as a button of its own.
@@ -154,13 +307,50 @@ pub(super) fn small_icon_ui(
         // A name that is longer than the row shows through otherwise.
         ui.painter().rect_filled(rect.shrink(1.0), radius::S, ground);
     }
-    paint_icon(
-        icon,
-        rect.shrink2(vec2(5.0, 5.0)),
-        if hot { palette.text } else { palette.muted },
-        ui.painter(),
-    );
+    let sign = Rect::from_center_size(rect.center(), Vec2::splat(rect.height().min(HIT) - 10.0));
+    paint_icon(icon, sign, if hot { palette.text } else { palette.muted }, ui.painter());
     focus_ring(rect, radius::S, &response, ui);
     describe(&response, &WidgetInfo::labeled(Role::Button, ui.is_enabled(), say(name, ui)));
     response.on_hover_text(say(name, ui))
+}
+
+/// Draws the head row of a group of clips, which folds it. `count` is the number of its clips,
+/// where the title does not say it.
+pub(crate) fn group_head_ui(
+    title: Text<'_>,
+    count: Option<usize>,
+    open: bool,
+    ui: &mut Ui,
+) -> Response {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    let rect = full_width(theme.row_height(), ui);
+    let id = ui.make_persistent_id(("group", title.english()));
+    let response = ui.interact(rect, id, Sense::click()).on_hover_cursor(CursorIcon::PointingHand);
+    if response.hovered() {
+        ui.painter().rect_filled(rect, radius::M, palette.hover);
+    }
+    let side = (14.0 * theme.scale()).round();
+    let sign = if open { Icon::ChevronDown } else { Icon::ChevronRight };
+    let at = Rect::from_center_size(
+        pos2(rect.left() + space::S + side / 2.0, rect.center().y),
+        Vec2::splat(side),
+    );
+    paint_icon(sign, at, palette.muted, ui.painter());
+    let number = count.map_or_else(String::new, |count| count.to_string());
+    let run = Run::new(Text::Data(&number), Type::Small, palette.muted);
+    let number_at = put(
+        ui.painter(),
+        pos2(rect.right() - space::S, rect.center().y),
+        Align2::RIGHT_CENTER,
+        line_of(&[run], f32::INFINITY, ui),
+    );
+    let left = at.right() + space::S;
+    let name = name_line(title, Type::Label, palette.muted, number_at.left() - left - space::S, ui);
+    put(ui.painter(), pos2(left, rect.center().y), Align2::LEFT_CENTER, name);
+    focus_ring(rect.shrink(2.0), radius::M, &response, ui);
+    let title = say(title, ui);
+    let said = if count.is_some() { format!("{title}, {number}") } else { title };
+    describe(&response, &WidgetInfo::labeled(Role::DisclosureTriangle, ui.is_enabled(), said));
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_expanded(open));
+    response
 }

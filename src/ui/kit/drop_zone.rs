@@ -1,63 +1,66 @@
 //! The zone where files are dropped or opened.
 
-use super::button::link_ui;
-use super::paint::{Run, line_of, paragraph, put};
-use crate::ui::language::{Text, Word};
+use super::button::{Button, button_ui};
+use super::paint::{paragraph, put};
+use crate::ui::language::Word;
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
-use eframe::egui::{
-    Align, Align2, Color32, Layout, Rect, Shape, Stroke, Ui, UiBuilder, pos2, vec2,
-};
+use eframe::egui::{Align, Align2, Layout, Rect, Shape, Stroke, Ui, UiBuilder, pos2, vec2};
 use std::f32::consts::FRAC_PI_2;
 
-/// Draws a dashed field with a sentence and links below it. `hot`: whether files are held over the
-/// window. Returns the link that was pressed.
+/// A button of a drop zone.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct DropButton {
+    /// Its label.
+    pub(crate) text: Word,
+    /// Whether it is the main action in sight.
+    pub(crate) is_main: bool,
+    /// Whether it has something open.
+    pub(crate) is_open: bool,
+}
+
+/// Draws a dashed field with buttons, and a sentence below. `hot`: whether files are held over the
+/// window. Returns the button that was pressed.
 pub(crate) fn drop_zone_ui(
     sentence: Word,
-    links: &[Word],
+    buttons: &[DropButton],
     hot: bool,
     ui: &mut Ui,
 ) -> Option<usize> {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let width = ui.available_width();
     let ink = if hot { palette.accent_ink } else { palette.muted };
-    let text = paragraph(sentence, Type::Body, ink, width - 2.0 * space::M, ui);
-    let link_height = theme.row_height();
-    let height = (text.size().y + link_height + 2.0 * space::M).round();
+    let text = paragraph(sentence, Type::Small, ink, width - 2.0 * space::M, ui);
+    let row_height = theme.row_height();
+    let height = (text.size().y + row_height + 2.0 * space::M + space::S).round();
     let (_, rect) = ui.allocate_space(vec2(width, height));
     if hot {
         ui.painter().rect_filled(rect, radius::L, palette.accent_wash);
     }
     let line = if hot { palette.accent } else { palette.line_strong };
     dashed_rect(rect.shrink(0.5), f32::from(radius::L), Stroke::new(theme.hairline(), line), ui);
-    // A galley is aligned to the left; a sentence in two lines is short enough to be centred as a
-    // block.
-    let text_rect =
-        put(ui.painter(), pos2(rect.center().x, rect.top() + space::M), Align2::CENTER_TOP, text);
-
-    let dot = line_of(&[Run::new(Text::Data("·"), Type::Body, palette.muted)], f32::INFINITY, ui);
-    let widths = links.iter().map(|link| {
-        line_of(&[Run::new(*link, Type::Body, Color32::PLACEHOLDER)], f32::INFINITY, ui).size().x
-    });
-    let gaps = links.len().saturating_sub(1) as f32 * (dot.size().x + 2.0 * space::S);
-    let total = widths.sum::<f32>() + gaps;
-    let row = Rect::from_center_size(
-        pos2(rect.center().x, text_rect.bottom() + link_height / 2.0),
-        vec2(total.min(width), link_height),
+    let row = Rect::from_min_size(
+        rect.min + vec2(space::M, space::M),
+        vec2(width - 2.0 * space::M, row_height),
     );
-    let mut pressed = None;
+    let at = pos2(row.left(), row.bottom() + space::S);
+    put(ui.painter(), at, Align2::LEFT_TOP, text);
     let builder = UiBuilder::new()
         .id_salt(sentence.english())
         .max_rect(row)
         .layout(Layout::left_to_right(Align::Center));
-    // The links get a child of their own: the zone's space is already allocated.
+    // The buttons get a child of their own: the zone's space is already allocated.
     let mut inner = ui.new_child(builder);
-    inner.spacing_mut().item_spacing.x = space::S;
-    for (index, link) in links.iter().enumerate() {
-        if index > 0 {
-            let (_, at) = inner.allocate_space(dot.size());
-            put(inner.painter(), at.center(), Align2::CENTER_CENTER, dot.clone());
-        }
-        if link_ui(Text::Word(*link), &mut inner).clicked() {
+    drop_buttons_ui(buttons, &mut inner)
+}
+
+/// Draws the buttons of a drop zone in the row of `ui`. Returns the one that was pressed.
+pub(crate) fn drop_buttons_ui(buttons: &[DropButton], ui: &mut Ui) -> Option<usize> {
+    ui.spacing_mut().item_spacing.x = space::S;
+    let mut pressed = None;
+    for (index, &DropButton { text, is_main, is_open }) in buttons.iter().enumerate() {
+        let button = Button::new(text).selected(is_open);
+        let button = if is_main { button.primary() } else { button };
+        if button_ui(button, ui).clicked() {
             pressed = Some(index);
         }
     }

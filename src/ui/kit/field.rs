@@ -1,11 +1,14 @@
 //! Text fields, and rows of values that cannot be changed.
 
 use super::assistive::describe;
+use super::clip_row::small_icon_ui;
+use super::icon::Icon;
 use super::paint::{Run, faded, full_width, line_of, put};
+use super::words;
 use crate::ui::language::{Text, Word, say};
-use crate::ui::theme::{Type, palette_of, space, theme_of};
+use crate::ui::theme::{HIT, Type, palette_of, space, theme_of};
 use eframe::egui::{
-    Align2, Key, Margin, Response, Role, Sense, TextEdit, Ui, WidgetInfo, pos2, vec2,
+    Align2, Color32, Key, Margin, Response, Role, Sense, TextEdit, Ui, WidgetInfo, pos2, vec2,
 };
 
 /// The user's input to a text field.
@@ -40,6 +43,29 @@ pub(crate) fn text_field_ui<'a>(
     ui.data_mut(|data| data.insert_temp(typing_id, typing));
     let escaped = ui.input(|input| input.key_pressed(Key::Escape));
     FieldResponse { committed: was_typing && !typing && !escaped, response }
+}
+
+/// Draws the field of a search over a list, as wide as the panel, with a button that empties it.
+pub(crate) fn search_field_ui(name: Word, text: &mut String, ui: &mut Ui) -> Response {
+    let theme = theme_of(ui);
+    let size = vec2(ui.available_width(), theme.row_height());
+    let room = HIT as i8;
+    let edit = TextEdit::singleline(text)
+        .hint_text(say(name, ui))
+        .font(theme.font(Type::Body))
+        .margin(Margin { left: 8, right: room, top: 5, bottom: 5 })
+        .desired_width(size.x);
+    let response = ui.add_sized(size, edit).accessible_name(say(name, ui));
+    if !text.is_empty() {
+        let side = vec2(HIT, response.rect.height());
+        let at = Align2::RIGHT_CENTER.anchor_size(response.rect.right_center(), side);
+        let id = response.id.with("clear");
+        let ground = Color32::TRANSPARENT;
+        if small_icon_ui(Icon::Close, words::CLEAR_SEARCH, id, at, ground, ui).clicked() {
+            text.clear();
+        }
+    }
+    response
 }
 
 /// Draws a value that cannot be changed: the label at the left, the number and its unit at the

@@ -205,13 +205,19 @@ fn library_ui(_mock: &mut Mock, ui: &mut Ui) {
     });
     let actions = [(Icon::Pencil, Word::new("Rename")), (Icon::Trash, Word::new("Remove"))];
     for (index, (name, detail, part, warning)) in CLIPS.into_iter().enumerate() {
+        let names = ["A", "B"].map(|slot| format!("Use {name} as {slot}"));
+        let letter = |slot: Part, name| SlotLetter { part: slot, held: part == slot, name };
+        let letters =
+            [letter(Part::A, Text::Data(&names[0])), letter(Part::B, Text::Data(&names[1]))];
         clip_row_ui(
             ClipRow {
                 name: Text::Data(name),
                 detail: Text::Data(detail),
-                part,
+                more: Text::EMPTY,
+                letters: &letters,
                 warning: Text::Data(warning),
-                selected: index == 2,
+                open: index == 2,
+                picked: index == 3,
                 actions: &actions,
             },
             ui,
@@ -221,7 +227,10 @@ fn library_ui(_mock: &mut Mock, ui: &mut Ui) {
     ui.scope(|ui| {
         drop_zone_ui(
             Word::new("Drop BVH, ASF + AMC, GLB"),
-            &[Word::new("open…"), Word::new("samples")],
+            &[
+                DropButton { text: Word::new("Open files…"), is_main: true, is_open: false },
+                DropButton { text: Word::new("Samples"), is_main: false, is_open: false },
+            ],
             false,
             ui,
         );
@@ -376,7 +385,15 @@ fn stage_ui(mock: &Mock, phone: bool, ui: &mut Ui) {
             Notice { text: &read, mood: Mood::Good, action: Word::default() },
             Notice { text: &long, mood: Mood::Warning, action: Word::new("Show the lines") },
         ];
-        toasts_ui(&notices, stage, ui);
+        let chip = NoticeChip {
+            text: &Message::word("2 notes"),
+            mood: Mood::Warning,
+            news: &long,
+            is_alert: true,
+            row: Rect::from_min_size(stage.min, vec2(220.0, 24.0)),
+            heading_end: stage.left(),
+        };
+        notices_ui(&chip, &notices, ui);
     }
 }
 

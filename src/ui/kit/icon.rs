@@ -75,6 +75,10 @@ pub(crate) enum Icon {
     Book,
     /// Details.
     Sliders,
+    /// The order of a list.
+    Sort,
+    /// More commands.
+    More,
 }
 
 /// Draws an icon into the square in the middle of `rect`, in strokes of one colour.
@@ -276,6 +280,16 @@ pub(crate) fn paint_icon(icon: Icon, rect: Rect, color: Color32, painter: &Paint
                 pen.stroke(&[(2.5, y), (knob - 1.9, y)]);
                 pen.stroke(&[(knob + 1.9, y), (13.5, y)]);
                 pen.circle(knob, y, 1.9);
+            }
+        }
+        Icon::Sort => {
+            for (y, right) in [(4.0, 13.5), (8.0, 10.5), (12.0, 7.0)] {
+                pen.stroke(&[(2.5, y), (right, y)]);
+            }
+        }
+        Icon::More => {
+            for x in [3.5, 8.0, 12.5] {
+                pen.disc(x, 8.0, 1.2);
             }
         }
     }

@@ -51,11 +51,11 @@ mod words;
 pub(crate) use assistive::{describe, set_role};
 pub(crate) use button::{Button, button_ui, icon_button_ui};
 pub(crate) use chip::{Mood, Part, recording_ui};
-pub(crate) use clip_row::{ClipRow, clip_row_ui};
+pub(crate) use clip_row::{ClipRow, ClipRowEvent, SlotLetter, clip_row_ui, group_head_ui};
 pub(crate) use cost_bars::{CostBars, CostRow, cost_bars_ui};
 pub(crate) use curves::{Curves, Series};
-pub(crate) use drop_zone::drop_zone_ui;
-pub(crate) use field::{text_field_ui, value_row_ui};
+pub(crate) use drop_zone::{DropButton, drop_buttons_ui, drop_zone_ui};
+pub(crate) use field::{search_field_ui, text_field_ui, value_row_ui};
 pub(crate) use heat_map::{
     Feet, HeatMap, HeatMapEvent, MapCurve, Shades, heat_legend_ui, heat_map_ui,
 };
@@ -68,13 +68,15 @@ pub(crate) use menu::{
 };
 pub(crate) use metrics::{Metric, Rank};
 pub(crate) use notice::{
-    Notice, NoticeEvent, brief_progress_ui, caption_ui, progress_row_ui, toasts_ui,
+    Notice, NoticeChip, NoticeEvent, brief_progress_ui, caption_ui, notices_ui, progress_row_ui,
 };
 pub(crate) use pane::{PaneTitle, pane_footer_ui, pane_header_ui};
 pub(crate) use places::{Chosen, PlaceBar, Places, StripPlace, places_ui};
 pub(crate) use pointer_label::pointer_label_ui;
 pub(crate) use profile::profile_ui;
-pub(crate) use section::{folded_ui, note_ui, section_header_ui, section_mark_ui};
+pub(crate) use section::{
+    folded_ui, note_ui, section_header_ui, section_header_width, section_mark_ui,
+};
 pub(crate) use segmented::{labelled_segmented_ui, segmented_ui};
 pub(crate) use slider_row::{Mark, SliderResponse, SliderRow, Source, slider_row_ui};
 pub(crate) use stick::{stick_size, stick_ui};

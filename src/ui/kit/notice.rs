@@ -1,16 +1,19 @@
 //! Captions over the stage, notices that can be dismissed, and the progress of tasks.
 
-use super::assistive::describe;
+use super::assistive::{describe, set_role};
 use super::button::{Button, button_ui, icon_button_ui};
 use super::chip::Mood;
 use super::icon::{Icon, paint_icon};
-use super::paint::{Run, full_width, line_of, paragraph, put};
+use super::paint::{
+    PointerKind, Run, focus_ring, full_width, line_of, paragraph, pointer_in_use, put,
+};
 use super::words;
 use crate::ui::language::{Text, Word, say};
 use crate::ui::theme::{HIT, Type, palette_of, radius, space, theme_of};
 use eframe::egui::{
-    Align, Align2, Area, Color32, Frame, Id, Layout, Margin, Order, Rect, Role, ScrollArea, Sense,
-    Shadow, Stroke, Ui, UiBuilder, WidgetInfo, pos2, vec2,
+    Align, Align2, Color32, CursorIcon, Frame, Id, Layout, Margin, Popup, PopupCloseBehavior, Rect,
+    RectAlign, Response, Role, ScrollArea, Sense, Shadow, Stroke, StrokeKind, Ui, UiBuilder,
+    WidgetInfo, pos2, vec2,
 };
 use segue_text::Message;
 
@@ -61,7 +64,7 @@ pub(crate) fn notice_ui(notice: &Notice<'_>, ui: &mut Ui) -> Option<NoticeEvent>
         let at = put(ui.painter(), row.left_top() + vec2(text_left, 0.0), Align2::LEFT_TOP, text);
         let english = notice.text.to_string();
         let label = ui.interact(at, ui.make_persistent_id(("notice", &english)), Sense::hover());
-        describe(&label, &WidgetInfo::labeled(Role::Alert, true, say(notice.text, ui)));
+        describe(&label, &WidgetInfo::labeled(Role::Label, true, say(notice.text, ui)));
         let close =
             Rect::from_min_size(pos2(row.right() - HIT + 4.0, row.top() - 4.0), vec2(HIT, HIT));
         let close_id = ui.make_persistent_id(("dismiss", &english));
@@ -94,44 +97,116 @@ pub(crate) fn notice_ui(notice: &Notice<'_>, ui: &mut Ui) -> Option<NoticeEvent>
     event
 }
 
-/// Draws notices over the lower edge of the stage, the newest at the bottom. Returns the index of
-/// the one that was used, and the input to it.
-pub(crate) fn toasts_ui(
+/// A chip for all notices, in the head row of a panel.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NoticeChip<'a> {
+    /// Its text, cut where the row ends.
+    pub(crate) text: &'a Message,
+    /// Its colour.
+    pub(crate) mood: Mood,
+    /// The whole of what is new, for a screen reader, which reads it out.
+    pub(crate) news: &'a Message,
+    /// Whether the news is urgent.
+    pub(crate) is_alert: bool,
+    /// The row.
+    pub(crate) row: Rect,
+    /// Where the heading in the row ends: a short chip stands behind it.
+    pub(crate) heading_end: f32,
+}
+
+/// The user's input to the notices.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct NoticesResponse {
+    /// Whether the list is open.
+    pub(crate) is_open: bool,
+    /// The input to one of them, by its index.
+    pub(crate) event: Option<(usize, NoticeEvent)>,
+    /// All of them are to be closed.
+    pub(crate) dismissed_all: bool,
+}
+
+/// Draws the chip of all notices, and the list of them once it was pressed.
+pub(crate) fn notices_ui(
+    chip: &NoticeChip<'_>,
     notices: &[Notice<'_>],
-    stage: Rect,
     ui: &mut Ui,
-) -> Option<(usize, NoticeEvent)> {
-    if notices.is_empty() {
-        return None;
-    }
-    let width = (stage.width() - 2.0 * space::L).min(460.0 * theme_of(ui).scale());
-    let shadow = Shadow { offset: [0, 6], blur: 20, spread: 0, color: palette_of(ui).shadow };
-    let area =
-        Area::new(Id::unique("segue toasts")).order(Order::Foreground).pivot(Align2::CENTER_BOTTOM);
-    let area = area
-        .fixed_pos(stage.center_bottom() - vec2(0.0, space::L))
-        .constrain_to(stage)
-        .default_width(width);
-    let shown = area.show(ui.ctx(), |ui| {
-        ui.set_width(width);
-        // Notices scroll where there is no room, from the end, so that each can be closed.
-        let scrolled = ScrollArea::vertical()
-            .max_height(stage.height() - 2.0 * space::L)
-            .stick_to_bottom(true);
-        let shown = scrolled.show(ui, |ui| {
-            let mut touched = None;
-            for (index, notice) in notices.iter().enumerate() {
-                let inner = Frame::new()
-                    .shadow(shadow)
-                    .corner_radius(radius::L)
-                    .show(ui, |ui| ui.push_id(index, |ui| notice_ui(notice, ui)).inner);
-                touched = inner.inner.map(|event| (index, event)).or(touched);
-            }
-            touched
+) -> NoticesResponse {
+    let id = Id::unique("segue notices");
+    let opener = chip_ui(chip, id, ui);
+    let theme = theme_of(ui);
+    let screen = ui.ctx().content_rect();
+    let width = (380.0 * theme.scale()).min(screen.width() - 2.0 * space::L);
+    let list = Popup::menu(&opener)
+        .align(RectAlign::BOTTOM_START)
+        .gap(space::XS)
+        .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
+        .show(|ui| {
+            set_role(Role::List, words::NOTICES, ui);
+            ui.set_width(width);
+            notice_list_ui(notices, 0.6 * screen.height(), ui)
         });
-        shown.inner
+    list.map_or_else(NoticesResponse::default, |list| NoticesResponse {
+        is_open: true,
+        ..list.inner
+    })
+}
+
+fn chip_ui(chip: &NoticeChip<'_>, id: Id, ui: &Ui) -> Response {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    let scale = theme.scale();
+    let (ink, wash) = chip.mood.colors(palette);
+    let (sign, pad) = ((13.0 * scale).round(), space::S);
+    let before = pad + sign + space::XS;
+    let run = Run::new(chip.text, Type::SmallStrong, ink);
+    let room = chip.row.width() - before - pad;
+    let galley = line_of(&[run], room, ui);
+    let width = before + galley.size().x + pad;
+    let fits_behind = chip.heading_end + space::S + width <= chip.row.right();
+    let left = if fits_behind { chip.heading_end + space::S } else { chip.row.left() };
+    let rect = Rect::from_center_size(
+        pos2(left + width / 2.0, chip.row.center().y),
+        vec2(width, (24.0 * scale).round()),
+    );
+    let news = ui.interact(rect, id.with("news"), Sense::hover());
+    let role = if chip.is_alert { Role::Alert } else { Role::Status };
+    describe(&news, &WidgetInfo::labeled(role, true, say(chip.news, ui)));
+    // A finger needs more room than the row has.
+    let by_finger = pointer_in_use(ui) == PointerKind::Finger;
+    let hit = if by_finger { rect.expand2(vec2(0.0, 10.0)) } else { rect };
+    let response = ui.interact(hit, id, Sense::click()).on_hover_cursor(CursorIcon::PointingHand);
+    let corner = rect.height() / 2.0;
+    // Whatever the row says lies behind it.
+    ui.painter().rect_filled(rect, corner, palette.panel);
+    ui.painter().rect_filled(rect, corner, wash);
+    if response.hovered() {
+        let line = Stroke::new(theme.hairline(), ink);
+        ui.painter().rect_stroke(rect, corner, line, StrokeKind::Inside);
+    }
+    let at = Rect::from_center_size(
+        pos2(rect.left() + pad + sign / 2.0, rect.center().y),
+        vec2(sign, sign),
+    );
+    paint_icon(chip.mood.icon(), at, ink, ui.painter());
+    put(ui.painter(), pos2(rect.left() + before, rect.center().y), Align2::LEFT_CENTER, galley);
+    focus_ring(rect, radius::L, &response, ui);
+    describe(&response, &WidgetInfo::labeled(Role::Button, true, say(chip.text, ui)));
+    response.on_hover_text(say(chip.news, ui))
+}
+
+/// Draws the notices below each other, the newest first.
+fn notice_list_ui(notices: &[Notice<'_>], max_height: f32, ui: &mut Ui) -> NoticesResponse {
+    let mut heard = NoticesResponse::default();
+    ui.spacing_mut().item_spacing.y = space::XS;
+    ScrollArea::vertical().max_height(max_height).show(ui, |ui| {
+        for (index, notice) in notices.iter().enumerate().rev() {
+            let event = ui.push_id(index, |ui| notice_ui(notice, ui)).inner;
+            heard.event = event.map(|event| (index, event)).or(heard.event);
+        }
     });
-    shown.inner
+    if notices.len() > 1 {
+        heard.dismissed_all = button_ui(Button::new(words::DISMISS_ALL).quiet(), ui).clicked();
+    }
+    heard
 }
 
 /// Draws a sentence on a round ground, centred at the bottom of `stage`. It wraps on narrow stages.

@@ -60,6 +60,46 @@ pub(crate) fn line_of(runs: &[Run<'_>], max_width: f32, ui: &Ui) -> Arc<Galley> 
     ui.fonts_mut(|fonts| fonts.layout_job(job))
 }
 
+/// Lays a name out in one line. Where it is too wide it is cut in the middle: names of one series
+/// differ at their ends.
+pub(crate) fn name_line(
+    name: Text<'_>,
+    step: Type,
+    color: Color32,
+    max_width: f32,
+    ui: &Ui,
+) -> Arc<Galley> {
+    let line = |text: &str| line_of(&[Run::new(Text::Data(text), step, color)], f32::INFINITY, ui);
+    let whole = say(name, ui);
+    let galley = line(&whole);
+    if galley.size().x <= max_width {
+        return galley;
+    }
+    line(&cut_in_middle(&whole, |text| line(text).size().x <= max_width))
+}
+
+/// Returns a text with `…` in the place of as many letters of its middle as it takes to fit.
+fn cut_in_middle(text: &str, fits: impl Fn(&str) -> bool) -> String {
+    let letters: Vec<char> = text.chars().collect();
+    let with = |kept: usize| {
+        // A series is told apart by a few letters at the end.
+        let tail = kept * 2 / 5;
+        let (head, rest) = letters.split_at(kept - tail);
+        let end = rest.len().saturating_sub(tail);
+        head.iter().copied().chain(['…']).chain(rest.iter().skip(end).copied()).collect::<String>()
+    };
+    let (mut fitting, mut too_many) = (0, letters.len());
+    while too_many - fitting > 1 {
+        let middle = fitting.midpoint(too_many);
+        if fits(&with(middle)) {
+            fitting = middle;
+        } else {
+            too_many = middle;
+        }
+    }
+    with(fitting)
+}
+
 /// Returns the line height that puts text of `size` on one baseline with text of size `largest`, in
 /// the format of [`format()`].
 ///
@@ -128,6 +168,42 @@ pub(super) fn keyboard_in_use(ui: &Ui) -> bool {
         let now = if pointer { false } else { known || key };
         data.insert_temp(id, now);
         now
+    })
+}
+
+/// The pointer that was used last.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum PointerKind {
+    /// There was none yet.
+    #[default]
+    Unknown,
+    /// A mouse, which hovers.
+    Mouse,
+    /// A finger, which scrolls a list where a mouse drags its rows.
+    Finger,
+}
+
+/// Returns the pointer that was used last.
+pub(crate) fn pointer_in_use(ui: &Ui) -> PointerKind {
+    let id = Id::unique("segue pointer in use");
+    let now = ui.input(|input| {
+        let any = |wanted: fn(&egui::Event) -> bool| input.events.iter().any(wanted);
+        if input.any_touches() || any(|event| matches!(event, egui::Event::Touch { .. })) {
+            PointerKind::Finger
+        } else if any(|event| {
+            matches!(event, egui::Event::PointerMoved(_) | egui::Event::PointerButton { .. })
+        }) {
+            PointerKind::Mouse
+        } else {
+            PointerKind::Unknown
+        }
+    });
+    ui.ctx().data_mut(|data| {
+        let known = data.get_temp_mut_or_default::<PointerKind>(id);
+        if now != PointerKind::Unknown {
+            *known = now;
+        }
+        *known
     })
 }
 

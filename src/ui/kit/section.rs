@@ -24,6 +24,13 @@ pub(crate) fn section_header_ui(title: Word, ui: &mut Ui) -> Rect {
     rect
 }
 
+/// Returns the width of the words of a heading.
+pub(crate) fn section_header_width(title: Word, ui: &Ui) -> f32 {
+    let capitals = say(title, ui).to_uppercase();
+    let run = Run::new(Text::Data(&capitals), Type::Caps, palette_of(ui).muted);
+    line_of(&[run], f32::INFINITY, ui).size().x
+}
+
 /// Draws a quiet word at the right end of the line of a heading.
 pub(crate) fn section_mark_ui(words: Word, header: Rect, ui: &mut Ui) {
     let at = header.shrink2(vec2(space::XS, 0.0));

@@ -290,19 +290,19 @@ fn choice_opens_closes_and_returns_the_option() {
 
 #[test]
 fn clip_row_tells_clicks_on_row_letter_and_actions_apart() {
-    let mut harness = bench(Vec::new(), |done: &mut Vec<String>, ui| {
+    let mut harness = bench(Vec::new(), |done: &mut Vec<ClipRowEvent>, ui| {
         let actions = [(Icon::Pencil, Word::new("Rename")), (Icon::Trash, Word::new("Remove"))];
+        let letter = |part, held, name| SlotLetter { part, held, name: Text::Data(name) };
+        let letters =
+            [letter(Part::A, true, "Use walk as A"), letter(Part::B, false, "Use walk as B")];
         let row = ClipRow {
             name: Text::Data("walk"),
             detail: Text::Data("3.9 s"),
-            part: Part::A,
+            letters: &letters,
             actions: &actions,
             ..ClipRow::default()
         };
-        let out = clip_row_ui(row, ui);
-        done.extend(out.clicked.then(|| "row".to_owned()));
-        done.extend(out.badge_clicked.then(|| "letter".to_owned()));
-        done.extend(out.action.map(|action| format!("action {action}")));
+        done.extend(clip_row_ui(row, ui).event);
     });
     assert!(harness.query_by_label("Remove").is_none(), "actions wait for the pointer");
     let row = harness.get_by_label("walk, 3.9 s").rect();
@@ -310,13 +310,18 @@ fn clip_row_tells_clicks_on_row_letter_and_actions_apart() {
     harness.run();
     harness.get_by_label("Remove").click();
     harness.run();
-    harness.get_by_label("walk: A").click();
-    harness.run();
+    for (letter, is_held) in [("Use walk as A", true), ("Use walk as B", false)] {
+        let letter = harness.get_by_label(letter);
+        assert_eq!(letter.accesskit_node().toggled() == Some(Toggled::True), is_held);
+        letter.click();
+        harness.run();
+    }
     let row_pos = pos2(row.center().x, row.bottom() - 6.0);
     press(&mut harness, row_pos, true);
     press(&mut harness, row_pos, false);
     harness.run();
-    assert_eq!(*harness.state(), ["action 1", "letter", "row"]);
+    use ClipRowEvent::{Action, Chosen, Letter};
+    assert_eq!(*harness.state(), [Action(1), Letter(0), Letter(1), Chosen]);
 }
 
 #[test]

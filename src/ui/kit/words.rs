@@ -54,6 +54,14 @@ pub(super) const RESET_CONTACTS: Word = Word::new("Back to what was found");
 pub(super) const STANCE_HELP: Word = Word::new(
     "Drag an end, or use the arrow keys: they move the strike, with Shift the lift. Delete removes the contact.",
 );
+/// The button that opens the menu of a row.
+pub(super) const MORE: Word = Word::new("More");
+/// The button that empties the field of a search.
+pub(super) const CLEAR_SEARCH: Word = Word::new("Clear the search");
+/// The name of the list of notices.
+pub(super) const NOTICES: Word = Word::new("Notices");
+/// The button that closes all notices.
+pub(crate) const DISMISS_ALL: Word = Word::new("Dismiss all");
 /// The button that closes a notice.
 pub(crate) const DISMISS: Word = Word::new("Dismiss");
 /// The button that stops a task.

@@ -11,7 +11,7 @@ use crate::ui::labs::path::hand::path_of;
 use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::rows::{
-    Detail, Kept, add_clip_ui, clip_sets_ui, foot_rows_ui, param_row_ui, slot_row_ui,
+    Detail, Kept, add_clip_ui, clip_list_ui, clip_sets_ui, foot_rows_ui, param_row_ui, slot_row_ui,
 };
 use crate::ui::state::UiState;
 use crate::ui::text;
@@ -291,7 +291,9 @@ fn company_ui(
         out.commands
             .push(Command::ExtraCharacters(ExtraCharacterCommand::AddResult(state.saved_pane)));
     }
-    if let Some(id) = add_clip_ui(session, |_| true, ui) {
+    let mut added = None;
+    let dropped = clip_list_ui(session, ui, |ui| added = add_clip_ui(session, |_| true, ui));
+    if let Some(id) = added.or(dropped) {
         out.commands.push(Command::ExtraCharacters(ExtraCharacterCommand::Add(id)));
     }
     kit::note_ui(text::COMPANY_HELP, palette.muted, ui);

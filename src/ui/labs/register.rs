@@ -9,7 +9,9 @@ use crate::ui::language::{Text, Word, say};
 use crate::ui::out::Out;
 use crate::ui::rows::clip_sets_ui;
 use crate::ui::rows::{Detail, Kept, param_row_ui};
-use crate::ui::rows::{clip_choice_ui, compare_ui, foot_rows_ui, frames_of_both, pair_ui};
+use crate::ui::rows::{
+    clip_choice_ui, clip_list_ui, compare_ui, foot_rows_ui, frames_of_both, pair_ui,
+};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{Palette, Type, palette_of, space, theme_of};
@@ -202,25 +204,27 @@ fn also_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
             out.commands.push(Command::Settle);
         }
     }
-    if also.len() < MAX_WEIGHTED_CLIPS
-        && kit::button_ui(
-            Button::new(text::BLEND_MORE)
-                .icon(Icon::Plus)
-                .hint(Word::new(Key::WarpAlso.param().help)),
-            ui,
-        )
-        .clicked()
-    {
-        // The first clip that is not in the blend yet, if there is one.
-        let params = session.params();
-        let is_in = |id: &str| {
-            [Key::A, Key::B].iter().any(|key| params.text(*key) == id)
-                || also.iter().any(|(other, _)| other == id)
-        };
-        let entries = session.library().entries();
-        let next = entries.iter().find(|entry| !is_in(&entry.id)).or(entries.first());
-        let added = next.map(|entry| (entry.id.clone(), FIRST_SHARE));
-        set(also.iter().cloned().chain(added).collect(), out);
+    if also.len() >= MAX_WEIGHTED_CLIPS {
+        return;
+    }
+    // The first clip that is not in the blend yet, if there is one.
+    let params = session.params();
+    let is_in = |id: &str| {
+        [Key::A, Key::B].iter().any(|key| params.text(*key) == id)
+            || also.iter().any(|(other, _)| other == id)
+    };
+    let entries = session.library().entries();
+    let next = entries.iter().find(|entry| !is_in(&entry.id)).or(entries.first());
+    let mut added = None;
+    let dropped = clip_list_ui(session, ui, |ui| {
+        let hint = Word::new(Key::WarpAlso.param().help);
+        let button = Button::new(text::BLEND_MORE).icon(Icon::Plus).hint(hint);
+        if kit::button_ui(button, ui).clicked() {
+            added = next.map(|entry| entry.id.clone());
+        }
+    });
+    if let Some(id) = added.or(dropped) {
+        set(also.iter().cloned().chain([(id, FIRST_SHARE)]).collect(), out);
         out.commands.push(Command::Settle);
     }
 }

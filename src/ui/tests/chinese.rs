@@ -135,7 +135,7 @@ fn name_of_a_users_clip_that_is_also_a_word_is_not_translated() {
         let rows =
             harness.get_all_by_role(Role::Button).filter_map(|row| row.accesskit_node().label());
         assert_eq!(rows.filter(|label| label.starts_with(&row)).count(), 1, "the library");
-        harness.get_by_role_and_label(Role::Button, &format!("{name}: A"));
+        harness.get_by_role_and_label(Role::Button, &format!("把 {name} 設為 A"));
         let choice = harness.get_by_role_and_label(Role::ComboBox, Slot::A.label());
         assert_eq!(choice.value().as_deref(), Some(name), "the menu of clips");
         let headings = harness

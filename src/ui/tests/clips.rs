@@ -55,6 +55,7 @@ pub(super) fn with_file(link: &str) -> Page {
     page.session
         .apply(Command::Dismiss(page.session.notices().list().last().map_or(0, |n| n.id)))
         .expect("a page as the tests need it");
+    page.session.tick(60.0);
     page.out = Out::default();
     page
 }

@@ -104,8 +104,8 @@ impl FileIntake {
                 told.push(msg!("{more} more warnings are listed with the clips."));
             }
             let text = Message::joined(told, " ");
-            // The takes of whole databases begin with a T-pose: nothing has to be done about it, and
-            // the clips' own warnings say it.
+            // The takes of whole databases begin with a T-pose: nothing has to be done about it,
+            // and the clips' own warnings say it.
             let is_odd = loaded.warnings.len() > t_poses;
             let has_notes = |entry: &Entry| {
                 let is_t_pose = entry.about.as_ref().is_some_and(|about| about.t_pose_first_row);

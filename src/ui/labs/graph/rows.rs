@@ -5,7 +5,9 @@ use super::{map, table};
 use crate::ui::kit::{self, Button, Histogram, Icon};
 use crate::ui::language::{Text, Word, say};
 use crate::ui::out::{Action, Out};
-use crate::ui::rows::{Detail, add_clip_ui, clip_sets_ui, compare_ui, foot_rows_ui, param_row_ui};
+use crate::ui::rows::{
+    Detail, add_clip_ui, clip_list_ui, clip_sets_ui, compare_ui, foot_rows_ui, param_row_ui,
+};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
@@ -69,11 +71,31 @@ fn progress_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
 
 /// Draws the clips, with buttons to remove one and a menu to add one.
 fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
-    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    let palette = palette_of(ui);
     let ids = session.graph_clip_ids();
     let title = msg!("Clips of the graph: {count}", count = ids.len());
-    kit::folded_ui(&title, ui, |ui| {
-        for id in &ids {
+    let mut added = None;
+    let dropped = clip_list_ui(session, ui, |ui| {
+        clip_rows_ui(&title, &ids, session, out, ui);
+        added = add_clip_ui(session, |entry| !ids.contains(&entry.id), ui);
+    });
+    if let Some(id) = added.or(dropped).filter(|id| !ids.contains(id)) {
+        let mut all = ids.clone();
+        all.push(id);
+        set_clips(&all, out);
+    }
+    if let Some(words) = session.graph_clips().and_then(|graph_clips| {
+        text::moved_onto_first(graph_clips, |name| session.clip_title(name))
+    }) {
+        kit::note_ui(&words, palette.muted, ui);
+    }
+}
+
+/// Draws a row for each clip.
+fn clip_rows_ui(title: &Message, ids: &[String], session: &Session, out: &mut Out, ui: &mut Ui) {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    kit::folded_ui(title, ui, |ui| {
+        for id in ids {
             let entry = session.library().find(id);
             let name = entry.map_or_else(|| Message::data(&**id), |entry| entry.title());
             let secs = entry
@@ -107,16 +129,6 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
             });
         }
     });
-    if let Some(id) = add_clip_ui(session, |entry| !ids.contains(&entry.id), ui) {
-        let mut all = ids.clone();
-        all.push(id);
-        set_clips(&all, out);
-    }
-    if let Some(words) = session.graph_clips().and_then(|graph_clips| {
-        text::moved_onto_first(graph_clips, |name| session.clip_title(name))
-    }) {
-        kit::note_ui(&words, palette.muted, ui);
-    }
 }
 
 /// Sets the clips of the graph.

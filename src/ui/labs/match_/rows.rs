@@ -6,7 +6,7 @@ use super::why::why_ui;
 use crate::ui::kit::{self, Button, Icon};
 use crate::ui::language::{Word, say};
 use crate::ui::out::Out;
-use crate::ui::rows::{Detail, Kept, add_clip_ui, clip_sets_ui, param_row_ui};
+use crate::ui::rows::{Detail, Kept, add_clip_ui, clip_list_ui, clip_sets_ui, param_row_ui};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
@@ -210,22 +210,26 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let set = |ids: Vec<String>, out: &mut Out| {
         out.set_once(Key::MatchClips, List::ClipIds(ids).into());
     };
-    for (index, id) in ids.iter().enumerate() {
-        ui.push_id(("clip", index), |ui| {
-            ui.horizontal(|ui| {
-                let entry = session.library().find(id);
-                let name = entry.map_or_else(|| Message::data(&**id), |entry| entry.title());
-                let leave_out = text::leave_clip_out(name.clone());
-                if kit::icon_button_ui(Icon::Close, &leave_out, ui).clicked() {
-                    let mut rest = ids.to_vec();
-                    rest.remove(index);
-                    set(rest, out);
-                }
-                ui.label(RichText::new(say(&name, ui)).font(theme.font(Type::Body)));
+    let mut added = None;
+    let dropped = clip_list_ui(session, ui, |ui| {
+        for (index, id) in ids.iter().enumerate() {
+            ui.push_id(("clip", index), |ui| {
+                ui.horizontal(|ui| {
+                    let entry = session.library().find(id);
+                    let name = entry.map_or_else(|| Message::data(&**id), |entry| entry.title());
+                    let leave_out = text::leave_clip_out(name.clone());
+                    if kit::icon_button_ui(Icon::Close, &leave_out, ui).clicked() {
+                        let mut rest = ids.to_vec();
+                        rest.remove(index);
+                        set(rest, out);
+                    }
+                    ui.label(RichText::new(say(&name, ui)).font(theme.font(Type::Body)));
+                });
             });
-        });
-    }
-    if let Some(id) = add_clip_ui(session, |_| true, ui) {
+        }
+        added = add_clip_ui(session, |_| true, ui);
+    });
+    if let Some(id) = added.or(dropped) {
         let mut more = ids.to_vec();
         more.push(id);
         set(more, out);
