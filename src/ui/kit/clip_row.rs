@@ -10,8 +10,8 @@ use super::words;
 use crate::ui::language::{Text, Word, say};
 use crate::ui::theme::{HIT, Type, palette_of, radius, space, theme_of};
 use eframe::egui::{
-    Align2, Color32, CursorIcon, Id, Key, Modifiers, Pos2, Rect, Response, Role, Sense, Stroke,
-    StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2,
+    Align2, Color32, CursorIcon, Id, Key, Memory, Modifiers, Pos2, Rect, Response, Role, Sense,
+    Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 
 /// The least side of a target for a finger, points.
@@ -187,7 +187,7 @@ fn inner_id(row: Id, kind: &str, index: usize) -> Id {
 
 /// Returns whether a letter or an action of the row has the focus.
 fn has_inner_focus(id: Id, row: &ClipRow<'_>, ui: &Ui) -> bool {
-    let Some(focused) = ui.memory(|memory| memory.focused()) else {
+    let Some(focused) = ui.memory(Memory::focused) else {
         return false;
     };
     let letters = (0..row.letters.len()).map(|index| inner_id(id, LETTER, index));

@@ -290,6 +290,7 @@ fn choice_opens_closes_and_returns_the_option() {
 
 #[test]
 fn clip_row_tells_clicks_on_row_letter_and_actions_apart() {
+    use ClipRowEvent::{Action, Chosen, Letter};
     let mut harness = bench(Vec::new(), |done: &mut Vec<ClipRowEvent>, ui| {
         let actions = [(Icon::Pencil, Word::new("Rename")), (Icon::Trash, Word::new("Remove"))];
         let letter = |part, held, name| SlotLetter { part, held, name: Text::Data(name) };
@@ -320,7 +321,6 @@ fn clip_row_tells_clicks_on_row_letter_and_actions_apart() {
     press(&mut harness, row_pos, true);
     press(&mut harness, row_pos, false);
     harness.run();
-    use ClipRowEvent::{Action, Chosen, Letter};
     assert_eq!(*harness.state(), [Action(1), Letter(0), Letter(1), Chosen]);
 }
 
