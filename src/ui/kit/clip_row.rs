@@ -173,7 +173,8 @@ pub(crate) fn clip_row_ui(row: ClipRow<'_>, ui: &mut Ui) -> ClipRowResponse {
     }
     let more = say(row.more, ui);
     let dot = if more.is_empty() { "" } else { " · " };
-    let response = response.on_hover_text(format!("{name}\n{detail}{dot}{more}"));
+    let hint = format!("{name}\n{detail}{dot}{more}");
+    let response = response.on_hover_text(say(Text::Data(&hint), ui));
     ClipRowResponse { event, response }
 }
 
@@ -286,7 +287,7 @@ fn letter_ui(letter: SlotLetter<'_>, id: Id, hit: Rect, place: Rect, ui: &Ui) ->
     let name = say(letter.name, ui);
     let info = WidgetInfo::selected(Role::Button, ui.is_enabled(), letter.held, name.as_str());
     describe(&response, &info);
-    response.on_hover_text(name)
+    response.on_hover_text(say(letter.name, ui))
 }
 
 /// Draws an icon inside another widget, as a button of its own.
