@@ -324,7 +324,9 @@ pub(crate) fn group_head_ui(
     ui: &mut Ui,
 ) -> Response {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
-    let rect = full_width(theme.row_height(), ui);
+    let by_finger = pointer_in_use(ui) == PointerKind::Finger;
+    let height = if by_finger { FINGER } else { theme.row_height() };
+    let rect = full_width(height, ui);
     let id = ui.make_persistent_id(("group", title.english()));
     let response = ui.interact(rect, id, Sense::click()).on_hover_cursor(CursorIcon::PointingHand);
     if response.hovered() {

@@ -216,6 +216,15 @@ fn group_of_files_folds() {
     harness.get_by_label("takes, 2").click();
     harness.run();
     assert!(clip_row("a", &harness).is_some());
+    // With Ctrl or Cmd its clips are selected.
+    let at = head(&harness).center();
+    let command = Modifiers::COMMAND;
+    step(vec![Event::ModifiersChanged(command), Event::PointerMoved(at)], &mut harness);
+    step(vec![button(at, true)], &mut harness);
+    step(vec![button(at, false)], &mut harness);
+    step(vec![Event::ModifiersChanged(Modifiers::NONE), Event::PointerGone], &mut harness);
+    harness.run();
+    assert_eq!(picked(&harness).len(), 2);
 }
 
 #[test]
