@@ -59,7 +59,7 @@ fn captured() -> Vec<Subject> {
 /// The labs with their methods, as links; the last column is the tolerance for results, metres.
 /// Without mirrored copies: the mirror image of a twist about a bone depends on the rest pose,
 /// which has no meaning where the joints' axes are rotated.
-const LABS: [(&str, f32); 23] = [
+const LABS: [(&str, f32); 24] = [
     ("lab=view", 0.001),
     ("lab=blend", 0.001),
     ("lab=blend&root_blend=off&weight_law=linear", 0.001),
@@ -83,6 +83,10 @@ const LABS: [(&str, f32); 23] = [
     ("lab=match&scenario=spin&mirrored=off", 0.001),
     ("lab=in_place", 0.001),
     ("lab=in_place&root_way=put_back", 0.005),
+    (
+        "lab=edit&edit_from=0.3&edit_to=1.5&as_loop=on&reverse=on&resample=48&scale=1.2&turn=30",
+        0.001,
+    ),
 ];
 
 /// Returns a session with two files loaded, and their clips.

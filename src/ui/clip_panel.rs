@@ -3,7 +3,7 @@
 use super::kit::{self, Tree, TreeRow};
 use super::language::{Text, Word, say};
 use super::out::Out;
-use super::rows::save_rows_ui;
+use super::rows::{body_parts_asked_for, save_rows_ui};
 use super::state::{Typing, UiState};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
@@ -50,7 +50,10 @@ pub(crate) fn clip_panel_ui(
     }
     ui.add_space(space::XS);
     state.joints_open |= kit::folded_ui(text::JOINTS, ui, |ui| joints_ui(motion, session, out, ui));
-    kit::folded_ui(text::BODY_PARTS, ui, |ui| roles_ui(entry, motion, out, ui));
+    let is_asked_for = body_parts_asked_for(&entry.id, ui);
+    kit::folded_unless_ui(is_asked_for, text::BODY_PARTS, ui, |ui| {
+        roles_ui(entry, motion, out, ui);
+    });
 }
 
 fn sentence_ui<'a>(sentence: impl Into<Text<'a>>, color: eframe::egui::Color32, ui: &mut Ui) {

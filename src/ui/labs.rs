@@ -3,6 +3,7 @@
 
 mod blend;
 mod break_it;
+mod edit;
 mod graph;
 mod in_place;
 pub(crate) mod in_time;
@@ -20,6 +21,7 @@ mod transition;
 mod view;
 
 pub(crate) use blend::welcome;
+pub(crate) use edit::edit_items_ui;
 pub(crate) use lab_ui::{Shown, Title};
 pub(crate) use view::compare_clips;
 
@@ -51,6 +53,7 @@ fn of(lab: LabId) -> &'static LabUi {
         LabId::Graph => &graph::LAB,
         LabId::Match => &match_::LAB,
         LabId::InPlace => &in_place::LAB,
+        LabId::Edit => &edit::LAB,
     }
 }
 

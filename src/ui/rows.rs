@@ -3,11 +3,13 @@
 mod clip_sets;
 mod footer;
 mod param;
+mod remedies;
 mod save;
 
 pub(crate) use clip_sets::clip_sets_ui;
 pub(crate) use footer::{Kept, footer_ui};
 pub(crate) use param::{Detail, compare_choice_ui, param_row_ui};
+pub(crate) use remedies::{body_parts_asked_for, remedy_buttons_ui};
 pub(crate) use save::save_rows_ui;
 
 use super::clip_drag::clip_dropped_on;

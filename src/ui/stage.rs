@@ -72,7 +72,7 @@ fn stage_ui(
         }
         take_drop_on_pane(index, rect, session, out, ui);
         if let Some(pane) = panes.get(index) {
-            numbers_top = numbers_top.min(pane_ui(pane, index, &verdicts, session, rect, ui));
+            numbers_top = numbers_top.min(pane_ui(pane, index, &verdicts, session, rect, out, ui));
         }
     }
     if !takes_drag {

@@ -27,6 +27,7 @@ mod chinese;
 mod clips;
 mod contacts;
 mod drive;
+mod edit;
 mod footer;
 mod graph;
 mod joints;

@@ -9,6 +9,7 @@
     reason = "a message takes over the parts that it is made of"
 )]
 
+mod edit;
 mod graph;
 mod lessons;
 mod library;
@@ -20,6 +21,7 @@ mod register;
 mod speed;
 mod transition;
 
+pub(crate) use edit::*;
 pub(crate) use graph::*;
 pub(crate) use lessons::*;
 pub(crate) use library::*;

@@ -40,6 +40,7 @@ pub(crate) fn timeline_panel_ui(
     }
     let params = session.params();
     let Some(outcome) = session.main_outcome() else {
+        in_time::part_ui(session, out, ui);
         return kit::note_ui(text::EMPTY_PANE, palette_of(ui).muted, ui);
     };
     let clip = outcome.motion.clip();
@@ -58,6 +59,7 @@ pub(crate) fn timeline_panel_ui(
     if layout != Layout::Phone {
         curve_menu_ui(outcome, &row, out, ui);
     }
+    in_time::part_ui(session, out, ui);
 
     let panes = named_outcomes(session);
     cache.update(outcome, &panes, joint, quantity);

@@ -43,6 +43,22 @@ onBothBackends("removed root motion is rebuilt from the feet", async ({ open }) 
   assert.ok(apart(start, end) > 0.01, "its body moves");
 });
 
+// Fails when an edit of the link is not made, or a kept edit is not made again from its recipe.
+onBothBackends("clip is trimmed, mirrored and kept as its recipe", async ({ open }) => {
+  const { segue } = await open("lab=edit&a=walk_left&edit_from=0.5&edit_to=1.5&scale=2&compare=mirror:off,on&play=off", DESK);
+  await segue("set", {});
+  assert.deepEqual(await panes(segue, "clip_s"), [1, 1]);
+  const [recorded, mirrored] = await panes(segue, "root_way_mps");
+  assert.ok(recorded > 2 && Math.abs(recorded - mirrored) < 0.01, `${recorded} and ${mirrored} m/s`);
+  const id = await segue("keep", "result:1");
+  assert.equal(id, "edit(a:walk_left,edit_from:0.5,edit_to:1.5,mirror:on,scale:2)");
+  const kept = await segue("pose", id, 0.5);
+  assert.ok(apart(await segue("pose", "result:1", 0.5), kept) < 1e-6, "it is the result");
+  const other = await open(`lab=view&a=${id}&play=off`, DESK);
+  await other.segue("set", {});
+  assert.ok(apart(await other.segue("pose", "result", 0.5), kept) < 1e-6, "its link alone makes it");
+});
+
 // Fails when the layer moves the legs, or does not move the arms.
 onBothBackends("layer moves the joints of its mask, and no others", async ({ open }) => {
   const { segue } = await open("lab=layers&mask=arms&feather=0&play=off", DESK);

@@ -1,7 +1,7 @@
 //! The commands that change a session, the reasons why one cannot be carried out, and the session's
 //! requests to the app.
 
-use super::labs::Slot;
+use super::labs::{ClipEdit, Slot};
 use super::lesson::Source;
 use super::outside::short;
 use super::pane::NoResult;
@@ -34,6 +34,9 @@ pub enum Command {
     Rename(String, String),
     /// Puts the result of a pane, counted from 0, into the library.
     Keep(usize),
+    /// Adds an edited clip to the library, by its recipe; with a slot, also puts it there, in the
+    /// same step of undo.
+    Edit(String, ClipEdit, Option<Slot>),
     /// Changes the library's files.
     File(FileCommand),
     /// Moves the playhead, plays or pauses.

@@ -3,6 +3,7 @@
 mod answer;
 mod artefact_meter;
 mod blend;
+mod edit;
 mod error;
 mod feet;
 mod graph;
@@ -18,6 +19,7 @@ mod pair;
 mod path;
 mod recipe;
 mod register;
+mod remedy;
 mod repetition;
 pub(super) mod sliced;
 mod speed;
@@ -26,6 +28,8 @@ mod view;
 pub(super) use answer::Answer;
 pub(super) use artefact_meter::ArtefactMeter;
 pub use blend::mistake_shows;
+pub(super) use edit::edit_params;
+pub use edit::{ClipEdit, edits_of};
 pub use error::LabError;
 pub use graph::{
     BuiltGraph, DistanceField, Distances, FollowedPath, GraphClips, Walk, WalkGhost, WalkMoment,
@@ -48,6 +52,8 @@ pub use path::{FittedMotion, PathFacts, spline_ends};
 pub use recipe::file_stem;
 pub(super) use recipe::{recipe_id, recipe_ingredients, recipe_name, recipe_params};
 pub use register::{DistanceMap, FramePair, RegistrationFacts, weight_curve};
+pub use remedy::Remedy;
+pub(super) use remedy::remedies;
 pub use sliced::JobKind;
 pub(super) use speed::{SpeedInputs, middle_mps};
 

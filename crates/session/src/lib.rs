@@ -106,11 +106,11 @@ pub use command::{
 pub use contact_edits::ContactClip;
 pub use extra_characters::ExtraCharacter;
 pub use files::{Job, LoadedFile};
-pub use labs::LabError;
 pub use labs::{
     BuiltGraph, DistanceField, Distances, FollowedPath, GraphClips, Walk, WalkGhost, WalkMoment,
     WalkStay, check_graph_clips, graph_of,
 };
+pub use labs::{ClipEdit, LabError, Remedy, edits_of};
 pub use labs::{
     Cycle, CycleMade, LayerFacts, LayerFit, MatchSearch, Outcome, PlacedClip, RetargetReport, Slot,
     Transition, mistake_shows,

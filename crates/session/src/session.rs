@@ -278,6 +278,7 @@ impl Session {
             }
             Command::Rename(id, name) => self.document.rename(&id, &name)?,
             Command::Keep(pane) => self.keep(pane)?,
+            Command::Edit(id, edit, slot) => self.keep_edited(&id, edit, slot)?,
             Command::Compare(key) => {
                 let compare = Some(self.comparison(key)?);
                 self.set_as_step(vec![(Key::Compare, Value::Compare(compare))])?;

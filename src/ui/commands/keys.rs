@@ -36,8 +36,8 @@ pub(super) const SHIFT: Modifiers = Modifiers::SHIFT;
 pub(super) const COMMAND: Modifiers = Modifiers::COMMAND;
 pub(super) const COMMAND_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
-/// The keys of the labs, from left to right: the digits and the two keys after them.
-pub(in crate::ui) const LAB_KEYS: [Keyboard; 12] = [
+/// The keys of the labs, from left to right: the digits and the three keys after them.
+pub(in crate::ui) const LAB_KEYS: [Keyboard; 13] = [
     Keyboard::Num1,
     Keyboard::Num2,
     Keyboard::Num3,
@@ -50,6 +50,7 @@ pub(in crate::ui) const LAB_KEYS: [Keyboard; 12] = [
     Keyboard::Num0,
     Keyboard::Minus,
     Keyboard::Equals,
+    Keyboard::Backslash,
 ];
 
 /// The commands that the keyboard gives, besides [`UiCommand::OpenLab`].
@@ -158,7 +159,7 @@ pub(super) fn keys_of(commands: &[UiCommand]) -> Message {
     }
 }
 
-/// Returns the keys of the labs: `1 … 9, 0, -, =`.
+/// Returns the keys of the labs: `1 … 9, 0, -, =, \`.
 pub(super) fn lab_keys() -> String {
     let (digits, rest) = LAB_KEYS.split_at(9);
     let ends =

@@ -29,6 +29,7 @@ mod metrics;
 mod notice;
 pub(crate) mod paint;
 mod pane;
+mod part_bar;
 mod places;
 mod pointer_label;
 mod profile;
@@ -71,11 +72,12 @@ pub(crate) use notice::{
     Notice, NoticeChip, NoticeEvent, brief_progress_ui, caption_ui, notices_ui, progress_row_ui,
 };
 pub(crate) use pane::{PaneTitle, pane_footer_ui, pane_header_ui};
+pub(crate) use part_bar::{PartBar, PartBarResponse, part_bar_ui};
 pub(crate) use places::{Chosen, PlaceBar, Places, StripPlace, places_ui};
 pub(crate) use pointer_label::pointer_label_ui;
 pub(crate) use profile::profile_ui;
 pub(crate) use section::{
-    folded_ui, note_ui, section_header_ui, section_header_width, section_mark_ui,
+    folded_ui, folded_unless_ui, note_ui, section_header_ui, section_header_width, section_mark_ui,
 };
 pub(crate) use segmented::{labelled_segmented_ui, segmented_ui};
 pub(crate) use slider_row::{Mark, SliderResponse, SliderRow, Source, slider_row_ui};

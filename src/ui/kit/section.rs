@@ -46,6 +46,17 @@ pub(crate) fn folded_ui<'a>(
     ui: &mut Ui,
     content: impl FnOnce(&mut Ui),
 ) -> bool {
+    folded_unless_ui(false, title, ui, content)
+}
+
+/// Draws a section that is folded at first, as [`folded_ui`] does. With `is_asked_for` it unfolds
+/// and is scrolled into sight.
+pub(crate) fn folded_unless_ui<'a>(
+    is_asked_for: bool,
+    title: impl Into<Text<'a>>,
+    ui: &mut Ui,
+    content: impl FnOnce(&mut Ui),
+) -> bool {
     let title = title.into();
     let words = RichText::new(say(title, ui))
         .font(theme_of(ui).font(Type::Strong))
@@ -59,7 +70,10 @@ pub(crate) fn folded_ui<'a>(
             let at = Rect::from_center_size(response.rect.center(), vec2(side, side));
             paint_icon(sign, at, ink, ui.painter());
         });
-    let shown = header.show_unindented(ui, content);
+    let shown = header.open(is_asked_for.then_some(true)).show_unindented(ui, content);
+    if is_asked_for {
+        shown.header_response.scroll_to_me(Some(Align::Min));
+    }
     shown.body_response.is_some()
 }
 

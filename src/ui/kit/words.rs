@@ -62,6 +62,10 @@ pub(super) const CLEAR_SEARCH: Word = Word::new("Clear the search");
 pub(super) const NOTICES: Word = Word::new("Notices");
 /// The button that closes all notices.
 pub(crate) const DISMISS_ALL: Word = Word::new("Dismiss all");
+/// The handle where the used part of a clip begins.
+pub(super) const PART_START: Word = Word::new("Start of the part");
+/// The handle where the used part of a clip ends.
+pub(super) const PART_END: Word = Word::new("End of the part");
 /// The button that closes a notice.
 pub(crate) const DISMISS: Word = Word::new("Dismiss");
 /// The button that stops a task.

@@ -2,11 +2,13 @@
 //! parameters that its handles set.
 
 use super::lab_ui::Edge;
-use super::{blend, graph, make, match_, register, transition};
+use super::{blend, edit, graph, loop_, make, match_, register, transition};
+use crate::ui::kit;
 use crate::ui::out::Out;
 use crate::ui::state::{Layout, UiState};
+use crate::ui::text;
 use eframe::egui::{Context, Ui};
-use segue_session::{Key, Kind, Outcome, Params, Session, Walk};
+use segue_session::{Command, Key, Kind, Outcome, Params, Session, Slot, Value, Walk};
 use segue_text::Message;
 use std::sync::Arc;
 
@@ -47,6 +49,42 @@ pub(crate) fn has_strip(session: &Session) -> bool {
 /// Returns the walk of the first pane, where it is not a single transition.
 fn whole_walk(session: &Session) -> Option<&Arc<Walk>> {
     session.graph_walk().filter(|walk| !walk.is_jump)
+}
+
+/// Draws the bar of the clip in A with the part that the lab uses, where it uses a part. Its
+/// handles set the ends of the part; an end of the clip is no end of its own.
+pub(crate) fn part_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    let Some(keys) = edit::part_keys(session).or_else(|| loop_::part_keys(session)) else {
+        return;
+    };
+    let Some(entry) = session.slot(Slot::A) else {
+        return;
+    };
+    let Some(clip) = entry.motion.as_ref().map(|motion| motion.clip()) else {
+        return;
+    };
+    let (name, duration) = (entry.title(), clip.duration_secs());
+    let end_of = |key: Key, missing: f64| {
+        let given = session.params().optional(key).or_else(|| session.automatic_value(key));
+        given.unwrap_or(missing).clamp(0.0, duration)
+    };
+    let (a, b) = (end_of(keys[0], 0.0), end_of(keys[1], duration));
+    let bar = kit::PartBar {
+        label: text::PART_OF_A,
+        name: (&name).into(),
+        duration,
+        step: clip.fps().recip(),
+        ends: [a.min(b), a.max(b)],
+    };
+    let kit::PartBarResponse { moved, is_done } = kit::part_bar_ui(&bar, ui);
+    if let Some((end, secs)) = moved {
+        let at_end = (secs - [0.0, duration][end]).abs() < 0.5 * bar.step;
+        let is_auto = at_end && edit::part_keys(session).is_some();
+        out.set(keys[end], if is_auto { Value::Auto } else { Value::Number(secs) });
+    }
+    if is_done {
+        out.commands.push(Command::Settle);
+    }
 }
 
 /// Returns the name of a motion that was made from these parameters alone; `None` for results of

@@ -11,7 +11,7 @@ use crate::ui::text;
 use crate::ui::theme::{palette_of, space};
 use eframe::egui::Ui;
 use segue_session::choices::LoopMethod;
-use segue_session::{Compare, Cycle, CycleMade, Key, Session, Slot};
+use segue_session::{Compare, Cycle, CycleMade, Key, LabId, Session, Slot};
 use segue_text::Message;
 
 /// The lab's part of the page.
@@ -36,6 +36,12 @@ fn title(shown: &Shown<'_>) -> Title {
 /// The distance above which the ends of a cycle hardly match, centimetres: the default threshold of
 /// the motion graph.
 const POOR_ENDS_CM: f64 = 8.0;
+
+/// Returns the parameters of the ends of the cycle, while this lab is open.
+pub(super) fn part_keys(session: &Session) -> Option<[Key; 2]> {
+    let is_open = session.params().lab() == LabId::Loop;
+    is_open.then_some([Key::LoopFrom, Key::LoopTo])
+}
 
 /// Draws the rows of the lab.
 pub(super) fn loop_ui(session: &Session, _: &mut UiState, out: &mut Out, ui: &mut Ui) {

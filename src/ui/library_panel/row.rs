@@ -4,7 +4,7 @@ use super::state::Held;
 use crate::ui::clip_drag::{ClipDrag, swap_values};
 use crate::ui::clip_panel::clip_panel_ui;
 use crate::ui::kit::{self, ClipRow, ClipRowEvent, Icon, MenuItem, Part, SlotLetter};
-use crate::ui::labs::compare_clips;
+use crate::ui::labs::{compare_clips, edit_items_ui};
 use crate::ui::language::{Text, Word, say};
 use crate::ui::out::{Action, Out};
 use crate::ui::state::{Typing, UiState};
@@ -238,6 +238,7 @@ fn menu_ui(
                 out.set_once(Key::Character, Value::Text(entry.id.clone()));
             }
         }
+        edit_items_ui(&entry.id, out, ui);
         for (icon, words, action) in ACTIONS {
             let item = MenuItem { text: words.into(), icon: Some(icon), ..MenuItem::default() };
             if line_ui(item, ui) {

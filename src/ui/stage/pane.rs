@@ -4,6 +4,8 @@ use super::verdicts::{Verdicts, ranking};
 use crate::ui::kit::{self, Metric, Mood, PaneTitle, Rank};
 use crate::ui::labs::{Shown, Title, on_stage, title};
 use crate::ui::language::{Word, say};
+use crate::ui::out::Out;
+use crate::ui::rows::remedy_buttons_ui;
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{self, Align2, Frame, Rect, Ui, UiBuilder, pos2};
@@ -18,6 +20,7 @@ pub(super) fn pane_ui(
     verdicts: &Verdicts,
     session: &Session,
     rect: Rect,
+    out: &mut Out,
     ui: &mut Ui,
 ) -> f32 {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
@@ -40,7 +43,7 @@ pub(super) fn pane_ui(
     let title = PaneTitle { strong: &strong, text: &text, secondary: &secondary, chip, mood };
     kit::pane_header_ui(&title, rect, ui);
     if let Some(problem) = &pane.problem {
-        return problem_ui(&problem.to_sentence(), rect, ui);
+        return problem_ui(&problem.to_sentence(), pane, session, rect, out, ui);
     } else if pane.outcome.is_none() {
         let jobs = session.jobs();
         let words = jobs.first().map_or(text::EMPTY_PANE.into(), text::under_way);
@@ -80,9 +83,16 @@ pub(super) fn pane_ui(
     kit::pane_footer_ui(&strip, rect, ui).top()
 }
 
-/// Draws why a pane has no result, on a plate in the place of its numbers, so that the clips above
-/// it stay visible. Returns its top.
-fn problem_ui(problem: &Message, rect: Rect, ui: &mut Ui) -> f32 {
+/// Draws why a pane has no result, and the buttons that help, on a plate in the place of its
+/// numbers, so that the clips above it stay visible. Returns its top.
+fn problem_ui(
+    problem: &Message,
+    pane: &Pane,
+    session: &Session,
+    rect: Rect,
+    out: &mut Out,
+    ui: &mut Ui,
+) -> f32 {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let width = (rect.width() - 2.0 * space::L).min(420.0 * theme.scale());
     let place = Rect::from_min_max(
@@ -98,6 +108,8 @@ fn problem_ui(problem: &Message, rect: Rect, ui: &mut Ui) -> f32 {
     let shown = ui.scope_builder(builder, |ui| {
         plate.show(ui, |ui| {
             let words = egui::RichText::new(say(problem, ui)).font(theme.font(Type::Body));
+            // Laid out from the bottom up.
+            remedy_buttons_ui(pane, session, out, ui);
             ui.add(egui::Label::new(words.color(palette.warning)).wrap());
         })
     });

@@ -51,7 +51,7 @@ pub struct RootMotion {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error, segue_text::ToMessage)]
 pub enum RootMotionError {
     /// The skeleton has no known feet.
-    #[error("No foot of this body is known: set its roles, then try again.")]
+    #[error("No foot of this body is known: set its body parts.")]
     NoFeet,
     /// No foot reaches the ground.
     #[error("No foot reaches the ground in this clip: raise the contact height.")]

@@ -11,7 +11,7 @@ use std::sync::Arc;
 pub enum RetargetError {
     /// No joint of one skeleton corresponds to a joint of the other.
     #[error(
-        "the two skeletons have no joint in common, neither by name nor by role: choose by hand which joints are the hips and the legs"
+        "the two skeletons have no joint in common, neither by name nor by role: set the body parts, at least hips and legs"
     )]
     NothingInCommon,
     /// The result is not a valid clip.

@@ -80,14 +80,14 @@ use crate::transition::LoopError;
 #[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
 pub enum GaitError {
     /// The joints of a foot are unknown.
-    #[error("`{name}` has no joints that are known as its feet: choose these joints by hand")]
+    #[error("`{name}` has no joints that are known as its feet: set its body parts")]
     NoFeet {
         /// Name of the clip.
         name: String,
     },
     /// The clip has no whole cycle, and its ends do not meet.
     #[error(
-        "`{name}` does not contain a gait cycle (left strike, right strike, left strike), and its {secs:.2} s do not close into one: use a longer walk or run, or one cycle whose end leads into its beginning"
+        "`{name}` does not contain a gait cycle (left strike, right strike, left strike), and its {secs:.2} s do not close into one: use a longer walk or run, or treat it as a loop"
     )]
     NoCycle {
         /// Name of the clip.

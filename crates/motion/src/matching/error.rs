@@ -23,7 +23,7 @@ pub enum MatchError {
         horizon_secs: f64,
     },
     /// Hips or feet are unknown.
-    #[error("the skeleton of `{name}` has no {missing}: choose this joint by hand")]
+    #[error("the skeleton of `{name}` has no {missing}: set its body parts")]
     NoFeet {
         /// The clip's name.
         name: String,

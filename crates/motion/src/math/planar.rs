@@ -92,7 +92,7 @@ impl Planar {
     /// `S · self · S`.
     #[must_use]
     pub fn mirrored(&self) -> Self {
-        // No rounding, so that mirroring twice changes nothing; half a turn is its own mirror image.
+        // Without rounding, so that mirroring twice changes nothing. Half a turn is its own image.
         let yaw = if self.yaw <= -PI { self.yaw } else { -self.yaw };
         Self { yaw, shift: DVec2::new(-self.shift.x, self.shift.y) }
     }

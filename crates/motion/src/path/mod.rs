@@ -103,7 +103,7 @@ pub enum PathEditError {
     },
     /// The character does not travel.
     #[error(
-        "this motion stays within {extent_cm:.0} cm, so that there is no path to edit: choose one that travels",
+        "this motion stays within {extent_cm:.0} cm, so that there is no path to edit: choose one that travels, or move the whole clip",
         extent_cm = extent_m * 100.0
     )]
     NoTravel {

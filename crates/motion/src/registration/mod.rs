@@ -148,7 +148,7 @@ pub enum RegistrationError {
         expected: usize,
     },
     /// A position is not a number.
-    #[error("a joint position is not a finite number: repair or crop the clip first")]
+    #[error("a joint position is not a finite number: trim that part of the clip off")]
     NotFinite,
     /// The clips' skeletons differ.
     #[error(
@@ -190,7 +190,7 @@ pub enum RegistrationError {
     },
     /// More pairs of frames than can be held in memory.
     #[error(
-        "{pairs} pairs of frames are more than can be compared at once ({most}): crop the clips, or compare every {stride} frames"
+        "{pairs} pairs of frames are more than can be compared at once ({most}): trim the clips, or divide their frame rate by {stride}"
     )]
     TooManyPairs {
         /// Pairs of frames asked for.

@@ -79,7 +79,7 @@ pub enum PathError {
     #[error(transparent)]
     Registration(#[from] RegistrationError),
     /// The distances are not finite.
-    #[error("a distance is not a finite number: repair or crop the clips first")]
+    #[error("a distance is not a finite number: trim that part of the clips off")]
     NotFinite,
 }
 

@@ -26,7 +26,7 @@ const MAX_SIBLINGS: usize = 256;
 /// Error of a skeleton in which no left joint has a counterpart on the right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error, segue_text::ToMessage)]
 #[error(
-    "no joint on the left has a counterpart on the right: choose by hand which joints are the left and right thigh or upper arm"
+    "no joint on the left has a counterpart on the right: set the body parts, at least both thighs or upper arms"
 )]
 pub struct NoCounterparts;
 

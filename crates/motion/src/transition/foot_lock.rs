@@ -45,7 +45,7 @@ impl Default for FootLockOptions {
 pub enum FootLockError {
     /// The skeleton has no leg of thigh, shin and foot, one below the other.
     #[error(
-        "this skeleton has no leg with thigh, shin and foot: choose these joints by hand to lock its feet"
+        "this skeleton has no leg with thigh, shin and foot: set these body parts to lock its feet"
     )]
     NoLegs,
     /// The contacts have another number of frames than the clip.

@@ -40,7 +40,7 @@ pub enum LoopError {
     },
     /// The clip is shorter than the shortest requested cycle.
     #[error(
-        "no cycle of {min_secs} s and more fits into {secs:.2} s: allow shorter cycles or use a longer clip"
+        "no cycle of {min_secs} s and more fits into {secs:.2} s: use a longer clip, or treat this one as a loop"
     )]
     TooShort {
         /// The shortest requested cycle, seconds.

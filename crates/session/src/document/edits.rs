@@ -110,4 +110,17 @@ impl Document {
         self.library.put(entry);
         self.library_revision += 1;
     }
+
+    /// Puts a clip into the library, unless it is there, and into a slot, as one step for undo.
+    pub(crate) fn add_to_slot(&mut self, entry: Entry, slot: Option<Slot>) {
+        self.remember(None);
+        let id = entry.id.clone();
+        if self.library.get(&id).is_none() {
+            self.library.put(entry);
+            self.library_revision += 1;
+        }
+        if let Some(slot) = slot {
+            self.put_into(slot, &id);
+        }
+    }
 }

@@ -62,7 +62,8 @@ impl Document {
         }
     }
 
-    fn put_into(&mut self, slot: Slot, id: &str) {
+    /// Puts a clip into a slot, and forgets the places in the clip before it.
+    pub(super) fn put_into(&mut self, slot: Slot, id: &str) {
         self.set_unchecked(slot.key(), Value::Text(id.to_owned()));
         forget_places(&mut self.params, slot, &[]);
         reset_marked(&mut self.params, Mark::PlaceInResult, &[]);

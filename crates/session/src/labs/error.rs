@@ -1,8 +1,9 @@
 //! The reasons why a lab has no result.
 
+use super::outcome::Slot;
 use segue_formats::ImportError;
 use segue_motion::blend::{BlendError, LayerError};
-use segue_motion::clip::{ClipError, RetargetError, RootMotionError};
+use segue_motion::clip::{ClipError, MirrorError, RetargetError, RootMotionError};
 use segue_motion::gait::GaitError;
 use segue_motion::graph::GraphError;
 use segue_motion::matching::MatchError;
@@ -76,6 +77,27 @@ pub enum LabError {
         name: String,
         /// The error.
         error: Box<LabError>,
+    },
+    /// An error about the clip in a slot.
+    #[error("{error}")]
+    InSlot {
+        /// The slot.
+        slot: Slot,
+        /// The error.
+        error: Box<LabError>,
+    },
+    /// A clip without frames.
+    #[error("This clip has no frames: choose another one.")]
+    NoFrames,
+    /// A clip that would have too many frames.
+    #[error(
+        "This clip would have {frames} frames of {joints} joints, more than the memory holds: lower the frame rate, or trim it."
+    )]
+    TooManyFrames {
+        /// Its frames.
+        frames: usize,
+        /// Its joints.
+        joints: usize,
     },
     /// A missing first clip.
     #[error("There is no clip in A.")]
@@ -203,6 +225,9 @@ pub enum LabError {
     /// An error of retargeting.
     #[error(transparent)]
     Retarget(#[from] RetargetError),
+    /// An error of mirroring.
+    #[error(transparent)]
+    Mirror(#[from] MirrorError),
     /// An error of extracting root motion.
     #[error(transparent)]
     RootWay(#[from] RootMotionError),
@@ -233,4 +258,11 @@ pub enum LabError {
     /// An error of closing a cycle.
     #[error(transparent)]
     Loop(#[from] LoopError),
+}
+
+impl LabError {
+    /// Returns the error as one about the clip in a slot.
+    pub(super) fn in_slot(self, slot: Slot) -> Self {
+        Self::InSlot { slot, error: Box::new(self) }
+    }
 }

@@ -13,7 +13,7 @@ use super::register::{self, RegistrationSchedulers};
 use super::sliced::{JobKind, Sliced};
 use super::speed::{self, GaitFinder};
 use super::view::{self, ViewCache};
-use super::{in_place, make};
+use super::{edit, in_place, make};
 use crate::LabId;
 use crate::motion::FeetReader;
 
@@ -32,6 +32,7 @@ pub(crate) fn lab_of(lab: LabId) -> &'static dyn Lab<LabSet> {
         LabId::Graph => &graph::GraphLab,
         LabId::Match => &match_::MatchLab,
         LabId::InPlace => &in_place::InPlaceLab,
+        LabId::Edit => &edit::EditLab,
     }
 }
 

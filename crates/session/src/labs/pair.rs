@@ -61,7 +61,8 @@ pub(super) fn fitted(
     let motion = Motion::with_roles(clip, &roles)
         .with_feet(b.feet())
         .with_contact_corrections(b.contact_corrections().at_rate(rate / rate_b))
-        .with_seams(seams);
+        .with_seams(seams)
+        .declared_cycle(b.is_cycle());
     Ok((Arc::new(motion), retargeted))
 }
 

@@ -4,11 +4,11 @@ use super::feet::Lock;
 use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs};
 use super::pair::{Pair, Pairs};
 use super::repetition::{Repetition, repeat_cycle};
-use super::{Cycle, CycleMade, Outcome};
+use super::{Cycle, CycleMade, Outcome, Slot};
 use crate::labs::LabError;
 use crate::metrics::{Metric, MetricId};
 use crate::params::{Key, Kind, Params};
-use segue_motion::clip::ground_speed;
+use segue_motion::clip::{Motion, ground_speed};
 use segue_motion::gait::{GaitCycle, PhaseAlignment, SpeedBlend, SpeedOptions};
 use segue_text::{Message, msg};
 use std::sync::Arc;
@@ -106,7 +106,10 @@ impl GaitFinder {
         {
             return Ok(Arc::clone(gaits));
         }
-        let cycles = [GaitCycle::find(&pair.a)?, GaitCycle::find(&pair.incoming)?];
+        let cycle = |motion: &Motion, slot: Slot| {
+            GaitCycle::find(motion).map_err(|error| LabError::from(error).in_slot(slot))
+        };
+        let cycles = [cycle(&pair.a, Slot::A)?, cycle(&pair.incoming, Slot::B)?];
         let gaits = Arc::new(Gaits { pair: Arc::clone(pair), cycles });
         self.known = Some(Arc::clone(&gaits));
         Ok(gaits)

@@ -114,6 +114,10 @@ metrics! {
         "The distance travelled, divided by its duration.";
     TotalTurn "root_way_turn_deg" "Total turn", Some("turn"), Degrees, Neutral,
         "How far the body turns over the clip, to the left.";
+    ClipLength "clip_s" "Length", Some("length s"), Secs, Neutral,
+        "How long the clip lasts, from its first frame to its last.";
+    ClipFrames "clip_frames" "Frames", Some("frames"), Frames, Neutral,
+        "The number of frames of the clip.";
     PositionJump "jump_cm" "Position jump", None, Centimetres, Lower,
         "How far the character moves over the ground in one frame at the transition, beyond its usual step.";
     FootSlideInPlace "foot_slide_in_place_cm" "Foot slide in place", None, Centimetres, Neutral,

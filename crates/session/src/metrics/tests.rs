@@ -4,11 +4,13 @@ use super::{Better, METRICS, MetricId};
 use std::collections::BTreeSet;
 
 /// The metrics of results, by their names in the page's API.
-const PUBLISHED: [(&str, &str, &str, Better); 47] = [
+const PUBLISHED: [(&str, &str, &str, Better); 49] = [
     ("apart_cm", "Distance", "cm", Better::Lower),
     ("cadence_spm", "Cadence", "steps/min", Better::Neutral),
+    ("clip_frames", "Frames", "frames", Better::Neutral),
     ("clip_jump_cm", "Largest position jump", "cm", Better::Lower),
     ("clip_penetration_cm", "Deepest point", "cm", Better::Lower),
+    ("clip_s", "Length", "s", Better::Neutral),
     ("cycle_frames", "Cycle", "frames", Better::Neutral),
     ("cycle_m", "Distance per cycle", "m", Better::Neutral),
     ("cycle_s", "Cycle", "s", Better::Neutral),

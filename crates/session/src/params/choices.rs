@@ -93,6 +93,7 @@ choices! {
         Graph "graph" "Graph",
         Match "match" "Match",
         InPlace "in_place" "In place",
+        Edit "edit" "Edit",
     }
 
     /// The law by which the weight moves from A to B inside a blend window.
@@ -224,6 +225,24 @@ choices! {
     RootWay of RootWay {
         TakeOut "take_out" "removed",
         PutBack "put_back" "rebuilt",
+    }
+
+    /// Whether the part of an edited clip is declared one cycle.
+    Repeats of AsLoop {
+        Once "off" "once",
+        Cycle "on" "one cycle",
+    }
+
+    /// The direction in which an edited clip plays.
+    Direction of Reverse {
+        Forwards "off" "forwards",
+        Backwards "on" "backwards",
+    }
+
+    /// The sides of the body in an edited clip.
+    Sides of Mirror {
+        Recorded "off" "as recorded",
+        Mirrored "on" "mirrored",
     }
 
     /// The coordinates in which a character on a path keeps its heading.
@@ -401,6 +420,7 @@ pub(super) const OF_A: &[LabId] = &[
     LabId::Register,
     LabId::Path,
     LabId::InPlace,
+    LabId::Edit,
 ];
 
 /// The labs that make a result from the clip in B.
@@ -419,6 +439,7 @@ pub(super) const OF_FEET: &[LabId] = &[
     LabId::Path,
     LabId::Graph,
     LabId::InPlace,
+    LabId::Edit,
 ];
 
 /// The labs whose results depend on the contacts of their clips.

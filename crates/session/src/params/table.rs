@@ -153,6 +153,17 @@ macro_rules! parameters {
     RootWay "root_way" "Root motion" Lab(InPlace), Kind::Choice(RootWay::CHOICES), Start::Choice(RootWay::TakeOut.word()), "", "Removed: the body stays over the origin. Rebuilt: computed from the planted feet of an in-place clip.";
     RootWayTurn "root_way_turn" "Include turning" Lab(InPlace), Kind::Switch, Start::Switch(true), "", "Removes or rebuilds turning, too. Off: the body keeps its facing.";
 
+    EditFrom "edit_from" "Trim from" Lab(Edit), auto(0.0, 600.0, 0.001), Start::Auto, "s", "The first time that stays. Later: more of the beginning is removed." [PlaceInA];
+    EditTo "edit_to" "Trim to" Lab(Edit), auto(0.0, 600.0, 0.001), Start::Auto, "s", "The last time that stays. Later: more of the end stays." [PlaceInA];
+    AsLoop "as_loop" "Treat as a loop" Lab(Edit), Kind::Choice(Repeats::CHOICES), Start::Choice(Repeats::Once.word()), "", "One cycle: the last frame becomes the first one again, and Speed, Loop and Match take the clip as one whole cycle. The difference between both ends is spread over it.";
+    Reverse "reverse" "Direction" Lab(Edit), Kind::Choice(Direction::CHOICES), Start::Choice(Direction::Forwards.word()), "", "Backwards: the last frame plays first. The body faces where it faced, so that it walks backward.";
+    Mirror "mirror" "Sides" Lab(Edit), Kind::Choice(Sides::CHOICES), Start::Choice(Sides::Recorded.word()), "", "Mirrored: the left side does what the right one did, in the plane x = 0.";
+    Resample "resample" "Frame rate" Lab(Edit), auto(5.0, 240.0, 1.0), Start::Auto, "fps", "Higher: more frames, interpolated between those of the clip. The length stays. Auto: as in the clip.";
+    Scale "scale" "Scale" Lab(Edit), logarithmic(0.1, 10.0, 0.01), Start::Number(1.0), "×", "Larger: the body and its path grow alike. Angles and times stay.";
+    Turn "turn" "Turn" Lab(Edit), number(-180.0, 180.0, 0.5), Start::Number(0.0), "°", "Turns the clip about the position of its first frame; positive is left.";
+    MoveX "move_x" "Move along x" Lab(Edit), number(-100.0, 100.0, 0.01), Start::Number(0.0), "m", "Larger: the whole clip lies farther along x.";
+    MoveZ "move_z" "Move along z" Lab(Edit), number(-100.0, 100.0, 0.01), Start::Number(0.0), "m", "Larger: the whole clip lies farther along z.";
+
     Gait "gait" "Motion" Lab(Make), Kind::Choice(MadeAction::CHOICES), Start::Choice(MadeAction::Walk.word()), "", "The action to synthesise.";
     GaitSpeed "gait_speed" "Speed" Lab(Make), auto(0.4, 6.5, 0.05), Start::Auto, "m/s", "The speed of a walk (0.4 to 2.2) or a run (1.8 to 6.5).";
     TurnRate "turn_rate" "Turn rate" Lab(Make), number(-120.0, 120.0, 1.0), Start::Number(0.0), "°/s", "The turn rate of the path; positive is left.";

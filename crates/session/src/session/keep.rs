@@ -2,9 +2,12 @@
 
 use super::Session;
 use crate::command::CommandError;
-use crate::labs::{Slot, lab_of, recipe_id, recipe_name, recipe_params};
+use crate::labs::{Answer, ClipEdit, Slot, edit_params};
+use crate::labs::{lab_of, recipe_id, recipe_name, recipe_params};
 use crate::library::{Entry, Origin};
 use crate::notice::Level;
+use crate::pane::NoResult;
+use crate::params::Params;
 use segue_text::msg;
 use std::sync::Arc;
 
@@ -34,10 +37,7 @@ impl Session {
         if self.document.library.find(&id).is_some() {
             return Err(known);
         }
-        let recipe = recipe_params(&id).ok_or(CommandError::NotPossible(
-            "it is made of results of results, which do not fit into a link: save it as a file, and open that",
-        ))?;
-        let name = recipe_name(&recipe);
+        let name = recipe_name(&readable_recipe(&id)?);
         let said = msg!("Saved to the library: {name}. Choose it as A or B.");
         self.document.add(Entry {
             motion: is_whole.then(|| Arc::clone(&outcome.motion)),
@@ -46,4 +46,44 @@ impl Session {
         self.say(Level::Info, said);
         Ok(())
     }
+
+    /// Adds a clip with one edit to the library, and puts it into a slot.
+    pub(super) fn keep_edited(
+        &mut self,
+        reference: &str,
+        edit: ClipEdit,
+        slot: Option<Slot>,
+    ) -> Result<(), CommandError> {
+        let source = self.document.clip(reference)?.id.clone();
+        let unsayable = CommandError::NotPossible(
+            "what was found lies beyond what a link can say: use shorter clips",
+        );
+        let params = edit_params(&source, edit).ok_or(unsayable.clone())?;
+        let outcome = match self.clips().answer(&params, None, 0) {
+            Answer::Made { outcome, .. } => outcome,
+            Answer::Refused(problem) => return Err(NoResult::Refused(problem).into()),
+            Answer::Same { .. } | Answer::Awaited => return Err(NoResult::Awaited.into()),
+        };
+        let id = recipe_id(&params, &outcome, [1.0; 2]).ok_or(unsayable)?;
+        let name = recipe_name(&readable_recipe(&id)?);
+        let is_known = self.document.library.find(&id).is_some();
+        if is_known && slot.is_none() {
+            return Err(CommandError::NotPossible("this clip is in the library already"));
+        }
+        let said = msg!("Added to the library: {name}.", name = name.clone());
+        let motion = Some(Arc::clone(&outcome.motion));
+        let entry = Entry { motion, ..Entry::new(&*id, name, Origin::Made) };
+        self.document.add_to_slot(entry, slot);
+        if !is_known {
+            self.say(Level::Info, said);
+        }
+        Ok(())
+    }
+}
+
+/// Returns the parameters of a recipe, if a link can contain it.
+fn readable_recipe(id: &str) -> Result<Params, CommandError> {
+    recipe_params(id).ok_or(CommandError::NotPossible(
+        "it is made of results of results, which do not fit into a link: save it as a file, and open that",
+    ))
 }

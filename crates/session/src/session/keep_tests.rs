@@ -180,6 +180,7 @@ fn results_of_every_lab_are_kept_as_recipes() {
         ("lab=register&warp_weight=0.3", "register(a:walk,b:run,warp_weight:0.3)"),
         ("lab=speed&speed=2", "speed(a:walk,b:run,speed:2)"),
         ("lab=in_place&root_way_turn=off", "in_place(a:walk,root_way_turn:off)"),
+        ("lab=edit&mirror=on&turn=45", "edit(a:walk,mirror:on,turn:45)"),
         (
             "lab=transition&method=cubic&mix_frame_a=70&mix_frame_b=20",
             "transition(a:walk,b:run,method:cubic,mix_frame_a:70,mix_frame_b:20)",

@@ -14,7 +14,7 @@ use std::collections::BTreeSet;
 use std::f32::consts::PI;
 
 /// A clean result of every lab.
-const LABS: [&str; 14] = [
+const LABS: [&str; 15] = [
     "lab=view",
     "lab=make",
     "lab=blend",
@@ -29,6 +29,7 @@ const LABS: [&str; 14] = [
     "lab=match&mirrored=off&match_clips=idle,walk,walk_left,walk_right",
     "lab=in_place",
     "lab=in_place&root_way=put_back",
+    "lab=edit&edit_from=0.5&as_loop=on&mirror=on",
 ];
 
 /// The names of the metrics that results of every lab have.

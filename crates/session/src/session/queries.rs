@@ -6,7 +6,7 @@ use crate::clip_info::ClipInfo;
 use crate::contact_edits::{ContactClip, corrections_of, with_named_edits};
 use crate::labs::lab::Beside;
 use crate::labs::lab_of;
-use crate::labs::{CycleMade, DistanceMap, Slot};
+use crate::labs::{CycleMade, DistanceMap, Remedy, Slot, remedies};
 use crate::labs::{made_motion_has, middle_mps, range_of, synth_action};
 use crate::lesson::would_set_up;
 use crate::library::{Entry, split_reference};
@@ -170,6 +170,16 @@ impl Session {
         })
     }
 
+    /// Returns what would let a pane have a result, the best first; empty where it has one, and
+    /// where nothing is known to help.
+    #[must_use]
+    pub fn remedies(&self, pane: &Pane) -> Vec<Remedy> {
+        let Some(problem) = &pane.problem else {
+            return Vec::new();
+        };
+        remedies(problem, &pane.params_in(&self.document.params), &self.document.library)
+    }
+
     /// Returns the value that Segue found for an automatic parameter.
     #[must_use]
     pub fn automatic_value(&self, key: Key) -> Option<f64> {
@@ -188,6 +198,8 @@ impl Session {
             Key::EnterB => transition.map(|t| t.enter_b_secs),
             Key::MixFrameA => self.frame_in(Slot::A, transition?.leave_a_secs),
             Key::MixFrameB => self.frame_in(Slot::B, transition?.enter_b_secs),
+            Key::EditTo => Some(self.slot(Slot::A)?.motion.as_ref()?.clip().duration_secs()),
+            Key::Resample => Some(self.slot(Slot::A)?.motion.as_ref()?.clip().fps()),
             Key::GaitSpeed => {
                 Some(f64::from(synth::Params::new(synth_action(&self.document.params)).speed_mps))
             }
@@ -200,7 +212,7 @@ impl Session {
             Key::PlaceHeading => {
                 Some(to_step(outcome.motion.standing_at(0.0).yaw.to_degrees(), 0.1))
             }
-            Key::In => Some(0.0),
+            Key::In | Key::EditFrom => Some(0.0),
             Key::Out => Some(self.duration_secs()),
             _ => None,
         }

@@ -100,8 +100,8 @@ fn mirrored_motion_swaps_sides() {
 fn resampled_motion_keeps_its_contacts_in_time() {
     for (from, to) in [(30.0, 120.0), (120.0, 30.0), (60.0, 25.0), (30.0, 48.0)] {
         let source = walk(from);
-        let other = source.resampled(f64::from(to), Interpolation::Cubic).unwrap();
-        assert_eq!(other.clip().fps(), f64::from(to));
+        let other = source.resampled(to, Interpolation::Cubic).unwrap();
+        assert_eq!(other.clip().fps(), to);
         let steps = [&source, &other].map(|motion| motion.clip().frames() as f64 - 1.0);
         for frame in 0..other.clip().frames() {
             let nearest = (frame as f64 * steps[0] / steps[1]).round() as usize;
