@@ -12,7 +12,7 @@ use super::stage::{Paint, stage_panel_ui};
 use super::state::{Layout, UiState};
 use super::text;
 use super::theme::{palette_of, space, theme_of};
-use super::timeline::{CurveCache, timeline_panel_ui};
+use super::timeline::{CurveCache, more_height, timeline_panel_ui};
 use super::top_bar;
 use eframe::egui::accesskit::Role;
 use eframe::egui::{self, Frame, Margin, Panel, Rect, ScrollArea, Stroke, Ui, vec2};
@@ -121,7 +121,7 @@ fn desk_ui(
         top_bar::top_bar_ui(session, layout, state, out, ui);
     });
     Panel::bottom("timeline")
-        .exact_size((214.0 * scale).min(0.31 * height).round())
+        .exact_size(timeline_height(session, height, scale))
         .frame(panel_frame(ui, space::L, space::S))
         .resizable(false)
         .show(ui, |ui| {
@@ -187,6 +187,12 @@ fn desk_ui(
         kit::set_role(Role::Main, text::STAGE, ui);
         stage_panel_ui(session, layout, state, out, paint, ui);
     });
+}
+
+/// Returns the height of the timeline's panel on a page of a height, points.
+fn timeline_height(session: &Session, height: f32, scale: f32) -> f32 {
+    let more = (more_height(session) * scale).min(0.16 * height);
+    ((214.0 * scale).min(0.31 * height) + more).round()
 }
 
 /// Draws the timeline where room is scarce. Strips of walks and drives fill the room that they get;

@@ -26,6 +26,7 @@ use std::sync::Arc;
 mod chinese;
 mod clips;
 mod contacts;
+mod curves;
 mod drive;
 mod edit;
 mod footer;

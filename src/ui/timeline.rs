@@ -7,7 +7,7 @@ mod tracks;
 
 pub(crate) use self::curves::CurveCache;
 
-use self::curves::{Curve, CurveOf, curve_menu_ui, unit_of};
+use self::curves::{Curve, CurveOf, Plotted, curve_menu_ui, unit_of};
 use self::events::timeline_event;
 use self::tracks::{
     feet_names, hard_turns, named_outcomes, round_name, seams, stripes, tracks, whole_track,
@@ -18,7 +18,7 @@ use crate::ui::language::Word;
 use crate::ui::out::Out;
 use crate::ui::state::{Layout, UiState};
 use crate::ui::text;
-use crate::ui::theme::palette_of;
+use crate::ui::theme::{Palette, palette_of};
 use crate::ui::transport_row::{Playhead, transport_row_ui};
 use eframe::egui::Ui;
 use segue_motion::skeleton::Role;
@@ -44,12 +44,17 @@ pub(crate) fn timeline_panel_ui(
         return kit::note_ui(text::EMPTY_PANE, palette_of(ui).muted, ui);
     };
     let clip = outcome.motion.clip();
-    let (joint, quantity) = (params.text(Key::Joint), params.choice::<choices::Curve>());
-    let unit = unit_of(quantity);
-    let role = Role::ALL.into_iter().find(|role| role.name() == joint);
-    let joint_title = role.map_or_else(|| Message::data(joint), |role| role.name().into());
-    let quantity_label = quantity.label();
-    let caption = msg!("{joint} · {what} {unit}", joint = joint_title, what = quantity_label, unit);
+    let plotted = Plotted::of(params);
+    let role = Role::ALL.into_iter().find(|role| role.name() == plotted.joint);
+    let joint_title =
+        role.map_or_else(|| Message::data(&*plotted.joint), |role| role.name().into());
+    let caption = match plotted.quantities[..] {
+        [quantity] => {
+            let (what, unit) = (quantity.label(), unit_of(quantity));
+            msg!("{joint} · {what} {unit}", joint = joint_title.clone(), what, unit)
+        }
+        _ => joint_title.clone(),
+    };
     let playhead = Playhead {
         secs: session.now_secs(),
         frame: frame_at(&outcome.motion, session.now_secs()),
@@ -57,36 +62,15 @@ pub(crate) fn timeline_panel_ui(
     };
     let row = transport_row_ui(playhead, &caption, layout, session, out, ui);
     if layout != Layout::Phone {
-        curve_menu_ui(outcome, &row, out, ui);
+        curve_menu_ui(session, outcome, &row, out, ui);
     }
     in_time::part_ui(session, out, ui);
 
     let panes = named_outcomes(session);
-    cache.update(outcome, &panes, joint, quantity);
+    cache.update(outcome, &panes, &plotted);
     let palette = palette_of(ui);
-    let series: Vec<Series<'_>> = cache
-        .lines
-        .iter()
-        .map(|Curve { of, points }| match of {
-            CurveOf::Source(part) => Series {
-                name: of.name(),
-                color: part.fill(palette).0,
-                ink: part.ink(palette),
-                strong: false,
-                points,
-            },
-            CurveOf::Pane(index, _) => Series {
-                name: of.name(),
-                // The first result, which the rest of the page shows, has the accent; two more
-                // differ in lightness, the last has a colour that neither clip has.
-                color: [palette.accent, palette.text, palette.muted, palette.others[1]][index % 4],
-                ink: [palette.accent_ink, palette.text, palette.muted, palette.others[1]]
-                    [index % 4],
-                strong: *index == 0,
-                points,
-            },
-        })
-        .collect();
+    let series: Vec<Vec<Series<'_>>> =
+        cache.plots.iter().map(|plot| series_of(&plot.lines, palette)).collect();
     let made_from = session.panes().first().and_then(Pane::made_from).unwrap_or(params);
     let names = [Key::A, Key::B].map(|key| {
         session.library().find(made_from.text(key)).map(|entry| entry.title()).unwrap_or_default()
@@ -112,13 +96,15 @@ pub(crate) fn timeline_panel_ui(
     } else {
         tracks(outcome, &names)
     };
-    let curves = Curves {
-        title: Word::new(quantity_label),
-        unit: Word::new(unit),
+    let curves = cache.plots.iter().zip(&series).map(|(plot, series)| Curves {
+        of: (&joint_title).into(),
+        title: Word::new(plot.quantity.label()),
+        unit: Word::new(unit_of(plot.quantity)),
         decimals: 2,
-        include: (quantity != choices::Curve::Turn).then_some(0.0),
-        series: &series,
-    };
+        include: (plot.quantity != choices::Curve::Turn).then_some(0.0),
+        series,
+    });
+    let curves: Vec<_> = curves.collect();
     let mut seams = seams(outcome, palette.accent);
     seams.extend(hard_turns(outcome, palette.warning));
     let feet = feet_names(session, layout);
@@ -141,9 +127,44 @@ pub(crate) fn timeline_panel_ui(
         in_point: Some(params.optional(Key::In).unwrap_or(0.0)),
         out_point: Some(params.optional(Key::Out).unwrap_or(session.duration_secs())),
         moments: &seams,
-        curves: (layout != Layout::Phone).then_some(curves),
+        curves: if layout == Layout::Phone { &[] } else { &curves },
     };
     for event in kit::timeline_ui(&timeline, ui) {
         timeline_event(event, &clips, session, outcome, out);
     }
+}
+
+/// Returns the curves of a plot in the colours of their owners.
+fn series_of<'a>(lines: &'a [Curve], palette: &Palette) -> Vec<Series<'a>> {
+    let series = |Curve { of, points }: &'a Curve| match of {
+        CurveOf::Source(part) => Series {
+            name: of.name(),
+            color: part.fill(palette).0,
+            ink: part.ink(palette),
+            strong: false,
+            points,
+        },
+        CurveOf::Pane(index, _) => Series {
+            name: of.name(),
+            // The first result, which the rest of the page shows, has the accent; two more differ in
+            // lightness, the last has a colour that neither clip has.
+            color: [palette.accent, palette.text, palette.muted, palette.others[1]][index % 4],
+            ink: [palette.accent_ink, palette.text, palette.muted, palette.others[1]][index % 4],
+            strong: *index == 0,
+            points,
+        },
+    };
+    lines.iter().map(series).collect()
+}
+
+/// Returns the height that the panel needs beyond that for bars and one curve at scale 1, points.
+pub(crate) fn more_height(session: &Session) -> f32 {
+    /// Height of a further plot.
+    const PLOT: f32 = 46.0;
+    /// Height of the contacts of a clip.
+    const CONTACTS: f32 = 28.0;
+    let is_strip = in_time::has_strip(session);
+    let plots = session.params().plotted_curves().len().saturating_sub(1);
+    let clips = session.contact_clips().len();
+    if is_strip { 0.0 } else { plots as f32 * PLOT + clips as f32 * CONTACTS }
 }

@@ -145,11 +145,11 @@ fn retargeted(motion: &Motion, character: &Character) -> Option<Clip> {
     Drive::new(motion.clip(), motion.roles(), character)?.clip(motion.clip()).ok()
 }
 
-/// Returns the plotted curve of a clip: the chosen quantity of the chosen joint. Empty if the clip
-/// has no such joint.
+/// Returns the plotted curves of a clip: the chosen quantities of the chosen joint. Empty if the
+/// clip has no such joint.
 #[must_use]
 pub fn plotted_of_clip(motion: &Motion, params: &Params) -> Vec<Column> {
-    plotted(motion, "", params).into_iter().collect()
+    plotted(motion, "", params)
 }
 
 /// Returns the plotted curves of a result: its own, and those of its source clips in the result's
@@ -157,24 +157,31 @@ pub fn plotted_of_clip(motion: &Motion, params: &Params) -> Vec<Column> {
 #[must_use]
 pub fn plotted_of_result(outcome: &Outcome, params: &Params) -> Vec<Column> {
     let own = plotted(&outcome.motion, "", params);
-    let sources = outcome.sources.iter().filter_map(|source| {
-        let (name, values) = plotted(&source.motion, &format!("{} ", source.slot.label()), params)?;
-        Some((name, in_time_of(&outcome.motion, source, &values)))
+    let sources = outcome.sources.iter().flat_map(|source| {
+        let curves = plotted(&source.motion, &format!("{} ", source.slot.label()), params);
+        let in_time = |(name, values): Column| (name, in_time_of(&outcome.motion, source, &values));
+        curves.into_iter().map(in_time)
     });
     own.into_iter().chain(sources).collect()
 }
 
-fn plotted(motion: &Motion, whose: &str, params: &Params) -> Option<Column> {
+fn plotted(motion: &Motion, whose: &str, params: &Params) -> Vec<Column> {
     let name = params.text(Key::Joint);
-    let kind = curve_kind(params.choice());
-    let quantity = match kind {
-        CurveKind::Speed => "speed_m_per_s",
-        CurveKind::Height => "height_m",
-        CurveKind::Angle => "angle_deg",
-        CurveKind::AngularSpeed => "turn_deg_per_s",
+    let Some(joint) = joint_of(motion, name) else {
+        return Vec::new();
     };
-    let joint = joint_of(motion, name)?;
-    Some((format!("{whose}{name}.{quantity}"), joint_curve(motion.clip(), joint, kind)))
+    let column = |curve| {
+        let kind = curve_kind(curve);
+        let quantity = match kind {
+            CurveKind::Speed => "speed_m_per_s",
+            CurveKind::Height => "height_m",
+            CurveKind::Distance => "distance_m",
+            CurveKind::Angle => "angle_deg",
+            CurveKind::AngularSpeed => "turn_deg_per_s",
+        };
+        (format!("{whose}{name}.{quantity}"), joint_curve(motion.clip(), joint, kind))
+    };
+    params.plotted_curves().into_iter().map(column).collect()
 }
 
 /// Resamples the values of a source's frames at the frames of the result.

@@ -129,9 +129,9 @@ pub use numbers::{NumberRow, NumberTable, digits};
 pub use pane::{NoResult, Pane, PaneContent, PaneResult};
 pub use params::choices::{self, LabId, Selected};
 pub use params::{
-    Choice, ClipContacts, Compare, Group, HandTag, Key, Kind, List, ListKind, MAX_PANES,
-    MAX_WEIGHTED_CLIPS, Mark, Misread, PARAMS, Param, Params, Value, ValueError, decimals_of,
-    format_number, write_ids,
+    Choice, ClipContacts, Compare, Group, HandTag, Key, Kind, List, ListKind, MAX_MORE_CURVES,
+    MAX_PANES, MAX_WEIGHTED_CLIPS, Mark, Misread, PARAMS, Param, Params, Value, ValueError,
+    decimals_of, format_number, write_ids,
 };
 pub use playback::Span;
 pub use report::{ReportFacts, report};

@@ -118,6 +118,7 @@ pub fn word_of_joint(motion: &Motion, joint: usize) -> &str {
 pub fn curve_kind(curve: Curve) -> CurveKind {
     match curve {
         Curve::Height => CurveKind::Height,
+        Curve::Distance => CurveKind::Distance,
         Curve::Angle => CurveKind::Angle,
         Curve::Turn => CurveKind::AngularSpeed,
         Curve::Speed => CurveKind::Speed,

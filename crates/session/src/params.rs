@@ -16,7 +16,9 @@ mod value;
 
 pub use choices::Choice;
 pub use current::Params;
-pub use grammar::{ClipContacts, HandTag, List, ListKind, MAX_WEIGHTED_CLIPS, Misread, write_ids};
+pub use grammar::{
+    ClipContacts, HandTag, List, ListKind, MAX_MORE_CURVES, MAX_WEIGHTED_CLIPS, Misread, write_ids,
+};
 pub(crate) use grammar::{escaped, is_recipe, parts};
 pub use key::Key;
 pub use param::{Group, Kind, Mark, Param};

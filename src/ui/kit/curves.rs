@@ -1,5 +1,6 @@
 //! Curves under the timeline, on the same axis of time.
 
+use super::assistive::readable_ui;
 use super::paint::{Run, line_of, put};
 use super::time_axis::{TimeAxis, hovered_time, nice_step};
 use crate::ui::language::{Text, Word, say};
@@ -24,6 +25,8 @@ pub(crate) struct Series<'a> {
 /// Curves over one axis of values.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Curves<'a> {
+    /// The thing whose quantity it is, for the value under the pointer: `right foot`.
+    pub(crate) of: Text<'a>,
     /// The quantity, for the space before them: `speed`.
     pub(crate) title: Word,
     /// The unit of their values.
@@ -37,6 +40,15 @@ pub(crate) struct Curves<'a> {
 }
 
 impl Curves<'_> {
+    /// Returns a value as text.
+    fn written(&self, value: f64) -> String {
+        let digits = format!("{value:.*}", self.decimals);
+        // A number that rounds to zero has no sign.
+        let is_zero = digits.bytes().all(|byte| matches!(byte, b'-' | b'0' | b'.'));
+        let digits = if is_zero { digits.trim_start_matches('-') } else { &digits };
+        digits.replace('-', "−")
+    }
+
     /// Returns the range of values that is shown: that of the curves, with a margin.
     fn bounds(&self) -> (f64, f64) {
         let values = self
@@ -103,8 +115,9 @@ pub(super) fn curves_ui(
         return;
     }
     let decimals = usize::from(step < 1.0) + usize::from(step < 0.1) + usize::from(step < 0.01);
-    for value in marks() {
-        let y = y_of(value);
+    // A label at the upper edge would cover the lowest one of the plot above.
+    let places = marks().map(|value| (value, y_of(value)));
+    for (value, y) in places.filter(|(_, y)| *y >= plot.top() + 5.0) {
         let text = format!("{value:.decimals$}").replace('-', "−");
         let label =
             line_of(&[Run::new(Text::Data(&text), Type::Small, palette.muted)], f32::INFINITY, ui);
@@ -112,63 +125,73 @@ pub(super) fn curves_ui(
     }
 }
 
-/// Draws the names of the curves in their colours, in the space before them.
-pub(super) fn key_ui(curves: &Curves<'_>, area: Rect, ui: &Ui) {
+/// Returns the places of plots under each other.
+pub(super) fn plots_in(place: Rect, count: usize) -> impl Iterator<Item = Rect> {
+    let pitch = place.height() / count.max(1) as f32;
+    let gap = if count > 1 { space::XS } else { 0.0 };
+    (0..count).map(move |index| {
+        let top = place.top() + pitch * index as f32;
+        Rect::from_x_y_ranges(place.x_range(), top + gap..=top + pitch)
+    })
+}
+
+/// Draws the quantity, and the names of the curves in their colours with their values at the
+/// playhead, in the space before them.
+pub(super) fn key_ui(curves: &Curves<'_>, area: Rect, now: f64, ui: &Ui) {
     let palette = palette_of(ui);
     let title = format!("{} {}", say(curves.title, ui), say(curves.unit, ui));
     let title = Run::new(Text::Data(title.trim()), Type::Small, palette.muted);
     let title = line_of(&[title], area.width(), ui);
-    let at = put(ui.painter(), area.left_top() + vec2(0.0, space::S), Align2::LEFT_TOP, title);
-    // Single letters share a line; longer names have one each.
-    let (letters, words): (Vec<_>, Vec<_>) =
-        curves.series.iter().partition(|series| series.name.english().chars().count() == 1);
-    let lines = if words.len() > 1 {
-        std::iter::once(letters).chain(words.into_iter().map(|word| vec![word])).collect()
-    } else {
-        vec![curves.series.iter().collect::<Vec<_>>()]
-    };
-    let mut top = at.bottom() + 2.0;
-    for line in lines.iter().filter(|line| !line.is_empty()) {
-        let mut runs = Vec::new();
-        for (index, series) in line.iter().enumerate() {
-            if index > 0 {
-                runs.push(Run::new(Text::Data("·"), Type::Small, palette.muted).after(space::XS));
-            }
-            runs.push(Run::new(series.name, Type::Small, series.ink).after(if index > 0 {
-                space::XS
-            } else {
-                0.0
-            }));
+    let at = put(ui.painter(), area.left_top() + vec2(0.0, space::XS), Align2::LEFT_TOP, title);
+    let mut corner = pos2(area.left(), at.bottom());
+    // The result first: where room is scarce, the others are left out.
+    let of = |strong: bool| curves.series.iter().filter(move |series| series.strong == strong);
+    for series in of(true).chain(of(false)) {
+        let value = value_at(series.points, now).map(|value| curves.written(value));
+        let value = value.unwrap_or_default();
+        let runs = [
+            Run::new(series.name, Type::Small, series.ink),
+            Run::new(Text::Data(&value), Type::SmallStrong, palette.text).after(space::XS),
+        ];
+        let entry = line_of(&runs, area.width(), ui);
+        if corner.x > area.left() && corner.x + entry.size().x > area.right() {
+            corner = pos2(area.left(), corner.y + entry.size().y);
         }
-        let names = line_of(&runs, area.width(), ui);
         // The last one may overlap the height of the time's axis, which begins beside it.
-        if top > area.bottom() + space::XS {
+        if corner.y + entry.size().y > area.bottom() + space::S {
             break;
         }
-        top = put(ui.painter(), pos2(area.left(), top), Align2::LEFT_TOP, names).bottom();
+        corner.x = put(ui.painter(), corner, Align2::LEFT_TOP, entry).right() + space::S;
     }
 }
 
-/// Draws a dot on each curve at the pointer, and their values with the unit.
+/// Draws a line at the pointer through all plots, a dot on each curve there, and their values with
+/// time and unit.
 pub(super) fn hover_ui(
-    curves: &Curves<'_>,
+    plots: &[(&Curves<'_>, Rect)],
     axis: TimeAxis,
-    plot: Rect,
     response: &Response,
     ui: &Ui,
 ) {
-    let Some(time) = hovered_time(axis, plot, response) else {
+    let all = plots.iter().map(|(_, plot)| *plot).reduce(Rect::union).unwrap_or(Rect::NOTHING);
+    let Some(time) = hovered_time(axis, all, response) else {
         return;
     };
+    let painter = ui.painter();
+    let x = axis.x_of(time);
+    let line = Stroke::new(1.0, palette_of(ui).line_strong);
+    painter.vline(painter.round_to_pixel_center(x), all.y_range(), line);
+    for (index, (curves, plot)) in plots.iter().enumerate() {
+        values_ui(curves, *plot, x, (time, index == 0), ui);
+    }
+}
+
+/// Draws the values of the curves of one plot at a time, whose place is `x`; of the first plot with
+/// the time.
+fn values_ui(curves: &Curves<'_>, plot: Rect, x: f32, (time, is_first): (f64, bool), ui: &Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let (low, high) = curves.bounds();
     let painter = ui.painter();
-    let x = axis.x_of(time);
-    painter.vline(
-        painter.round_to_pixel_center(x),
-        plot.y_range(),
-        Stroke::new(1.0, palette.line_strong),
-    );
     let written: Vec<(String, &Series<'_>)> = curves
         .series
         .iter()
@@ -181,19 +204,31 @@ pub(super) fn hover_ui(
                 series.color,
                 Stroke::new(1.5, palette.panel),
             );
-            Some((format!("{value:.*}", curves.decimals).replace('-', "−"), series))
+            Some((curves.written(value), series))
         })
         .collect();
     if written.is_empty() {
         return;
     }
     let seconds = format!("{time:.2} s");
-    let mut runs = vec![Run::new(Text::Data(&seconds), Type::Small, palette.muted)];
+    let mut runs = Vec::new();
+    if is_first {
+        runs.push(Run::new(Text::Data(&seconds), Type::Small, palette.muted));
+        runs.push(Run::new(Text::Data("·"), Type::Small, palette.muted).after(space::XS));
+    }
+    if !curves.of.is_empty() {
+        runs.push(Run::new(curves.of, Type::Small, palette.muted).after(space::XS));
+        runs.push(Run::new(curves.title, Type::Small, palette.muted).after(space::XS));
+    }
     for (value, series) in &written {
-        runs.push(Run::new(series.name, Type::Small, series.ink).after(space::M));
+        // A single curve needs no name.
+        if written.len() > 1 {
+            runs.push(Run::new(series.name, Type::Small, series.ink).after(space::M));
+        }
         runs.push(Run::new(Text::Data(value), Type::SmallStrong, palette.text).after(space::XS));
     }
     runs.push(Run::new(curves.unit, Type::Small, palette.muted).after(space::XS));
+    let said: Vec<_> = runs.iter().map(|run| say(run.text, ui)).collect();
     let galley = line_of(&runs, f32::INFINITY, ui);
     let size = galley.size() + vec2(2.0 * space::S, space::S);
     // The values stand beside the pointer, on the side that has room.
@@ -206,6 +241,8 @@ pub(super) fn hover_ui(
     let line = Stroke::new(theme.hairline(), palette.line);
     painter.rect(rect, radius::M, palette.panel_raised, line, StrokeKind::Inside);
     put(painter, rect.center(), Align2::CENTER_CENTER, galley);
+    let id = ui.scope_id().with(("values", plot.top().to_bits()));
+    readable_ui(&said.join(" "), rect, id, ui);
 }
 
 /// Returns the value between two points of a curve; `None` outside it or in a gap.

@@ -507,7 +507,9 @@ fn time_ui(mock: &mut Mock, phone: bool, ui: &mut Ui) {
         decimals: 2,
         include: Some(0.0),
         series: &series,
+        ..Curves::default()
     };
+    let curves = [curves];
     let timeline = Timeline {
         duration: 5.8,
         now: mock.now,
@@ -519,7 +521,7 @@ fn time_ui(mock: &mut Mock, phone: bool, ui: &mut Ui) {
         in_point: None,
         out_point: None,
         moments: &moments,
-        curves: (!phone).then_some(curves),
+        curves: if phone { &[] } else { &curves },
     };
     for event in timeline_ui(&timeline, ui) {
         match event {

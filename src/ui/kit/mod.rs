@@ -62,10 +62,11 @@ pub(crate) use heat_map::{
 };
 pub(crate) use help::{about_ui, set_all_help};
 pub(crate) use histogram::{Histogram, histogram_ui};
-pub(crate) use icon::{Icon, paint_logo};
+pub(crate) use icon::{Icon, paint_icon, paint_logo};
 pub(crate) use matrix::{Matrix, MatrixMark, TILE, Tile, matrix_ui, tiles_id};
 pub(crate) use menu::{
     MenuItem, choice_row_ui, helped_choice_row_ui, menu_item_ui, menu_line_ui, menu_ui,
+    switches_menu_ui,
 };
 pub(crate) use metrics::{Metric, Rank};
 pub(crate) use notice::{

@@ -380,13 +380,14 @@ fn timeline() -> Harness<'static, Timed> {
             transition: Some(state.transition.0..state.transition.1),
             transition_editable: true,
             out_point: Some(9.0),
-            curves: Some(Curves {
+            curves: &[Curves {
                 title: Word::new("speed"),
                 unit: Word::new("m/s"),
                 decimals: 1,
                 include: None,
                 series: &series,
-            }),
+                ..Curves::default()
+            }],
             ..Timeline::default()
         };
         for event in timeline_ui(&view, ui) {

@@ -36,6 +36,10 @@ pub(super) const OUT_POINT: Word = Word::new("Loop end");
 pub(super) const TRANSITION_START: Word = Word::new("Transition start");
 /// The edge where the transition ends.
 pub(super) const TRANSITION_END: Word = Word::new("Transition end");
+/// The sign of the left foot.
+pub(super) const LEFT: Word = Word::new("L");
+/// The sign of the right foot.
+pub(super) const RIGHT: Word = Word::new("R");
 /// The left foot.
 pub(super) const LEFT_FOOT: Word = Word::new("Left foot");
 /// The right foot.

@@ -12,6 +12,8 @@ pub enum CurveKind {
     Speed,
     /// Height above `y = 0`, metres.
     Height,
+    /// Distance over the ground from its position in the first frame, metres.
+    Distance,
     /// Angle of its local rotation from the rest pose, degrees: 0 to 180.
     Angle,
     /// Speed of its rotation in the world, degrees per second.
@@ -35,6 +37,7 @@ pub fn joint_curve(clip: &Clip, joint: usize, kind: CurveKind) -> Vec<f32> {
             let secs = (after - before).max(1) as f32 * clip.dt_secs();
             match kind {
                 CurveKind::Height => track[frame].0.y,
+                CurveKind::Distance => (track[frame].0 - track[0].0).with_y(0.0).length(),
                 CurveKind::Speed => (track[after].0 - track[before].0).length() / secs,
                 CurveKind::Angle => {
                     quat::angle_between(Quat::IDENTITY, clip.rotations(frame)[joint]).to_degrees()
@@ -101,6 +104,11 @@ mod tests {
         let heights = joint_curve(&clip, 0, CurveKind::Height);
         let speeds = joint_curve(&clip, 0, CurveKind::Speed);
         assert_eq!(heights[3], clip.root_translations()[3].y);
+        let roots = clip.root_translations();
+        let distances = joint_curve(&clip, 0, CurveKind::Distance);
+        let last = roots.len() - 1;
+        assert_eq!(distances[0], 0.0);
+        assert_eq!(distances[last], (roots[last] - roots[0]).with_y(0.0).length());
         let mean = speeds.iter().sum::<f32>() / speeds.len() as f32;
         assert!((mean - 1.4).abs() < 0.1, "{mean}");
         assert!(joint_curve(&clip, 999, CurveKind::Speed).is_empty());

@@ -390,8 +390,16 @@ choices! {
     Curve of Curve {
         Speed "speed" "speed",
         Height "height" "height",
+        Distance "distance" "distance",
         Angle "angle" "angle",
         Turn "turn" "turn rate",
+    }
+
+    /// The motions whose curves the timeline draws.
+    CurvesOf of CurvesOf {
+        All "all" "A, B and result",
+        Result "result" "result",
+        Sources "sources" "A and B",
     }
 
     /// The colours of the page.

@@ -7,6 +7,7 @@
 mod addresses;
 mod clip_ids;
 mod contact_edits;
+mod curve_list;
 mod edited_path;
 mod frame_pairs;
 mod ground_path;
@@ -22,9 +23,11 @@ mod weighted_clips;
 pub use clip_ids::write_ids;
 pub(crate) use clip_ids::{escaped, is_recipe, parts, read_id};
 pub use contact_edits::ClipContacts;
+pub use curve_list::MAX_MORE_CURVES;
 pub use tags::HandTag;
 pub use weighted_clips::MAX_WEIGHTED_CLIPS;
 
+use super::choices::Curve;
 use crate::outside::short;
 use glam::DVec2;
 use segue_motion::graph::Place;
@@ -166,6 +169,8 @@ lists! {
     Tags(Vec<HandTag>) in tags, else Vec::new();
     /// Contacts of clips that are corrected by hand, as in `walk:L12-30;-R40-52`.
     ContactEdits(Vec<ClipContacts>) in contact_edits, else Vec::new();
+    /// Quantities that are plotted below the first, as in `height,angle`.
+    Curves(Vec<Curve>) in curve_list, else Vec::new();
     /// Addresses of files on the web, separated by spaces.
     Addresses(Vec<String>) in addresses, else Vec::new();
 }
@@ -175,7 +180,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    const KINDS: [ListKind; 12] = [
+    const KINDS: [ListKind; 13] = [
         ListKind::ClipIds,
         ListKind::WeightedClips,
         ListKind::WeightCurve,
@@ -187,6 +192,7 @@ mod tests {
         ListKind::Recording,
         ListKind::Tags,
         ListKind::ContactEdits,
+        ListKind::Curves,
         ListKind::Addresses,
     ];
 
@@ -212,6 +218,7 @@ mod tests {
             (ListKind::Recording, "3c.0.s_1o.0.0"),
             (ListKind::Tags, "walk:0.2-1.5:exclude,run:0-1:-turn"),
             (ListKind::ContactEdits, "walk:L12-30;-R40-52,run:R3-3"),
+            (ListKind::Curves, "height,angle"),
             (ListKind::Addresses, "https://example.org/a.bvh http://example.org/b.bvh"),
         ] {
             assert_eq!(kind.read(text).map(|list| list.write()), Ok(text.to_owned()));

@@ -1,5 +1,6 @@
 //! The lists of a document, by their values.
 
+use super::choices::Curve;
 use super::current::Params;
 use super::grammar::{ClipContacts, HandTag, List};
 use super::key::Key;
@@ -108,6 +109,21 @@ impl Params {
             Value::List(List::ContactEdits(clips)) => clips,
             _ => &[],
         }
+    }
+
+    /// Returns the quantities of the chosen joint that are plotted, each once, the first of them
+    /// above the others.
+    #[must_use]
+    pub fn plotted_curves(&self) -> Vec<Curve> {
+        let mut curves = vec![self.choice::<Curve>()];
+        if let Value::List(List::Curves(more)) = self.get(Key::MoreCurves) {
+            for curve in more {
+                if !curves.contains(curve) {
+                    curves.push(*curve);
+                }
+            }
+        }
+        curves
     }
 
     /// Returns the addresses of the motion files that are loaded with the link.

@@ -188,7 +188,9 @@ macro_rules! parameters {
     Trail "trail" "Ground path" Stage, Kind::Switch, Start::Switch(true), "", "The path of the hips, drawn on the ground.";
     JointTrail "joint_trail" "Joint trail" Stage, Kind::Switch, Start::Switch(false), "", "The path of the chosen joint through the air.";
     Joint "joint" "Joint" Stage, Kind::Joint, Start::Text("right foot"), "", "The joint whose curve and trail are shown: a body part or a joint's name.";
-    Curve "curve" "Curve" Stage, Kind::Choice(Curve::CHOICES), Start::Choice(Curve::Speed.word()), "", "The quantity of the chosen joint that is plotted.";
+    Curve "curve" "Curve" Stage, Kind::Choice(Curve::CHOICES), Start::Choice(Curve::Speed.word()), "", "The quantity of the chosen joint that is plotted. Distance is measured over the ground, from its place in the first frame.";
+    MoreCurves "more_curves" "More curves" Stage, Kind::List(ListKind::Curves), Start::Text(""), "", "Up to three further quantities of the chosen joint, each plotted below the first, as in height,angle.";
+    CurvesOf "curves_of" "Curves of" Stage, Kind::Choice(CurvesOf::CHOICES), Start::Choice(CurvesOf::All.word()), "", "The motions whose curves are plotted.";
     Contacts "contacts" "Foot contacts" Stage, Kind::Switch, Start::Switch(true), "", "A ring under a planted foot, red where it slides.";
     Follow "follow" "Follow" Camera, Kind::Choice(Follow::CHOICES), Start::Choice(Follow::Result.word()), "", "The character that the camera follows.";
     FollowOther "follow_other" "Extra character" Camera, number(1.0, 6.0, 1.0), Start::Number(1.0), "", "The extra character that the camera follows, by order.";

@@ -91,8 +91,8 @@ pub(crate) struct Timeline<'a> {
     pub(crate) out_point: Option<f64>,
     /// The marks above the bars.
     pub(crate) moments: &'a [Moment],
-    /// The curves below the bars; `None` for bars alone.
-    pub(crate) curves: Option<Curves<'a>>,
+    /// The curves below the bars, a plot for each quantity; none for bars alone.
+    pub(crate) curves: &'a [Curves<'a>],
 }
 
 /// A correction of stances. Feet and stances are given by their numbers; times are in seconds.

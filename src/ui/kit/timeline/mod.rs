@@ -13,7 +13,7 @@ use self::look::{
 };
 use self::scrub::scrub_ui;
 use self::stances::Lanes;
-use super::curves::{curves_ui, hover_ui, key_ui};
+use super::curves::{curves_ui, hover_ui, key_ui, plots_in};
 use super::paint::{Run, focus_ring, full_width, line_of, put};
 use super::time_axis::TimeAxis;
 use super::words;
@@ -44,10 +44,11 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
     let tracks_height = head + timeline.tracks.len() as f32 * pitch;
     let stripes_height: f32 = timeline.stripes.iter().map(stripe_pitch).sum();
     let bars = full_width(tracks_height + stripes_height, ui);
-    let curve_height = timeline
-        .curves
-        .as_ref()
-        .map_or(0.0, |_| (ui.available_height() - RULER * scale).max(48.0).floor());
+    let curve_height = if timeline.curves.is_empty() {
+        0.0
+    } else {
+        (ui.available_height() - RULER * scale).max(48.0).floor()
+    };
     let plot_row = full_width(curve_height, ui);
     let ruler = full_width(RULER * scale, ui);
     ui.spacing_mut().item_spacing.y = spacing;
@@ -58,6 +59,7 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
     };
     let area = Rect::from_min_max(pos2(axis.x.min, bars.top()), pos2(axis.x.max, ruler.bottom()));
     let plot = plot_row.with_min_x(axis.x.min).with_min_y(plot_row.top() + space::XS);
+    let plots: Vec<_> = timeline.curves.iter().zip(plots_in(plot, timeline.curves.len())).collect();
 
     // Input is read before painting: the playhead is at the pointer in the same frame.
     let mut events = Vec::new();
@@ -108,10 +110,13 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
         }
         paint_stripe(stripe, row, axis, ui);
     }
-    if let Some(curves) = &timeline.curves {
+    for &(curves, plot) in &plots {
         curves_ui(curves, axis, plot, gutter > 0.0, ui);
         if gutter > 0.0 {
-            key_ui(curves, plot_row.with_max_x(axis.x.min - space::S), ui);
+            // The values of the scale stand beside it.
+            let x = bars.left()..=axis.x.min - 32.0 * scale;
+            let key = Rect::from_x_y_ranges(x, plot.y_range());
+            key_ui(curves, key, now, ui);
         }
     }
     for (index, moment) in timeline.moments.iter().enumerate() {
@@ -179,9 +184,7 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
     }
     paint_playhead(axis.x_of(now), bars.top(), plot_row.bottom(), &scrub, ui);
     focus_ring(area, radius::S, &scrub, ui);
-    if let Some(curves) = &timeline.curves {
-        hover_ui(curves, axis, plot, &scrub, ui);
-    }
+    hover_ui(&plots, axis, &scrub, ui);
     events
 }
 

@@ -138,7 +138,11 @@ impl Lanes<'_> {
             let outside = -GRIP / 2.0 * inward;
             let x = Rangef::new((x + inside).min(x + outside), (x + inside).max(x + outside));
             let grip = ui
-                .interact(Rect::from_x_y_ranges(x, rect.y_range()), id.with(end), Sense::DRAG)
+                .interact(
+                    Rect::from_x_y_ranges(x, rect.y_range()),
+                    id.with(("grip", end)),
+                    Sense::DRAG,
+                )
                 .on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
             if grip.drag_started() {
                 response.request_focus();
@@ -215,6 +219,15 @@ impl Lanes<'_> {
         }
     }
 
+    /// Draws the letters of the feet at the right edge of `place`.
+    fn letters_ui(&self, place: Rect, ui: &Ui) {
+        for (letter, lane) in [words::LEFT, words::RIGHT].into_iter().zip(self.lanes) {
+            let run = Run::new(letter, Type::Small, palette_of(ui).muted);
+            let at = pos2(place.right(), lane.center());
+            put(ui.painter(), at, Align2::RIGHT_CENTER, line_of(&[run], f32::INFINITY, ui));
+        }
+    }
+
     /// Draws the label with the menu of the stripe, and a dot where contacts are corrected.
     pub(super) fn label_ui(
         &self,
@@ -224,6 +237,8 @@ impl Lanes<'_> {
         ui: &mut Ui,
     ) {
         let (theme, palette) = (theme_of(ui), palette_of(ui));
+        self.letters_ui(place, ui);
+        let place = place.with_max_x(place.right() - 18.0 * theme.scale());
         let response = ui
             .interact(place, self.id.with("menu"), Sense::click())
             .on_hover_cursor(CursorIcon::PointingHand);

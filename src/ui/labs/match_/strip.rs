@@ -115,13 +115,14 @@ fn time_ui(
         in_point: session.params().optional(Key::In).filter(|_| !driven.is_live),
         out_point: session.params().optional(Key::Out).filter(|_| !driven.is_live),
         moments: &jumps,
-        curves: Some(Curves {
+        curves: &[Curves {
             title: text::COST,
             unit: Word::default(),
             decimals: 2,
             include: Some(0.0),
             series: &series,
-        }),
+            ..Curves::default()
+        }],
         ..Timeline::default()
     };
     let top = ui.cursor().top();
