@@ -107,8 +107,8 @@ pub(crate) struct UiState {
     pub(crate) gamepad: Option<Gamepad>,
     /// The cameras of all panes as they were drawn last.
     pub(crate) cameras: Vec<Option<Camera>>,
-    /// The joints of the figures in all panes as they were drawn last: positions in the world, in the
-    /// order of each skeleton.
+    /// The joints of the figures in all panes as they were drawn last: positions in the world, in
+    /// the order of each skeleton.
     pub(crate) figures: Vec<Vec<Vec3>>,
     /// The line that is being drawn on the ground, (x, z) in metres; `None` while none is.
     pub(crate) drawing: Option<Vec<DVec2>>,

@@ -146,8 +146,8 @@ fn series_of<'a>(lines: &'a [Curve], palette: &Palette) -> Vec<Series<'a>> {
         },
         CurveOf::Pane(index, _) => Series {
             name: of.name(),
-            // The first result, which the rest of the page shows, has the accent; two more differ in
-            // lightness, the last has a colour that neither clip has.
+            // The first result, which the rest of the page shows, has the accent; two more differ
+            // in lightness, the last has a colour that neither clip has.
             color: [palette.accent, palette.text, palette.muted, palette.others[1]][index % 4],
             ink: [palette.accent_ink, palette.text, palette.muted, palette.others[1]][index % 4],
             strong: *index == 0,

@@ -1,8 +1,8 @@
 //! Contacts that are corrected by hand: the clips that they belong to.
 //!
-//! Corrections are parameters, so that links and recipes contain them and undo takes them back. They
-//! belong to their clips all the same: a link leaves those of files alone that it does not correct
-//! itself, and is written with those of the clips that it uses.
+//! Corrections are parameters, so that links and recipes contain them and undo takes them back.
+//! They belong to their clips all the same: a link leaves those of files alone that it does not
+//! correct itself, and is written with those of the clips that it uses.
 
 use crate::labs::{lab_of, slots_of};
 use crate::library::{Library, Origin, split_reference};

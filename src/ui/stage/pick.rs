@@ -104,8 +104,9 @@ impl<'a> Picture<'a> {
         Self { skeleton, places: figure.iter().map(place).collect() }
     }
 
-    /// Returns the joint that is meant by a point of the page: the nearest one, of several alike the
-    /// foremost; beside all joints, the nearer end of the nearest bone. `None` beside the figure.
+    /// Returns the joint that is meant by a point of the page: the nearest one, of several alike
+    /// the foremost; beside all joints, the nearer end of the nearest bone. `None` beside the
+    /// figure.
     fn joint_at(&self, pos: Pos2) -> Option<usize> {
         let joints =
             || self.places.iter().enumerate().filter_map(|(joint, at)| Some((joint, (*at)?)));

@@ -73,9 +73,10 @@ pub enum RootMotionError {
 ///
 /// Each foot counts by its point that moves backward fastest: the others roll about it.
 ///
-/// The speed limits of `options` are not used. `corrections` overrule the feet that are found. The distance of synthesised walks is reproduced
-/// within 1 %, that of runs within 7 %, too short: a foot that lands or leaves is a little slower
-/// than the ground. A foot that slides in the source is taken as standing. O(frames × joints).
+/// The speed limits of `options` are not used; `corrections` overrule the contacts that are found.
+/// The distance of synthesised walks is reproduced within 1 %, that of runs within 7 %, too short:
+/// a foot that lands or leaves is a little slower than the ground. A foot that slides in the source
+/// is taken as standing. O(frames × joints).
 ///
 /// # Errors
 /// [`RootMotionError`]

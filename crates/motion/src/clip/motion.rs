@@ -118,8 +118,8 @@ impl Motion {
         Self { found_contacts: contacts.into(), corrections, contacts: OnceLock::new(), ..self }
     }
 
-    /// Returns the same motion with its contacts corrected by hand, in place of earlier corrections.
-    /// The height of the ground is estimated anew.
+    /// Returns the same motion with its contacts corrected by hand, in place of earlier
+    /// corrections. The height of the ground is estimated anew.
     #[must_use]
     pub fn with_contact_corrections(self, corrections: ContactCorrections) -> Self {
         if corrections == self.corrections {

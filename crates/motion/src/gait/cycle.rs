@@ -177,8 +177,8 @@ impl GaitCycle {
 }
 
 /// Returns the frame of a closed cycle in which the left foot strikes, and the events from there
-/// on. `None` unless each foot stands once. `by_hand` is whether a foot is planted in a frame of the
-/// cycle, where that was corrected.
+/// on. `None` unless each foot stands once. `by_hand` is whether a foot is planted in a frame of
+/// the cycle, where that was corrected.
 pub(crate) fn events_of(
     looped: &Loop,
     roles: &Roles,

@@ -205,8 +205,8 @@ impl Heights {
 /// Height of a stripe of stances at scale 1, points.
 const STRIPE: f32 = 15.0;
 
-/// Returns the height of a stripe whose stances can be corrected at scale 1, points. Without a space
-/// before it the page is narrow, and fingers need more.
+/// Returns the height of a stripe whose stances can be corrected at scale 1, points. Without a
+/// space before it the page is narrow, and fingers need more.
 fn edited_stripe(has_gutter: bool) -> f32 {
     if has_gutter { 28.0 } else { 44.0 }
 }

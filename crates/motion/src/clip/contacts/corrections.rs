@@ -86,8 +86,8 @@ impl ContactCorrections {
         Contacts { planted }
     }
 
-    /// Returns the corrections of the same clip at `ratio` times its frame rate. Each keeps at least
-    /// one frame.
+    /// Returns the corrections of the same clip at `ratio` times its frame rate. Each keeps at
+    /// least one frame.
     #[must_use]
     pub fn at_rate(&self, ratio: f64) -> Self {
         let frame = |frame: usize| (frame as f64 * ratio).round() as usize;

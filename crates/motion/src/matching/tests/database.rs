@@ -2,7 +2,8 @@
 
 use super::super::search::{Query, scan};
 use super::*;
-use crate::clip::{Interpolation, resample};
+use crate::clip::{ContactCorrection, Interpolation, resample};
+use crate::skeleton::Side;
 use glam::Quat;
 
 #[test]
@@ -110,4 +111,21 @@ fn mirrored_motion_has_mirrored_features() {
             }
         }
     }
+}
+
+#[test]
+fn corrected_contacts_are_those_of_the_database_at_its_rate_and_mirrored() {
+    let walk = synthesize(&Params { fps: 30.0, ..Params::new(Action::Walk) }).unwrap();
+    let corrections = [(10..20, false), (30..40, true)]
+        .map(|(frames, planted)| ContactCorrection { side: Side::Left, frames, planted });
+    let corrected =
+        Motion::analyze(walk.clip).with_contact_corrections(corrections.into_iter().collect());
+    let database = Database::new(vec![Arc::new(corrected)], &cycle_options(false)).unwrap();
+    for (motion, side) in database.motions().iter().zip([Side::Left, Side::Right]) {
+        for frame in 20..40 {
+            assert!(!motion.contacts().planted(side, frame), "{frame}");
+            assert!(motion.contacts().planted(side, 40 + frame), "{frame}");
+        }
+    }
+    assert_eq!(database.motions().len(), 2);
 }
