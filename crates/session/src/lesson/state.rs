@@ -57,6 +57,8 @@ pub(crate) struct LessonState {
     texts: BTreeMap<Source, Text>,
     /// The lesson whose page sets the parameters once its text is available.
     to_set_up: Option<String>,
+    /// The parameters that were named together with it. They keep their values.
+    set_besides: Vec<Key>,
     requests: Vec<Source>,
 }
 
@@ -71,7 +73,13 @@ pub(crate) struct NewParams {
 
 impl Default for LessonState {
     fn default() -> Self {
-        Self { language: "en", texts: BTreeMap::new(), to_set_up: None, requests: Vec::new() }
+        Self {
+            language: "en",
+            texts: BTreeMap::new(),
+            to_set_up: None,
+            set_besides: Vec::new(),
+            requests: Vec::new(),
+        }
     }
 }
 
@@ -195,15 +203,17 @@ impl LessonState {
         std::mem::take(&mut self.requests)
     }
 
-    /// Records that values were set together. A lesson that is opened alone sets the parameters, at
-    /// once or when its text is available: [`Self::set_up`]. Opened with other values, it leaves
-    /// them as they are.
-    pub(crate) fn note_set(&mut self, params: &Params, keys: impl IntoIterator<Item = Key>) {
+    /// Records that values were set together. A lesson that is opened without a lab sets the
+    /// parameters, at once or when its text is available: [`Self::set_up`]. The other values that
+    /// were set with it stay as they are. A lab shows that there is a whole state besides, which
+    /// the lesson leaves as it is.
+    pub(crate) fn note_set(&mut self, params: &Params, keys: &[Key]) {
         // Texts that failed are requested again.
         self.texts.retain(|_, text| !matches!(text, Text::Failed(_)));
-        let is_alone = keys.into_iter().all(is_about_the_reader);
         let lesson = params.text(Key::Lesson);
-        self.to_set_up = (is_alone && !lesson.is_empty()).then(|| lesson.to_owned());
+        let sets_up = !keys.contains(&Key::Lab) && !lesson.is_empty();
+        self.to_set_up = sets_up.then(|| lesson.to_owned());
+        self.set_besides = keys.iter().copied().filter(|&key| !is_about_the_reader(key)).collect();
     }
 
     /// Returns the parameters of the open page, if they are about to be set and its text is
@@ -216,9 +226,14 @@ impl LessonState {
         let state = self.page(params)?.state.as_ref().map(|state| link::read(&state.query));
         self.to_set_up = None;
         let state = state?;
+        let mut new = with_links(params, std::slice::from_ref(&state), true);
+        for &key in &self.set_besides {
+            new.copy_from(params, key);
+        }
+        let named = state.values.iter().map(|(key, _)| *key);
         Some(NewParams {
-            params: with_links(params, std::slice::from_ref(&state), true),
-            named: state.values.iter().map(|(key, _)| *key).collect(),
+            params: new,
+            named: named.chain(self.set_besides.iter().copied()).collect(),
             problems: state.problems,
         })
     }
@@ -241,7 +256,7 @@ impl LessonState {
 /// parameters.
 pub(crate) fn would_set_up(params: &Params) -> bool {
     let mut named = link::named(params).map(|(param, _)| param.key);
-    !params.text(Key::Lesson).is_empty() && named.all(is_about_the_reader)
+    !params.text(Key::Lesson).is_empty() && !named.any(|key| key == Key::Lab)
 }
 
 /// Returns the parameters after several links, applied in order to the defaults of everything that

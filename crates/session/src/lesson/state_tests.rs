@@ -110,6 +110,23 @@ fn link_of_default_state_beside_a_lesson_at_a_later_time_keeps_that_state() {
 }
 
 #[test]
+fn link_of_a_lesson_with_playback_and_camera_sets_up_the_page_below_them() {
+    let mut session = Session::new();
+    session
+        .apply(Command::OpenLink(format!("lesson={ADDRESS}%232&play=off&camera_yaw=45&t=0.5")))
+        .unwrap();
+    deliver(&mut session);
+    let params = session.params();
+    assert_eq!(params.lab().word(), "make");
+    assert_eq!(params.word(Key::Gait), "run");
+    assert!(!params.is_on(Key::Play));
+    assert_eq!((params.number(Key::CameraYaw), params.number(Key::Time)), (45.0, 0.5));
+    let again = session.query();
+    session.apply(Command::OpenLink(again.clone())).unwrap();
+    assert_eq!(session.query(), again, "a link reproduces itself");
+}
+
+#[test]
 fn try_applies_its_link_to_the_page_in_one_step() {
     let mut session = opened();
     set(&mut session, &[(Key::Theme, "light"), (Key::Align, "off"), (Key::Look, "bones")]);

@@ -41,10 +41,10 @@ impl Session {
         }
     }
 
-    /// Records that parameters were set together. If the open lesson is among them alone, it sets
-    /// the parameters.
+    /// Records that parameters were set together. If the open lesson is among them and the lab is
+    /// not, the lesson sets all others.
     pub(super) fn note_lesson(&mut self, named: &[Key]) {
-        self.lessons.note_set(&self.document.params, named.iter().copied());
+        self.lessons.note_set(&self.document.params, named);
         self.set_up_lesson();
     }
 

@@ -39,11 +39,7 @@ impl Session {
     /// Returns the query string that restores this state, without `?`.
     #[must_use]
     pub fn query(&self) -> String {
-        let params = &self.document.params;
-        if params.contact_edits().is_empty() {
-            return query_of(params);
-        }
-        query_of(&with_named_edits(params))
+        query_with_edits(&self.document.params)
     }
 
     /// Returns the clips whose contacts can be corrected on the timeline: those that the panes show
@@ -70,6 +66,18 @@ impl Session {
             }
         }
         clips
+    }
+
+    /// Returns the query string that shows this state to somebody else, without `?`: the size of
+    /// the type and the language are each reader's own.
+    #[must_use]
+    pub fn query_for_others(&self) -> String {
+        let mut params = self.document.params.clone();
+        let defaults = Params::default();
+        for key in [Key::Projector, Key::Lang] {
+            params.copy_from(&defaults, key);
+        }
+        query_with_edits(&params)
     }
 
     /// Returns the open comparison.
@@ -269,4 +277,23 @@ impl Session {
 /// Rounds a value to whole steps; never returns negative zero.
 fn to_step(value: f64, step: f64) -> f64 {
     (value / step).round() * step + 0.0
+}
+
+fn query_of(params: &Params) -> String {
+    let query = link::write(params);
+    if would_set_up(params) {
+        // The lab, which is usually named only if it is not the first one, shows that there is a
+        // state besides.
+        format!("{query}&{}={}", Key::Lab.param().name, params.lab().word())
+    } else {
+        query
+    }
+}
+
+/// Returns the query string of parameters, with the corrected contacts of the clips that they name.
+fn query_with_edits(params: &Params) -> String {
+    if params.contact_edits().is_empty() {
+        return query_of(params);
+    }
+    query_of(&with_named_edits(params))
 }

@@ -238,3 +238,12 @@ fn long_values_of_a_link_are_shortened_and_its_problems_counted() {
     let error = Command::Assign(Slot::A, long);
     assert!(Session::new().apply(error).unwrap_err().to_string().len() < 200);
 }
+
+#[test]
+fn query_for_others_leaves_type_size_and_language_to_them() {
+    let mut session = Session::new();
+    let link = "blend_window=24&theme=light&lang=zh-Hant&projector=on";
+    session.apply(Command::OpenLink(link.into())).unwrap();
+    assert_eq!(session.query(), link);
+    assert_eq!(session.query_for_others(), "blend_window=24&theme=light");
+}
