@@ -16,6 +16,7 @@ mod page;
 mod rows;
 mod stage;
 mod state;
+mod tab_presses;
 #[cfg(all(test, feature = "ui-tests"))]
 mod tests;
 mod text;
@@ -30,5 +31,6 @@ pub(crate) use language::{Language, LanguagePack, PackError, Word, activate_engl
 pub(crate) use out::Action;
 pub(crate) use page::show;
 pub(crate) use state::{Filming, Gamepad, UiState};
+pub(crate) use tab_presses::TabPresses;
 pub(crate) use text::{HOST_READS, LINK_COPIED, REPORT_COPIED, TABLE_COPIED};
 pub(crate) use timeline::CurveCache;
