@@ -17,7 +17,7 @@ mod picture;
 mod view;
 mod window;
 
-pub(crate) use address_bar::link_query;
+pub(crate) use address_bar::{link_query, link_query_for_others};
 pub(crate) use events::Event;
 pub(crate) use view::View;
 

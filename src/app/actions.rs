@@ -29,8 +29,13 @@ impl Segue {
             Action::StopLesson => self.stop_lessons(),
             Action::CopyLink => {
                 self.copied = ui::LINK_COPIED;
+                platform::copy_text(self.url_for_others(), ctx, &self.inbox);
+            }
+            Action::CopyLinkAsShown => {
+                self.copied = ui::LINK_COPIED;
                 platform::copy_text(self.url(), ctx, &self.inbox);
             }
+            Action::Fullscreen(whole) => platform::set_fullscreen(*whole, ctx),
             Action::CopyText(text) => {
                 self.copied = ui::TABLE_COPIED;
                 platform::copy_text(text.clone(), ctx, &self.inbox);

@@ -22,7 +22,15 @@ pub(crate) struct AddressBar {
 /// Returns the query of a link to this state. It is never empty, because a link without a query
 /// shows what a first visitor sees.
 pub(crate) fn link_query(session: &Session) -> String {
-    let query = session.query();
+    never_empty(session.query(), session)
+}
+
+/// Returns the query of a link to this state for others; see [`Session::query_for_others`].
+pub(crate) fn link_query_for_others(session: &Session) -> String {
+    never_empty(session.query_for_others(), session)
+}
+
+fn never_empty(query: String, session: &Session) -> String {
     if query.is_empty() {
         format!("{}={}", Key::Lab.param().name, session.params().lab().word())
     } else {

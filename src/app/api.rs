@@ -9,7 +9,7 @@ pub(crate) use answers::{ExportedFile, KeyInfo, LoadedClips, MetricInfo, PoseInf
 pub(crate) use error::ApiError;
 
 use super::Segue;
-use super::link_query;
+use super::{link_query, link_query_for_others};
 use crate::platform::{self, FileBytes};
 use answers::JobInfo;
 use eframe::wgpu::Backend;
@@ -189,6 +189,11 @@ impl Segue {
     /// Returns the link that restores this state.
     pub(crate) fn url(&self) -> String {
         platform::full_link(&link_query(&self.session))
+    }
+
+    /// Returns the link that shows this state to others, in their own type size and language.
+    pub(crate) fn url_for_others(&self) -> String {
+        platform::full_link(&link_query_for_others(&self.session))
     }
 
     /// Returns a report of the results in Markdown. `picture` is the address of a picture, which

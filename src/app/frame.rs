@@ -77,6 +77,9 @@ impl Segue {
         self.panels.language =
             self.languages.update(&self.session, &mut self.window.language, &self.inbox, ctx);
         self.session.set_lesson_language(self.panels.language.tag());
+        if self.panels.presenter.is_on {
+            self.panels.presenter.note_fullscreen(platform::is_fullscreen(ctx));
+        }
         self.panels.fetching = self.downloads.under_way().collect();
         self.panels.stored = self.autosave.progress();
         if self.session.is_driven() {

@@ -18,6 +18,9 @@ pub(super) struct Window {
     pub(super) pacer: Option<FramePacer>,
     /// The installed theme; `None` before the first frame.
     theme: Option<Theme>,
+    /// Whether a finger is the main pointer, and the size of the window for which this was asked.
+    has_coarse_pointer: bool,
+    pointer_of: Option<egui::Vec2>,
     /// The language of the panels.
     pub(super) language: WindowLanguage,
     /// Whether the last frame was computed inside an input event, which eframe's clock does not
@@ -67,7 +70,15 @@ impl Segue {
     /// Installs the theme that the parameters select, where the window has another one.
     pub(super) fn apply_theme(&mut self, ctx: &egui::Context) {
         let system_dark = ctx.input(|input| input.raw.system_theme) != Some(egui::Theme::Light);
-        let theme = ui::theme(&self.session, system_dark);
+        // Another pointer comes with another window: a tablet that is turned or docked, or the
+        // emulation of a phone.
+        let size = ctx.content_rect().size();
+        if self.window.pointer_of != Some(size) {
+            self.window.pointer_of = Some(size);
+            self.window.has_coarse_pointer = platform::has_coarse_pointer();
+        }
+        let touch = self.window.has_coarse_pointer;
+        let theme = ui::theme(&self.session, system_dark, touch);
         if self.window.theme != Some(theme) {
             theme.install(ctx);
             if platform::prefers_reduced_motion() {

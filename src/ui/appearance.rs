@@ -5,14 +5,15 @@ use segue_scene::Look;
 use segue_session::choices::{Backdrop, PageTheme};
 use segue_session::{Key, Session};
 
-/// Returns the theme that the parameters ask for, on a system that prefers dark or light.
-pub(crate) fn theme(session: &Session, system_dark: bool) -> Theme {
+/// Returns the theme that the parameters ask for, on a system that prefers dark or light, worked by
+/// fingers or by a mouse.
+pub(crate) fn theme(session: &Session, system_dark: bool, touch: bool) -> Theme {
     let dark = match session.params().choice::<PageTheme>() {
         PageTheme::Dark => true,
         PageTheme::Light => false,
         PageTheme::Auto => system_dark,
     };
-    Theme { dark, projector: session.params().is_on(Key::Projector) }
+    Theme { dark, projector: session.params().is_on(Key::Projector), touch, ..Theme::default() }
 }
 
 /// Returns the theme of the layers over the stage, on a page of that theme.

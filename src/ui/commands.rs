@@ -6,6 +6,7 @@ mod buttons;
 mod help;
 mod keys;
 
+use buttons::name_of;
 pub(crate) use buttons::{command_button_ui, command_icon_ui, command_item_ui};
 pub(crate) use help::help;
 #[cfg(all(test, feature = "ui-tests"))]
@@ -18,6 +19,7 @@ use super::labs::toggle_compare;
 use super::language::Word;
 use super::lessons_panel::{self, toggle_lessons};
 use super::out::{Action, Out};
+use super::presenter;
 use super::stage::framing::frame_everything;
 use super::state::UiState;
 use super::text;
@@ -56,8 +58,15 @@ pub(crate) enum UiCommand {
     Undo,
     Redo,
     CopyLink,
+    /// Copies the link with what is the reader's own otherwise.
+    CopyLinkAsShown,
     CopyReport,
     OpenLibrary,
+    /// Shows the stage alone, or the whole page again.
+    Present,
+    /// Goes to the next or the previous step of a presenter.
+    NextStep,
+    PreviousStep,
     ToggleTheme,
     ToggleProjector,
     SwitchLanguage,
@@ -137,7 +146,15 @@ impl UiCommand {
                 &[Keys(COMMAND_SHIFT, Keyboard::Z), Keys(COMMAND, Keyboard::Y)],
             ),
             Self::CopyLink => named(text::COPY_LINK, Icon::Link, &[Copy]),
+            Self::CopyLinkAsShown => named(text::COPY_LINK_AS_SHOWN, Icon::Link, &[]),
             Self::CopyReport => named(text::REPORT, Icon::Report, &[]),
+            Self::Present => named(text::PRESENT, Icon::Screen, &[Keys(NONE, Keyboard::P)]),
+            Self::NextStep => {
+                named(text::NEXT, Icon::ChevronRight, &[Keys(NONE, Keyboard::PageDown)])
+            }
+            Self::PreviousStep => {
+                named(text::PREVIOUS, Icon::ChevronLeft, &[Keys(NONE, Keyboard::PageUp)])
+            }
             Self::OpenLibrary => named(text::LIBRARY, Icon::Folder, &[]),
             Self::ToggleTheme => named(text::THEME, Icon::Contrast, &[]),
             Self::ToggleProjector => {
@@ -150,7 +167,7 @@ impl UiCommand {
     }
 
     /// Returns whether the command can be given now.
-    fn is_enabled(self, session: &Session) -> bool {
+    fn is_enabled(self, session: &Session, state: &UiState) -> bool {
         match self {
             Self::SwapClips => session.uses(Slot::A) && session.uses(Slot::B),
             Self::Undo => session.can_undo(),
@@ -158,8 +175,14 @@ impl UiCommand {
             // A driven character is steered by the arrows.
             Self::StepBack | Self::StepOn | Self::TenBack | Self::TenOn => !session.is_driven(),
             Self::ToggleStrafe => session.is_driven(),
+            Self::NextStep | Self::PreviousStep => state.presenter.is_on,
             _ => true,
         }
+    }
+
+    /// Returns the name of its button.
+    pub(super) fn name(self, state: &UiState) -> Word {
+        name_of(self, state)
     }
 
     /// Returns whether the command has switched something on.
@@ -229,7 +252,11 @@ impl UiCommand {
             Self::Undo => out.commands.push(Command::Undo),
             Self::Redo => out.commands.push(Command::Redo),
             Self::CopyLink => out.actions.push(Action::CopyLink),
+            Self::CopyLinkAsShown => out.actions.push(Action::CopyLinkAsShown),
             Self::CopyReport => out.actions.push(Action::CopyReport),
+            Self::Present => presenter::toggle(state, out),
+            Self::NextStep => presenter::go(true, session, state, out),
+            Self::PreviousStep => presenter::go(false, session, state, out),
             Self::OpenLibrary => state.library_open = true,
             Self::ToggleTheme => {
                 let other = if theme_of(ui).dark { "light" } else { "dark" };
@@ -251,6 +278,9 @@ impl UiCommand {
 fn close(session: &Session, state: &mut UiState, out: &mut Out) {
     if !state.help_open && state.library.close() {
         return;
+    }
+    if state.presenter.is_on && !state.help_open {
+        return presenter::toggle(state, out);
     }
     let lies_in_front = state.help_open || state.library_open || state.drawing.is_some();
     if lessons_panel::is_open(session) && !lies_in_front {

@@ -90,6 +90,31 @@ pub(crate) fn side_panel_ui(session: &Session, state: &mut UiState, out: &mut Ou
     graph::map_panel_ui(session, state, out, ui);
 }
 
+/// Returns whether the lab has a figure among its parameters that a lesson may speak of.
+pub(crate) fn has_figure(session: &Session) -> bool {
+    match session.params().lab() {
+        LabId::Register | LabId::Graph => true,
+        LabId::Transition => transition::has_ruler(session),
+        _ => false,
+    }
+}
+
+/// Draws the figure that the lab has among its parameters, at most about `room` points high.
+pub(crate) fn figure_ui(
+    session: &Session,
+    room: f32,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
+    match session.params().lab() {
+        LabId::Register => register::map_ui(session, room, state, out, ui),
+        LabId::Graph => graph::map_ui(session, room, state, out, ui),
+        LabId::Transition if transition::has_ruler(session) => transition::ruler_ui(session, ui),
+        _ => {}
+    }
+}
+
 /// Draws the right panel: one section for the lab, two that fold for stage and camera.
 pub(crate) fn lab_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let lab = of(session.params().lab());

@@ -4,15 +4,17 @@ mod maths;
 mod prose;
 
 use super::kit::{self, Button, Icon, MenuItem};
+use super::labs;
 use super::language::{Text, say};
 use super::out::{Action, Out};
+use super::rows::{Detail, param_row_ui};
 use super::state::UiState;
 use super::text;
 use super::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{Align, Frame, Layout as Flow, Margin, RichText, Role, ScrollArea, Ui};
 use prose::{blocks_ui, spans_ui};
 use segue_session::lesson::{Block, CONTENTS, Page, Try};
-use segue_session::{Command, Key, Lesson, LessonPage, Session, Value};
+use segue_session::{Command, Key, Kind, Lesson, LessonPage, PARAMS, Session, Value, link};
 
 /// Returns whether there is a lesson to show.
 pub(super) fn is_open(session: &Session) -> bool {
@@ -42,8 +44,61 @@ pub(super) fn lesson_or_parameters_ui(state: &mut UiState, ui: &mut Ui) {
     ui.add_space(space::XS);
 }
 
-/// Draws the panel.
-pub(super) fn lessons_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+/// Returns the parameters of the open lab that a page speaks of: those of its own link and of the
+/// links to try, in the order of the table.
+fn keys_of(page: &Page, session: &Session) -> Vec<Key> {
+    let queries = page.state.iter().chain(&page.tries).map(|link| link.query.as_str());
+    let values = queries.flat_map(|query| link::read(query).values);
+    let named: Vec<Key> = values
+        .map(|(key, value)| match value {
+            Value::Compare(Some(compare)) => compare.key,
+            _ => key,
+        })
+        .collect();
+    let lab = session.params().lab();
+    let is_shown = |key: &Key| {
+        let param = key.param();
+        let is_drawn = matches!(param.kind, Kind::Number { .. } | Kind::Switch | Kind::Choice(_));
+        named.contains(key) && param.group.is_of_lab() && param.is_used_by(lab) && is_drawn
+    };
+    PARAMS.iter().map(|param| param.key).filter(is_shown).collect()
+}
+
+/// Returns whether the open lesson speaks of anything among the parameters.
+pub(super) fn has_controls(session: &Session) -> bool {
+    let Some(Lesson::Page(page)) = session.lesson() else {
+        return false;
+    };
+    labs::has_figure(session) || !keys_of(page.page, session).is_empty()
+}
+
+/// Draws what the open lesson speaks of and only the panel of the parameters shows: the lab's
+/// figure, and the rows of the parameters that its links set.
+pub(super) fn controls_ui(
+    session: &Session,
+    room: f32,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
+    let Some(Lesson::Page(page)) = session.lesson() else {
+        return;
+    };
+    labs::figure_ui(session, room, state, out, ui);
+    for key in keys_of(page.page, session) {
+        param_row_ui(key, &Detail::default(), session, out, ui);
+    }
+}
+
+/// Draws the panel. `with_controls`: behind the text comes what it speaks of among the parameters,
+/// where these are out of sight.
+pub(super) fn lessons_panel_ui(
+    session: &Session,
+    with_controls: bool,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
     let Some(lesson) = session.lesson() else {
         return;
     };
@@ -57,7 +112,7 @@ pub(super) fn lessons_panel_ui(session: &Session, state: &mut UiState, out: &mut
     ScrollArea::vertical().id_salt(name).auto_shrink(false).show(ui, |ui| {
         clear_of_bar_ui(ui, |ui| match &lesson {
             Lesson::Contents(page) => contents_ui(page, out, ui),
-            Lesson::Page(page) => page_ui(page, name, session, state, out, ui),
+            Lesson::Page(page) => page_ui(page, name, with_controls, session, state, out, ui),
             Lesson::Waiting => {
                 note_ui(text::LESSON_WAITING.into(), false, ui);
                 if kit::button_ui(Button::new(text::STOP_LOADING).icon(Icon::Close), ui).clicked() {
@@ -139,6 +194,7 @@ fn contents_ui(page: &Page, out: &mut Out, ui: &mut Ui) {
 fn page_ui(
     shown: &LessonPage<'_>,
     name: &str,
+    with_controls: bool,
     session: &Session,
     state: &mut UiState,
     out: &mut Out,
@@ -152,6 +208,10 @@ fn page_ui(
     }
     ui.add_space(space::S);
     blocks_ui(&page.body, Type::Reading, out, ui);
+    if with_controls && has_controls(session) {
+        ui.add_space(space::M);
+        controls_ui(session, FIGURE_ROOM, state, out, ui);
+    }
     if !page.tries.is_empty() {
         ui.add_space(space::M);
         kit::section_header_ui(text::TRY, ui);
@@ -223,6 +283,9 @@ fn note_ui(words: Text<'_>, is_problem: bool, ui: &mut Ui) {
     ui.add_space(space::S);
 }
 
+/// The room for a lab's figure inside the text of a lesson, points.
+const FIGURE_ROOM: f32 = 240.0;
+
 /// The indent of the text of a menu's item, points.
 const MENU_INDENT: f32 = 31.0;
 
@@ -233,6 +296,6 @@ fn indented_ui(by: f32, ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
 }
 
 /// Opens a lesson, a page, or nothing.
-fn go_to(lesson: &str, out: &mut Out) {
+pub(super) fn go_to(lesson: &str, out: &mut Out) {
     out.set_once(Key::Lesson, Value::Text(lesson.to_owned()));
 }

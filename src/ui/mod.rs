@@ -13,6 +13,7 @@ mod notices;
 mod out;
 mod overlays;
 mod page;
+mod presenter;
 mod rows;
 mod stage;
 mod state;

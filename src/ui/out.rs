@@ -10,8 +10,13 @@ pub(crate) enum Action {
     OpenFiles,
     /// Open a page of the web beside this one.
     OpenPage(String),
-    /// Put the address of this state into the clipboard.
+    /// Put the address of this state into the clipboard, for readers with a type size and a language
+    /// of their own.
     CopyLink,
+    /// Put the address of this state into the clipboard, with the type size and the language.
+    CopyLinkAsShown,
+    /// Show the page on the whole screen, or in its window again.
+    Fullscreen(bool),
     /// Stop fetching a file, by its name.
     StopFetching(String),
     /// Stop waiting for the open lesson.

@@ -4,13 +4,15 @@
 use super::clip_drag::dragged_clip_ui;
 use super::commands;
 use super::kit;
-use super::language::say;
+use super::language::{Text, say};
 use super::notices::notices_ui;
 use super::out::Out;
 use super::state::UiState;
 use super::text;
 use super::theme::{Type, palette_of, radius, space, theme_of};
-use eframe::egui::{self, Align2, Grid, RichText, Stroke, StrokeKind, Ui};
+use eframe::egui::{
+    self, Align, Align2, Layout, RichText, ScrollArea, Stroke, StrokeKind, Ui, vec2,
+};
 use segue_session::Session;
 
 /// Draws the overlays.
@@ -25,26 +27,43 @@ pub(crate) fn overlays_ui(session: &Session, state: &mut UiState, out: &mut Out,
 
 fn help_ui(state: &mut UiState, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
+    let rows: Vec<(String, String)> =
+        commands::help().map(|(keys, what)| (say(&keys, ui), say(what, ui))).collect();
+    // Measured before the first frame: a window that grows with its contents would first cut them.
+    let width_of = |text: &str, step: Type, ui: &Ui| {
+        let run = kit::paint::Run::new(Text::Data(text), step, palette.text);
+        kit::paint::line_of(&[run], f32::INFINITY, ui).size().x.ceil()
+    };
+    let widest = |widths: Vec<f32>| widths.into_iter().fold(0.0, f32::max);
+    let keys = widest(rows.iter().map(|row| width_of(&row.0, Type::Strong, ui)).collect());
+    let what = widest(rows.iter().map(|row| width_of(&row.1, Type::Body, ui)).collect());
+    let screen = ui.ctx().content_rect().size();
+    let width = (keys + space::L + what + space::L).min(screen.x - 4.0 * space::L);
+    let most = screen.y - 6.0 * space::L - theme.row_height();
+    // On a phone the keys take more lines, too.
+    let keys = keys.min((0.4 * width).round());
     let mut open = true;
     egui::Window::new(RichText::new(say(text::HELP, ui)).font(theme.font(Type::Title)))
         .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
+        .default_size([width, most])
         .collapsible(false)
         .resizable(false)
         .open(&mut open)
         .show(ui.ctx(), |ui| {
-            Grid::new("shortcuts").num_columns(2).spacing([space::L, space::XS]).show(ui, |ui| {
-                for (keys, what) in commands::help() {
-                    ui.label(
-                        RichText::new(say(&keys, ui))
-                            .font(theme.font(Type::Strong))
-                            .color(palette.text),
-                    );
-                    ui.label(
-                        RichText::new(say(what, ui))
-                            .font(theme.font(Type::Body))
-                            .color(palette.muted),
-                    );
-                    ui.end_row();
+            ui.set_width(width);
+            ScrollArea::vertical().max_height(most).auto_shrink([false, true]).show(ui, |ui| {
+                ui.spacing_mut().item_spacing = vec2(space::L, space::XS);
+                for (key, sentence) in &rows {
+                    ui.horizontal_top(|ui| {
+                        let column = vec2(keys, 0.0);
+                        ui.allocate_ui_with_layout(column, Layout::top_down(Align::Min), |ui| {
+                            ui.set_width(keys);
+                            let key = RichText::new(key).font(theme.font(Type::Strong));
+                            ui.add(egui::Label::new(key.color(palette.text)).wrap());
+                        });
+                        let words = RichText::new(sentence).font(theme.font(Type::Body));
+                        ui.add(egui::Label::new(words.color(palette.muted)).wrap());
+                    });
                 }
             });
         });

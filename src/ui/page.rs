@@ -8,6 +8,7 @@ use super::library_panel;
 use super::notices::NoticePlace;
 use super::out::Out;
 use super::overlays;
+use super::presenter::presenter_ui;
 use super::stage::{Paint, stage_panel_ui};
 use super::state::{Layout, UiState};
 use super::text;
@@ -15,6 +16,7 @@ use super::theme::{palette_of, space, theme_of};
 use super::timeline::{CurveCache, more_height, timeline_panel_ui};
 use super::top_bar;
 use eframe::egui::accesskit::Role;
+use eframe::egui::scroll_area::{DragScroll, ScrollSource};
 use eframe::egui::{self, Frame, Margin, Panel, Rect, ScrollArea, Stroke, Ui, vec2};
 use segue_session::{Key, Session};
 
@@ -37,7 +39,9 @@ pub(crate) fn show(
     let has_room = ui.available_width() >= MAP_ROOM * theme_of(ui).scale();
     state.labs.graph.has_map_panel =
         has_room && labs::has_side_panel(session) && !lessons_panel::is_open(session);
-    if session.params().is_on(Key::Embed) {
+    if state.presenter.is_on {
+        presenter_ui(session, state, &mut out, paint, ui);
+    } else if session.params().is_on(Key::Embed) {
         embedded_ui(session, state, curves, &mut out, paint, ui);
     } else {
         match layout {
@@ -77,9 +81,16 @@ fn scrolling_frame(ui: &Ui, horizontal: f32, vertical: f32) -> Frame {
     frame
 }
 
+/// Returns an area that scrolls by the wheel, its bar, and from the first touch on by a finger.
+fn scroll_area(ui: &Ui) -> ScrollArea {
+    let by_finger = ScrollSource { drag: DragScroll::Always, ..ScrollSource::default() };
+    let source = if theme_of(ui).touch { by_finger } else { ScrollSource::default() };
+    ScrollArea::vertical().scroll_source(source)
+}
+
 /// Draws the scrolled content of a [`scrolling_frame`], as wide as in a panel that does not scroll.
 fn scrolled_ui(horizontal: f32, ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
-    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+    scroll_area(ui).auto_shrink(false).show(ui, |ui| {
         let margin = Margin { right: (horizontal - BAR_MARGIN) as i8, ..Margin::ZERO };
         Frame::new().inner_margin(margin).show(ui, content);
     });
@@ -99,6 +110,12 @@ fn footer_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui)
     }
 }
 
+/// Returns the height of the bar at the top: a row that can be pressed, and its margins.
+fn bar_height(ui: &Ui) -> f32 {
+    let theme = theme_of(ui);
+    (48.0 * theme.scale()).max(theme.row_height() + 2.0 * space::S).round()
+}
+
 /// The least width of the page with room for the map of a graph beside the stage, points.
 const MAP_ROOM: f32 = 1000.0;
 /// The gap between a scroll bar and the edge of its panel, points.
@@ -116,20 +133,32 @@ fn desk_ui(
     let scale = theme_of(ui).scale();
     let height = ui.available_height();
     let frame = panel_frame(ui, space::L, space::S);
-    Panel::top("top bar").exact_size(48.0 * scale).frame(frame).show(ui, |ui| {
+    Panel::top("top bar").exact_size(bar_height(ui)).frame(frame).show(ui, |ui| {
         kit::set_role(Role::Banner, text::TOP_BAR, ui);
         top_bar::top_bar_ui(session, layout, state, out, ui);
     });
+    let lesson = lessons_panel::is_open(session);
+    // A lesson without a panel of its own shares that of the parameters, which is then as high as
+    // the page: text needs the lines more than the timeline the width.
+    let shared = lesson && layout == Layout::Tablet;
+    let parameters = |state: &mut UiState, out: &mut Out, ui: &mut Ui| {
+        lab_side_ui(session, layout, shared, state, out, ui);
+    };
+    if shared {
+        parameters(state, out, ui);
+    }
+    // No panel may be smaller than its contents: they would cover the next one.
+    let least = state.timeline_least.min(0.55 * height);
     Panel::bottom("timeline")
-        .exact_size(timeline_height(session, height, scale))
+        .exact_size(timeline_height(session, height, scale).max(least).round())
         .frame(panel_frame(ui, space::L, space::S))
         .resizable(false)
         .show(ui, |ui| {
             kit::set_role(Role::Region, text::TIMELINE, ui);
             timeline_panel_ui(session, layout, curves, state, out, ui);
+            note_least_height(state, ui);
         });
     let side = |ui: &Ui| panel_frame(ui, space::M, space::M);
-    let lesson = lessons_panel::is_open(session);
     if lesson && layout == Layout::Desk {
         Panel::left("lesson")
             .exact_size(lessons_panel::width(ui.available_width(), scale))
@@ -137,12 +166,10 @@ fn desk_ui(
             .resizable(false)
             .show(ui, |ui| {
                 kit::set_role(Role::Complementary, text::LESSON, ui);
-                lessons_panel::lessons_panel_ui(session, state, out, ui);
+                lessons_panel::lessons_panel_ui(session, false, state, out, ui);
             });
     }
-    // A lesson and the map of the graph leave no room for the library.
-    let drawer = layout == Layout::Tablet || lesson || labs::has_side_panel(session);
-    if state.library_open || !drawer {
+    if state.library_open || !has_drawer(session, layout) {
         Panel::left("library").exact_size(244.0 * scale).frame(side(ui)).resizable(false).show(
             ui,
             |ui| {
@@ -151,28 +178,9 @@ fn desk_ui(
             },
         );
     }
-    // A lesson without a panel of its own shares that of the parameters.
-    let shared = lesson && layout == Layout::Tablet;
-    Panel::right("lab")
-        .exact_size(if shared { 340.0 } else { 288.0 } * scale)
-        .frame(scrolling_frame(ui, space::L, space::M))
-        .resizable(false)
-        .show(ui, |ui| {
-            kit::set_role(Role::Form, text::PARAMETERS, ui);
-            if shared {
-                lessons_panel::lesson_or_parameters_ui(state, ui);
-                if !state.lesson_behind {
-                    lessons_panel::lessons_panel_ui(session, state, out, ui);
-                    return;
-                }
-            }
-            if drawer {
-                library_panel::library_button_ui(state, ui);
-                ui.add_space(space::S);
-            }
-            footer_ui(session, state, out, ui);
-            scrolled_ui(space::L, ui, |ui| labs::lab_panel_ui(session, state, out, ui));
-        });
+    if !shared {
+        parameters(state, out, ui);
+    }
     if state.labs.graph.has_map_panel {
         Panel::right("graph map")
             .exact_size((labs::side_panel_share(session) * ui.available_width()).round())
@@ -193,6 +201,84 @@ fn desk_ui(
 fn timeline_height(session: &Session, height: f32, scale: f32) -> f32 {
     let more = (more_height(session) * scale).min(0.16 * height);
     ((214.0 * scale).min(0.31 * height) + more).round()
+}
+
+/// Returns whether the library is a drawer: a lesson and the map of the graph leave no room for it.
+fn has_drawer(session: &Session, layout: Layout) -> bool {
+    layout == Layout::Tablet || lessons_panel::is_open(session) || labs::has_side_panel(session)
+}
+
+/// Draws the panel of the parameters, which a lesson may share.
+fn lab_side_ui(
+    session: &Session,
+    layout: Layout,
+    shared: bool,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
+    let scale = theme_of(ui).scale();
+    Panel::right("lab")
+        .exact_size(if shared { 340.0 } else { 288.0 } * scale)
+        .frame(scrolling_frame(ui, space::L, space::M))
+        .resizable(false)
+        .show(ui, |ui| {
+            kit::set_role(Role::Form, text::PARAMETERS, ui);
+            if shared {
+                lessons_panel::lesson_or_parameters_ui(state, ui);
+                if !state.lesson_behind {
+                    lesson_with_controls_ui(session, state, out, ui);
+                    return;
+                }
+            }
+            if has_drawer(session, layout) {
+                library_panel::library_button_ui(state, ui);
+                ui.add_space(space::S);
+            }
+            footer_ui(session, state, out, ui);
+            scrolled_ui(space::L, ui, |ui| labs::lab_panel_ui(session, state, out, ui));
+        });
+}
+
+/// Draws a lesson, and below it what it speaks of and what the parameters behind it would show.
+fn lesson_with_controls_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    if lessons_panel::has_controls(session) {
+        let most = (CONTROLS_SHARE * ui.available_height()).round();
+        let size = state.lesson_controls.map_or(most, |needed| needed.min(most));
+        let panel = Panel::bottom("lesson controls").exact_size(size).frame(Frame::new());
+        panel.resizable(false).show(ui, |ui| {
+            ui.add_space(space::S);
+            let margin = Margin { right: (space::L - BAR_MARGIN) as i8, ..Margin::ZERO };
+            let shown = scroll_area(ui).auto_shrink(false).show(ui, |ui| {
+                Frame::new().inner_margin(margin).show(ui, |ui| {
+                    let room = most - FIGURE_REST * theme_of(ui).scale();
+                    lessons_panel::controls_ui(session, room, state, out, ui);
+                });
+            });
+            let needed = Some((shown.content_size.y + space::S).ceil());
+            if state.lesson_controls != needed {
+                state.lesson_controls = needed;
+                ui.ctx().request_repaint();
+            }
+        });
+    }
+    lessons_panel::lessons_panel_ui(session, false, state, out, ui);
+}
+
+/// The room below a figure for its legend, points.
+const FIGURE_REST: f32 = 40.0;
+/// The greatest share of a lesson's panel that goes to the controls that it speaks of.
+const CONTROLS_SHARE: f32 = 0.45;
+
+/// Notes the height that the panel of the timeline needs to show all of its contents, for the next
+/// frame.
+fn note_least_height(state: &mut UiState, ui: &Ui) {
+    let bottom = kit::take_least_bottom(ui);
+    let least = bottom.map_or(0.0, |bottom| bottom - ui.max_rect().top() + 2.0 * space::S);
+    if (least - state.timeline_least).abs() > 0.5 {
+        state.timeline_least = least;
+        ui.ctx().request_repaint();
+    }
 }
 
 /// Draws the timeline where room is scarce. Strips of walks and drives fill the room that they get;
@@ -228,9 +314,8 @@ fn phone_ui(
     paint: Paint<'_>,
     ui: &mut Ui,
 ) {
-    let scale = theme_of(ui).scale();
     let frame = panel_frame(ui, space::M, space::S);
-    Panel::top("top bar").exact_size(48.0 * scale).frame(frame).show(ui, |ui| {
+    Panel::top("top bar").exact_size(bar_height(ui)).frame(frame).show(ui, |ui| {
         kit::set_role(Role::Banner, text::TOP_BAR, ui);
         top_bar::top_bar_ui(session, Layout::Phone, state, out, ui);
     });
@@ -254,7 +339,7 @@ fn phone_ui(
         if lesson && !state.library_open {
             lessons_panel::lesson_or_parameters_ui(state, ui);
             if !state.lesson_behind {
-                lessons_panel::lessons_panel_ui(session, state, out, ui);
+                lessons_panel::lessons_panel_ui(session, true, state, out, ui);
                 return;
             }
         }

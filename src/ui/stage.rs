@@ -5,12 +5,14 @@ mod camera;
 pub(crate) mod framing;
 mod pane;
 mod pick;
+mod swipe;
 mod verdicts;
 
-use self::buttons::{camera_buttons_ui, pane_switch_ui};
+use self::buttons::camera_buttons_ui;
 use self::camera::camera_input;
 use self::pane::pane_ui;
 use self::pick::pick_ui;
+use self::swipe::{pane_switch_ui, switch_height};
 use self::verdicts::verdicts;
 use crate::ui::appearance::stage_theme;
 use crate::ui::clip_drag::take_drop_on_pane;
@@ -21,6 +23,8 @@ use crate::ui::state::{Layout, UiState};
 use crate::ui::theme::{palette_of, space, theme_of};
 use eframe::egui::{self, Rect, Sense, Ui, pos2};
 use segue_session::Session;
+
+pub(crate) use self::swipe::Swipe;
 
 /// Draws the 3D picture: the whole stage, and for each pane that is shown its index in the session
 /// and its place.
@@ -51,14 +55,17 @@ fn stage_ui(
     state.stage = stage;
     let panes = session.panes();
     state.shown_pane = state.shown_pane.min(panes.len().saturating_sub(1));
-    let shown: Vec<(usize, Rect)> = if layout == Layout::Phone {
-        vec![(state.shown_pane, stage)]
-    } else {
-        columns(stage, panes.len()).enumerate().collect()
+    // A phone, or a presenter, shows one pane at a time.
+    let is_switched = layout == Layout::Phone && panes.len() > 1;
+    let alone = (layout == Layout::Phone).then_some(state.shown_pane);
+    let shown: Vec<(usize, Rect)> = match alone.or(state.presenter.pane_alone(panes.len())) {
+        Some(pane) => vec![(pane, stage)],
+        None => columns(stage, panes.len()).enumerate().collect(),
     };
     let response = ui.allocate_rect(stage, Sense::click_and_drag());
     on_stage::frame_once(session, state, out);
-    let takes_drag = on_stage::takes_drag(session, &shown, &response, state, out, ui);
+    let takes_drag = on_stage::takes_drag(session, &shown, &response, state, out, ui)
+        || (is_switched && swipe::takes_drag(panes.len(), &response, state, ui));
     camera_input(session, &response, takes_drag, out, ui);
     paint(stage, &shown, ui);
     on_stage::handles_ui(session, &shown, &response, state, out, ui);
@@ -75,13 +82,17 @@ fn stage_ui(
             numbers_top = numbers_top.min(pane_ui(pane, index, &verdicts, session, rect, out, ui));
         }
     }
-    if !takes_drag {
+    if !takes_drag && !state.presenter.is_on {
         pick_ui(session, &shown, &response, state, out, ui);
     }
-    if layout == Layout::Phone && panes.len() > 1 {
-        pane_switch_ui(panes.len(), stage, state, ui);
+    let mut free = stage.with_min_y(stage.top() + kit::pane_header_height(ui));
+    if is_switched {
+        pane_switch_ui(session, free, state, ui);
+        free.min.y += switch_height(ui);
     }
-    camera_buttons_ui(session, stage, state, out, ui);
+    if !state.presenter.is_on {
+        camera_buttons_ui(session, free, layout, state, out, ui);
+    }
     on_stage::controls_ui(session, stage, layout, state, ui);
     let roomy = numbers_top - stage.top() > 240.0 * theme_of(ui).scale();
     // A pane without a result needs no hint.

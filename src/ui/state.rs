@@ -4,6 +4,8 @@ use super::labs::states::LabStates;
 use super::language::Language;
 use super::library_panel::LibraryState;
 use super::notices::NoticePlace;
+use super::presenter::Presenter;
+use super::stage::Swipe;
 use eframe::egui::Rect;
 use glam::{DVec2, Vec3};
 use segue_scene::Camera;
@@ -88,8 +90,16 @@ pub(crate) struct UiState {
     pub(crate) lesson_behind: bool,
     /// The lesson whose answer is shown.
     pub(crate) answered: Option<String>,
+    /// The least height of the timeline that shows all of it, points; of the last frame.
+    pub(crate) timeline_least: f32,
+    /// The height of what the lesson speaks of, below its text, points; `None` before it was drawn.
+    pub(crate) lesson_controls: Option<f32>,
     /// The pane that a phone shows.
     pub(crate) shown_pane: usize,
+    /// The finger that may swipe from one pane to the next.
+    pub(crate) swipe: Option<Swipe>,
+    /// The presenter mode.
+    pub(crate) presenter: Presenter,
     /// The clip whose name is being typed.
     pub(crate) renaming: Option<Typing>,
     /// The clip whose frame rate is being typed.
@@ -150,7 +160,11 @@ impl Default for UiState {
             help_open: false,
             lesson_behind: false,
             answered: None,
+            timeline_least: 0.0,
+            lesson_controls: None,
             shown_pane: 0,
+            swipe: None,
+            presenter: Presenter::default(),
             renaming: None,
             typed_fps: None,
             details: None,

@@ -38,13 +38,14 @@ mod library;
 mod path;
 mod register;
 mod samples;
+mod screens;
 
 const DESK: Vec2 = vec2(1440.0, 900.0);
 const PHONE: Vec2 = vec2(390.0, 844.0);
-const DARK: Theme = Theme { dark: true, projector: false };
-const LIGHT: Theme = Theme { dark: false, projector: false };
+const DARK: Theme = Theme { dark: true, projector: false, presents: false, touch: false };
+const LIGHT: Theme = Theme { dark: false, ..DARK };
 
-const HALL: Theme = Theme { dark: true, projector: true };
+const HALL: Theme = Theme { projector: true, ..DARK };
 
 /// A page without a renderer.
 struct Page {
@@ -95,10 +96,16 @@ fn page(link: &str) -> Page {
 }
 
 fn harness(size: Vec2, theme: Theme, page: Page) -> Harness<'static, Page> {
-    let builder =
-        Harness::builder().with_size(size).with_max_steps(60).with_context_setup(move |ctx| {
-            theme.install(ctx);
-        });
+    stepped_harness(size, theme, 0.25, page)
+}
+
+/// Shows a page by frames of `dt_secs`.
+fn stepped_harness(size: Vec2, theme: Theme, dt_secs: f32, page: Page) -> Harness<'static, Page> {
+    let builder = Harness::builder()
+        .with_size(size)
+        .with_max_steps(60)
+        .with_step_dt(dt_secs)
+        .with_context_setup(move |ctx| theme.install(ctx));
     let mut harness = builder.build_ui_state(
         |ui, page: &mut Page| {
             let mut places: Vec<(usize, Rect)> = Vec::new();

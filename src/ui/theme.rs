@@ -40,18 +40,26 @@ pub(crate) mod radius {
 /// The least height of a target for pointer or finger, points.
 pub(crate) const HIT: f32 = 24.0;
 
-/// A theme: dark or light, for a desk or for a projector.
+/// The least height of a target for a finger, points: that of a fingertip.
+const TOUCH_HIT: f32 = 44.0;
+
+/// A theme: dark or light, for a desk or for a projector, for a mouse or for fingers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a choice of its own")]
 pub(crate) struct Theme {
     /// Light on dark.
     pub(crate) dark: bool,
     /// For a lecture hall: larger text and thicker lines.
     pub(crate) projector: bool,
+    /// For the stage alone, seen from the last row: text larger still.
+    pub(crate) presents: bool,
+    /// For fingers: everything that can be pressed is as high as a fingertip.
+    pub(crate) touch: bool,
 }
 
 impl Default for Theme {
     fn default() -> Self {
-        Self { dark: true, projector: false }
+        Self { dark: true, projector: false, presents: false, touch: false }
     }
 }
 
@@ -92,7 +100,13 @@ impl Theme {
 
     /// Returns the scale of sizes, 1 at a desk.
     pub(crate) fn scale(self) -> f32 {
-        if self.projector { 1.25 } else { 1.0 }
+        if self.presents {
+            1.5
+        } else if self.projector {
+            1.25
+        } else {
+            1.0
+        }
     }
 
     /// Returns the font of a step of the type scale.
@@ -115,14 +129,20 @@ impl Theme {
         )
     }
 
-    /// Returns the height of a row that can be pressed: at least [`HIT`], more on a projector.
+    /// Returns the least height and width of a target: [`HIT`], more for fingers.
+    pub(crate) fn hit(self) -> f32 {
+        if self.touch { TOUCH_HIT } else { HIT }
+    }
+
+    /// Returns the height of a row that can be pressed: at least [`Self::hit`], more on a
+    /// projector.
     pub(crate) fn row_height(self) -> f32 {
-        (28.0 * self.scale()).max(HIT).round()
+        (28.0 * self.scale()).max(self.hit()).round()
     }
 
     /// Returns the width of hairlines and outlines.
     pub(crate) fn hairline(self) -> f32 {
-        if self.projector { 1.5 } else { 1.0 }
+        if self.projector || self.presents { 1.5 } else { 1.0 }
     }
 
     /// Returns the fonts of the app, which [`Self::install`] sets once per context.
@@ -184,7 +204,7 @@ impl Theme {
         let spacing = &mut style.spacing;
         spacing.item_spacing = Vec2::new(space::S, space::S);
         spacing.button_padding = Vec2::new(space::M, space::XS);
-        spacing.interact_size = Vec2::new(HIT, self.row_height());
+        spacing.interact_size = Vec2::new(self.hit(), self.row_height());
         spacing.window_margin = Margin::same(12);
         spacing.menu_margin = Margin::same(6);
         spacing.menu_spacing = space::XS;
@@ -325,5 +345,7 @@ mod tests {
         assert!(desk.font(Type::Title).size > desk.font(Type::Body).size);
         assert!(desk.font(Type::Body).size > desk.font(Type::Small).size);
         assert!(desk.row_height() >= HIT);
+        let fingers = Theme { touch: true, ..desk };
+        assert!(fingers.row_height() >= 44.0 && fingers.font(Type::Body) == desk.font(Type::Body));
     }
 }

@@ -26,6 +26,26 @@ use segue_session::choices;
 use segue_session::{Key, Pane, Session, frame_at};
 use segue_text::{Message, msg};
 
+/// Draws the seconds alone, with the playhead and the ends of the loop.
+pub(crate) fn scrub_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    let Some(outcome) = session.main_outcome() else {
+        return;
+    };
+    let params = session.params();
+    let timeline = Timeline {
+        duration: session.duration_secs(),
+        now: session.now_secs(),
+        fps: outcome.motion.clip().fps(),
+        transition: outcome.transition.map(|transition| transition.start_secs..transition.end_secs),
+        in_point: params.optional(Key::In),
+        out_point: params.optional(Key::Out),
+        ..Timeline::default()
+    };
+    for event in kit::timeline_ui(&timeline, ui) {
+        timeline_event(event, &[], session, outcome, out);
+    }
+}
+
 /// Draws the panel: the strip of a walk or drive, else the timeline of the result.
 pub(crate) fn timeline_panel_ui(
     session: &Session,

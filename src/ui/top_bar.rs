@@ -1,10 +1,10 @@
 //! The bar at the top: the labs, and the commands for the whole page.
 
 use super::commands::{UiCommand, command_button_ui, command_icon_ui, command_item_ui};
-use super::kit::{self, Button, Icon};
+use super::kit::{self, Button, Icon, MenuItem};
 use super::language::{Word, say};
-use super::out::Out;
-use super::state::{Layout, UiState};
+use super::out::{Action, Out};
+use super::state::{Filming, Layout, UiState};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Align, Layout as Flow, RectAlign, RichText, Sense, Ui, vec2};
@@ -65,6 +65,12 @@ fn lab_tabs_ui(session: &Session, ui: &mut Ui) -> Option<&'static str> {
 fn actions_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let link = if layout == Layout::Phone { text::LINK } else { text::COPY_LINK };
     let button = Button::new(link).primary().icon(Icon::Link);
+    if layout != Layout::Phone {
+        // Drawn before the button at its left: the bar is drawn from its right end.
+        let more = Button::icon_only(Icon::ChevronDown, text::SHARE);
+        let opener = kit::button_ui(more, ui);
+        kit::menu_ui(&opener, RectAlign::BOTTOM_END, |ui| share_menu_ui(session, state, out, ui));
+    }
     command_button_ui(UiCommand::CopyLink, button, session, state, out, ui);
     if layout == Layout::Phone {
         let opener = kit::icon_button_ui(Icon::Menu, text::MENU, ui);
@@ -89,6 +95,13 @@ fn actions_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut 
     command_button_ui(UiCommand::ToggleLessons, lessons, session, state, out, ui);
 }
 
+/// Draws the menu behind the button that copies the link.
+fn share_menu_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    for command in [UiCommand::CopyLinkAsShown, UiCommand::CopyReport, UiCommand::Present] {
+        command_item_ui(command, session, state, out, ui);
+    }
+}
+
 /// Draws the menu of a phone, with the commands that have no room in the bar.
 fn page_menu_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     for command in [
@@ -97,11 +110,25 @@ fn page_menu_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut 
         UiCommand::ToggleCompare,
         UiCommand::Undo,
         UiCommand::Redo,
+        UiCommand::CopyLinkAsShown,
         UiCommand::CopyReport,
+        UiCommand::Present,
         UiCommand::ToggleTheme,
         UiCommand::SwitchLanguage,
         UiCommand::ToggleHelp,
     ] {
         command_item_ui(command, session, state, out, ui);
+    }
+    // On the stage of a phone they would cover the motion.
+    let Filming { pictures, films, secs } = state.filming;
+    let recording = if secs.is_some() { text::STOP_RECORDING } else { text::RECORD };
+    for (is_there, icon, name, action) in [
+        (pictures, Icon::Picture, text::SAVE_PICTURE, Action::SavePicture),
+        (films, Icon::Record, recording, Action::Record),
+    ] {
+        let item = MenuItem { text: name.into(), icon: Some(icon), ..MenuItem::default() };
+        if is_there && kit::menu_item_ui(item, ui).clicked() {
+            out.actions.push(action);
+        }
     }
 }

@@ -51,6 +51,21 @@ pub(crate) fn prefers_reduced_motion() -> bool {
     false
 }
 
+/// Returns `false`, because a window has a mouse.
+pub(crate) fn has_coarse_pointer() -> bool {
+    false
+}
+
+/// Shows the window on the whole screen, or as a window again.
+pub(crate) fn set_fullscreen(whole: bool, ctx: &egui::Context) {
+    ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(whole));
+}
+
+/// Returns whether the window is shown on the whole screen.
+pub(crate) fn is_fullscreen(ctx: &egui::Context) -> bool {
+    ctx.input(|input| input.viewport().fullscreen == Some(true))
+}
+
 /// Returns the tags of the user's languages, the preferred one first.
 pub(crate) fn languages() -> Vec<String> {
     ["LC_ALL", "LC_MESSAGES", "LANG"]

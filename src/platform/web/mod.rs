@@ -19,9 +19,9 @@ pub(crate) use frame_pacer::FramePacer;
 pub(crate) use gamepad::gamepad;
 pub(crate) use page::{
     READS_IN_BACKGROUND, WORKS_BETWEEN_FRAMES, between_frames, confirm_leaving_while, full_link,
-    is_framed, languages, listen, location_query, next_frame, next_turn, now_ms, open_page,
-    prefers_reduced_motion, replace_query, requested_backend, set_page_language, sleep,
-    watch_hiding, watch_navigation,
+    has_coarse_pointer, is_framed, is_fullscreen, languages, listen, location_query, next_frame,
+    next_turn, now_ms, open_page, prefers_reduced_motion, replace_query, requested_backend,
+    set_fullscreen, set_page_language, sleep, watch_hiding, watch_navigation,
 };
 pub(crate) use reader::{LargeFile, Reader, set_worker_factory, update_memory, wasm_memory_bytes};
 pub(crate) use snapshot::{Area, area_of, inline_picture, snapshot};

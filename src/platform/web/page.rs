@@ -3,7 +3,7 @@
 use crate::platform::address::{backend_of, state_of, with_backend_of};
 use crate::platform::{Inbox, Incoming};
 use eframe::egui;
-use js_sys::{Function, Promise};
+use js_sys::{Function, Promise, Reflect};
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
@@ -142,9 +142,49 @@ pub(crate) fn confirm_leaving_while(is_unsafe: impl Fn() -> bool + 'static) {
 
 /// Returns whether the user has set their system to reduced motion.
 pub(crate) fn prefers_reduced_motion() -> bool {
-    let query = window()
-        .and_then(|window| window.match_media("(prefers-reduced-motion: reduce)").ok().flatten());
+    matches_media("(prefers-reduced-motion: reduce)")
+}
+
+/// Returns whether the page is worked by fingers: whether a finger is the main pointer.
+pub(crate) fn has_coarse_pointer() -> bool {
+    matches_media("(pointer: coarse)")
+}
+
+fn matches_media(query: &str) -> bool {
+    let query = window().and_then(|window| window.match_media(query).ok().flatten());
     query.is_some_and(|query| query.matches())
+}
+
+/// Shows the page on the whole screen, or in its window again. A browser may refuse, as inside the
+/// frame of another page; the page then stays as it is.
+pub(crate) fn set_fullscreen(whole: bool, ctx: &egui::Context) {
+    let Some(document) = document() else { return };
+    let root = document.document_element();
+    if !whole && is_fullscreen(ctx) {
+        attempt(&document, "exitFullscreen");
+    } else if let (true, Some(root)) = (whole, root) {
+        attempt(&root, "requestFullscreen");
+    }
+}
+
+/// Calls a method that answers by a promise, and may be refused.
+fn attempt(target: &JsValue, method: &'static str) {
+    let call = Reflect::get(target, &method.into()).and_then(|call| call.dyn_into::<Function>());
+    let answer =
+        call.and_then(|call| call.call0(target)).and_then(|answer| answer.dyn_into::<Promise>());
+    match answer {
+        Ok(promise) => spawn_local(async move {
+            if let Err(error) = JsFuture::from(promise).await {
+                log::info!("{method}: {}", super::js_error_text(&error));
+            }
+        }),
+        Err(error) => log::info!("{method}: {}", super::js_error_text(&error)),
+    }
+}
+
+/// Returns whether the page is shown on the whole screen.
+pub(crate) fn is_fullscreen(_ctx: &egui::Context) -> bool {
+    document().is_some_and(|document| document.fullscreen_element().is_some())
 }
 
 /// Returns whether the page is hidden, so that nothing is drawn.

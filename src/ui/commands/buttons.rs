@@ -38,7 +38,7 @@ pub(crate) fn command_button_ui(
     let row = command.row();
     let name = name_of(command, state);
     let button = button.name(name).hint(Text::EMPTY).selected(command.is_on(session));
-    let enabled = command.is_enabled(session);
+    let enabled = command.is_enabled(session, state);
     let response = ui.add_enabled_ui(enabled, |ui| kit::button_ui(button, ui)).inner;
     // Made only while the pointer is over the button.
     let response = response.on_hover_ui(|ui| {
@@ -62,15 +62,16 @@ pub(crate) fn command_item_ui(
     let shortcut = keys_of(&[command]);
     let (text, icon) = (name_of(command, state), command.row().icon);
     let item = MenuItem { text: text.into(), icon, shortcut: (&shortcut).into(), chosen: false };
-    let enabled = command.is_enabled(session);
+    let enabled = command.is_enabled(session, state);
     if ui.add_enabled_ui(enabled, |ui| kit::menu_item_ui(item, ui)).inner.clicked() {
         command.run(&mut Target { session, state, out, ui });
     }
 }
 
 /// Returns the name of a command where its label alone is not enough.
-fn name_of(command: UiCommand, state: &UiState) -> Word {
+pub(super) fn name_of(command: UiCommand, state: &UiState) -> Word {
     match command {
+        UiCommand::Present if state.presenter.is_on => text::STOP_PRESENTING,
         UiCommand::SwitchLanguage => state.language.next().switch(),
         UiCommand::ToggleProjector => text::PROJECTOR,
         _ => command.row().text,

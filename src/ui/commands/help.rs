@@ -36,13 +36,18 @@ const HELP: &[HelpRow] = &[
     HelpRow::Commands(&[UiCommand::ToggleCompare], Word::new("compare full, half, third")),
     HelpRow::Commands(&[UiCommand::ToggleLessons], Word::new("lessons; Esc closes them")),
     HelpRow::Labs(Word::new("the labs, in order")),
+    HelpRow::Commands(&[UiCommand::Present], Word::new("present: the stage alone; Esc ends it")),
+    HelpRow::Commands(
+        &[UiCommand::NextStep, UiCommand::PreviousStep],
+        Word::new("next or previous lesson, pane or lab while presenting"),
+    ),
     HelpRow::Commands(&[UiCommand::ToggleTopView], Word::new("top view")),
     HelpRow::Commands(&[UiCommand::FrameEverything], Word::new("frame all")),
     HelpRow::Commands(&[UiCommand::ToggleFollow], Word::new("camera follow on or off")),
     HelpRow::Commands(&[UiCommand::NextLook], Word::new("body, bones, both")),
     HelpRow::Gesture(
         Word::new("W A S D, arrows"),
-        Word::new("drive the character of the Match lab; Shift runs, Q strafes"),
+        Word::new("in the Match lab: drive; Shift runs, Q strafes"),
     ),
     HelpRow::Commands(&[UiCommand::SwapClips], Word::new("swap A and B")),
     HelpRow::Gesture(
@@ -57,12 +62,10 @@ const HELP: &[HelpRow] = &[
     ),
     HelpRow::Commands(&[UiCommand::ToggleHelp], Word::new("this list")),
     HelpRow::Gesture(
-        Word::new("drag"),
+        Word::new("drag, W A S D"),
         Word::new("turn the camera; with Shift or the right button, move it"),
     ),
-    HelpRow::Gesture(Word::new("W A S D"), Word::new("the same, except in the Match lab")),
-    HelpRow::Gesture(Word::new("wheel, pinch"), Word::new("zoom")),
-    HelpRow::Gesture(Word::new("Page up, down"), Word::new("zoom")),
+    HelpRow::Gesture(Word::new("wheel, pinch, Page up or down"), Word::new("zoom")),
 ];
 
 /// Returns the list of shortcuts: the keys, and what they do.

@@ -54,7 +54,7 @@ pub(in crate::ui) const LAB_KEYS: [Keyboard; 13] = [
 ];
 
 /// The commands that the keyboard gives, besides [`UiCommand::OpenLab`].
-const WITH_KEYS: [UiCommand; 26] = [
+const WITH_KEYS: [UiCommand; 29] = [
     UiCommand::Redo,
     UiCommand::Undo,
     UiCommand::CopyLink,
@@ -81,6 +81,9 @@ const WITH_KEYS: [UiCommand; 26] = [
     UiCommand::FrameEverything,
     UiCommand::ToggleFollow,
     UiCommand::NextLook,
+    UiCommand::Present,
+    UiCommand::NextStep,
+    UiCommand::PreviousStep,
 ];
 
 /// Gives the commands whose keys are pressed, unless text is being typed.
@@ -115,7 +118,7 @@ pub(crate) fn take_keys(session: &Session, state: &mut UiState, out: &mut Out, u
     // [`WITH_KEYS`] has the longer chord of a key first: a key without modifiers takes any.
     for command in WITH_KEYS {
         let row = command.row();
-        let can = is_free(row.focus) && command.is_enabled(session);
+        let can = is_free(row.focus) && command.is_enabled(target.session, target.state);
         if can && row.triggers.iter().any(|&trigger| is_pressed(trigger)) {
             command.run(&mut target);
         }

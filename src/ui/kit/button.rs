@@ -4,7 +4,7 @@ use super::assistive::describe;
 use super::icon::{Icon, paint_icon};
 use super::paint::{Run, faded, focus_ring, line_of};
 use crate::ui::language::{Text, say};
-use crate::ui::theme::{HIT, Palette, Type, palette_of, radius, space, theme_of};
+use crate::ui::theme::{Palette, Type, palette_of, radius, space, theme_of};
 use eframe::egui::{
     Align2, Color32, CursorIcon, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2,
     vec2,
@@ -153,7 +153,7 @@ pub(crate) fn button_ui(button: Button<'_>, ui: &mut Ui) -> Response {
         content += icons * 6.0;
     }
     let padding = if button.text.is_empty() { (height - icon_size) / 2.0 } else { space::M };
-    let size = vec2((content + 2.0 * padding).max(HIT), height);
+    let size = vec2((content + 2.0 * padding).max(theme.hit()), height);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let response = response.on_hover_cursor(CursorIcon::PointingHand);
 

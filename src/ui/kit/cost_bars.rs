@@ -3,7 +3,7 @@
 use super::assistive::describe;
 use super::paint::{Run, focus_ring, full_width, line_of, put};
 use crate::ui::language::{Text, Word, say};
-use crate::ui::theme::{HIT, Type, palette_of, radius, space, theme_of};
+use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{
     Align2, Color32, CursorIcon, Rangef, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2,
 };
@@ -50,7 +50,7 @@ pub(crate) fn cost_bars_ui(bars: &CostBars<'_>, ui: &mut Ui) -> CostResponse {
     let decimals = if most < 0.2 { 3 } else { 2 };
     let spacing = std::mem::replace(&mut ui.spacing_mut().item_spacing.y, 2.0);
     for (index, row) in bars.rows.iter().enumerate() {
-        let rect = full_width((34.0 * theme.scale()).max(HIT).round(), ui);
+        let rect = full_width((34.0 * theme.scale()).max(theme.hit()).round(), ui);
         let response = ui
             .interact(rect, ui.make_persistent_id(("cost", index)), Sense::click())
             .on_hover_cursor(CursorIcon::PointingHand);

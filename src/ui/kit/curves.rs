@@ -5,7 +5,10 @@ use super::paint::{Run, line_of, put};
 use super::time_axis::{TimeAxis, hovered_time, nice_step};
 use crate::ui::language::{Text, Word, say};
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
-use eframe::egui::{Align2, Color32, Rect, Response, Stroke, StrokeKind, Ui, pos2, vec2};
+use eframe::egui::{
+    Align2, Color32, Galley, Rect, Response, Stroke, StrokeKind, Ui, Vec2, pos2, vec2,
+};
+use std::sync::Arc;
 
 /// One curve.
 #[derive(Clone, Copy, Debug)]
@@ -135,15 +138,15 @@ pub(super) fn plots_in(place: Rect, count: usize) -> impl Iterator<Item = Rect> 
     })
 }
 
-/// Draws the quantity, and the names of the curves in their colours with their values at the
-/// playhead, in the space before them.
-pub(super) fn key_ui(curves: &Curves<'_>, area: Rect, now: f64, ui: &Ui) {
+/// Returns the quantity, and the names of the curves with their values at `now`, each with its
+/// place from the upper left corner of a space of that width.
+fn key_parts(curves: &Curves<'_>, width: f32, now: f64, ui: &Ui) -> Vec<(Vec2, Arc<Galley>)> {
     let palette = palette_of(ui);
     let title = format!("{} {}", say(curves.title, ui), say(curves.unit, ui));
     let title = Run::new(Text::Data(title.trim()), Type::Small, palette.muted);
-    let title = line_of(&[title], area.width(), ui);
-    let at = put(ui.painter(), area.left_top() + vec2(0.0, space::XS), Align2::LEFT_TOP, title);
-    let mut corner = pos2(area.left(), at.bottom());
+    let title = line_of(&[title], width, ui);
+    let mut corner = vec2(0.0, space::XS + title.size().y);
+    let mut parts = vec![(vec2(0.0, space::XS), title)];
     // The result first: where room is scarce, the others are left out.
     let of = |strong: bool| curves.series.iter().filter(move |series| series.strong == strong);
     for series in of(true).chain(of(false)) {
@@ -153,15 +156,32 @@ pub(super) fn key_ui(curves: &Curves<'_>, area: Rect, now: f64, ui: &Ui) {
             Run::new(series.name, Type::Small, series.ink),
             Run::new(Text::Data(&value), Type::SmallStrong, palette.text).after(space::XS),
         ];
-        let entry = line_of(&runs, area.width(), ui);
-        if corner.x > area.left() && corner.x + entry.size().x > area.right() {
-            corner = pos2(area.left(), corner.y + entry.size().y);
+        let entry = line_of(&runs, width, ui);
+        if corner.x > 0.0 && corner.x + entry.size().x > width {
+            corner = vec2(0.0, corner.y + entry.size().y);
         }
-        // The last one may overlap the height of the time's axis, which begins beside it.
-        if corner.y + entry.size().y > area.bottom() + space::S {
+        let right = corner.x + entry.size().x;
+        parts.push((corner, entry));
+        corner.x = right + space::S;
+    }
+    parts
+}
+
+/// Returns the height in which [`key_ui`] draws all names.
+pub(super) fn key_height(curves: &Curves<'_>, width: f32, now: f64, ui: &Ui) -> f32 {
+    let bottoms = key_parts(curves, width, now, ui).into_iter();
+    // The last line may overlap the height of the time's axis, which begins beside it.
+    bottoms.map(|(corner, part)| corner.y + part.size().y).fold(0.0, f32::max) - space::S
+}
+
+/// Draws the quantity, and the names of the curves in their colours with their values at the
+/// playhead, in the space before them.
+pub(super) fn key_ui(curves: &Curves<'_>, area: Rect, now: f64, ui: &Ui) {
+    for (corner, part) in key_parts(curves, area.width(), now, ui) {
+        if corner.y + part.size().y > area.height() + space::S {
             break;
         }
-        corner.x = put(ui.painter(), corner, Align2::LEFT_TOP, entry).right() + space::S;
+        put(ui.painter(), area.min + corner, Align2::LEFT_TOP, part);
     }
 }
 

@@ -562,8 +562,8 @@ fn picture(name: &str, harness: &mut Harness<'_, Mock>) {
 }
 
 const DESK: Vec2 = vec2(1440.0, 900.0);
-const DARK: Theme = Theme { dark: true, projector: false };
-const LIGHT: Theme = Theme { dark: false, projector: false };
+const DARK: Theme = Theme { dark: true, projector: false, presents: false, touch: false };
+const LIGHT: Theme = Theme { dark: false, ..DARK };
 
 /// Checks that every named widget lies within the window.
 fn assert_nothing_sticks_out(size: Vec2, harness: &Harness<'_, Mock>) {
@@ -583,7 +583,7 @@ fn assert_nothing_sticks_out(size: Vec2, harness: &Harness<'_, Mock>) {
 
 #[test]
 fn lab_fits_desk_projector_and_phone() {
-    let hall = Theme { dark: true, projector: true };
+    let hall = Theme { projector: true, ..DARK };
     let places = [
         ("desk-dark", DESK, DARK),
         ("desk-light", DESK, LIGHT),

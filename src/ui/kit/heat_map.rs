@@ -129,7 +129,8 @@ const REACH: f32 = 11.0;
 const OUT: f32 = 14.0;
 
 /// Draws the map as wide as there is room, at most `most_height` points high. Press to go there,
-/// drag to set or move a pin, drag it out or double-click it to remove it.
+/// drag to set or move a pin, drag it out or double-click it to remove it. A finger sets a pin by
+/// holding still, and drags only pins: from everywhere else it scrolls the panel.
 pub(crate) fn heat_map_ui(map: &HeatMap<'_>, most_height: f32, ui: &mut Ui) -> Vec<HeatMapEvent> {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let scale = theme.scale();
@@ -145,9 +146,15 @@ pub(crate) fn heat_map_ui(map: &HeatMap<'_>, most_height: f32, ui: &mut Ui) -> V
         Rect::from_min_size(pos2(whole.left() + margin.x, whole.top()), vec2(width, height));
     let axes = Axes { rect: field, spans: map.spans };
     let id = ui.make_persistent_id(map.label.english());
-    let response = ui.interact(field, id, Sense::click_and_drag());
+    let sense = if theme.touch { Sense::click() } else { Sense::click_and_drag() };
+    let response = ui.interact(field, id, sense);
     describe(&response, &WidgetInfo::labeled(Role::Image, true, say(map.label, ui)));
-    let events = events(map, &axes, &response, ui);
+    let events = if theme.touch {
+        let touched = touched_pins(map, &axes, id, ui);
+        touched_events(map, &axes, &response, touched.as_ref(), ui)
+    } else {
+        events(map, &axes, &response, &response, ui)
+    };
 
     let painter = ui.painter_at(field.expand(1.0));
     painter.rect_filled(field, 0.0, palette.heat[4].lerp_to_gamma(palette.heat[0], 0.8));
@@ -259,13 +266,55 @@ fn sides_ui(map: &HeatMap<'_>, axes: &Axes, stripes: f32, ui: &Ui) {
 #[derive(Clone, Copy, Debug)]
 struct Held(Option<[f64; 2]>);
 
-fn events(map: &HeatMap<'_>, axes: &Axes, response: &Response, ui: &Ui) -> Vec<HeatMapEvent> {
+/// Makes a target of a fingertip's size of each pin. Returns the one that is used.
+fn touched_pins(map: &HeatMap<'_>, axes: &Axes, id: Id, ui: &Ui) -> Option<Response> {
+    let side = theme_of(ui).hit();
+    let pins = map.pins.iter().enumerate().map(|(index, &pin)| {
+        let target = Rect::from_center_size(axes.at(pin), vec2(side, side));
+        ui.interact(target, id.with(("pin", index)), Sense::click_and_drag())
+    });
+    // All of them are made, so that each stays the widget that it was.
+    pins.fold(None, |used, pin| {
+        let is_used = pin.dragged() || pin.drag_stopped() || pin.clicked();
+        if is_used { Some(pin) } else { used }
+    })
+}
+
+/// Returns the input of a finger: on a pin, or on the map.
+fn touched_events(
+    map: &HeatMap<'_>,
+    axes: &Axes,
+    response: &Response,
+    pin: Option<&Response>,
+    ui: &Ui,
+) -> Vec<HeatMapEvent> {
+    if let Some(pin) = pin {
+        return events(map, axes, pin, response, ui);
+    }
+    let held = response.interact_pointer_pos().filter(|_| response.long_touched());
+    if let Some(pos) = held {
+        let to = axes.secs(pos);
+        return vec![HeatMapEvent::Pin { from: None, to }, HeatMapEvent::Settled];
+    }
+    events(map, axes, response, response, ui)
+}
+
+/// Returns the input to the map: by `response`, the map itself or a pin on it.
+fn events(
+    map: &HeatMap<'_>,
+    axes: &Axes,
+    response: &Response,
+    whole: &Response,
+    ui: &Ui,
+) -> Vec<HeatMapEvent> {
     let mut events = Vec::new();
-    let held_id: Id = response.id.with("held pin");
+    let held_id: Id = whole.id.with("held pin");
+    // To the corner of a pin's target.
+    let reach_of_pin = if theme_of(ui).touch { 0.71 * theme_of(ui).hit() } else { REACH };
     let near = |pos: Pos2| {
         let off = |pin: &&[f64; 2]| axes.at(**pin).distance(pos);
         let nearest = map.pins.iter().min_by(|x, y| off(x).total_cmp(&off(y)));
-        nearest.copied().filter(|pin| axes.at(*pin).distance(pos) <= REACH)
+        nearest.copied().filter(|pin| axes.at(*pin).distance(pos) <= reach_of_pin)
     };
     let reach =
         near(response.interact_pointer_pos().or(response.hover_pos()).unwrap_or(Pos2::ZERO));

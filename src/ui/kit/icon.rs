@@ -79,6 +79,8 @@ pub(crate) enum Icon {
     Sort,
     /// More commands.
     More,
+    /// Present.
+    Screen,
 }
 
 /// Draws an icon into the square in the middle of `rect`, in strokes of one colour.
@@ -274,6 +276,12 @@ pub(crate) fn paint_icon(icon: Icon, rect: Rect, color: Color32, painter: &Paint
             pen.stroke(&[(10.4, 2.6), (13.2, 5.2), (10.4, 7.8)]);
             pen.stroke(&[(13.5, 10.8), (3.0, 10.8)]);
             pen.stroke(&[(5.6, 8.2), (2.8, 10.8), (5.6, 13.4)]);
+        }
+        Icon::Screen => {
+            pen.stroke(&[(1.8, 2.8), (14.2, 2.8)]);
+            pen.stroke(&[(3.0, 3.0), (3.0, 10.4), (13.0, 10.4), (13.0, 3.0)]);
+            pen.stroke(&[(8.0, 10.6), (8.0, 12.0)]);
+            pen.stroke(&[(5.2, 14.0), (8.0, 11.6), (10.8, 14.0)]);
         }
         Icon::Sliders => {
             for (y, knob) in [(5.0, 10.5), (11.0, 5.5)] {

@@ -72,7 +72,7 @@ pub(crate) use metrics::{Metric, Rank};
 pub(crate) use notice::{
     Notice, NoticeChip, NoticeEvent, brief_progress_ui, caption_ui, notices_ui, progress_row_ui,
 };
-pub(crate) use pane::{PaneTitle, pane_footer_ui, pane_header_ui};
+pub(crate) use pane::{PaneTitle, pane_footer_ui, pane_header_height, pane_header_ui};
 pub(crate) use part_bar::{PartBar, PartBarResponse, part_bar_ui};
 pub(crate) use places::{Chosen, PlaceBar, Places, StripPlace, places_ui};
 pub(crate) use pointer_label::pointer_label_ui;
@@ -88,9 +88,9 @@ pub(crate) use switch_row::{helped_switch_row_ui, switch_row_ui};
 pub(crate) use tabs::tabs_ui;
 pub(crate) use timeline::{
     Moment, StanceEdit, StanceEvent, Stripe, Timeline, TimelineEvent, Track, corrected_hint,
-    timeline_ui,
+    take_least_bottom, timeline_ui,
 };
-pub(crate) use transport::{Transport, TransportEvent, transport_ui};
+pub(crate) use transport::{Transport, TransportEvent, play_button_ui, transport_ui};
 pub(crate) use tree::{Tree, TreeRow, tree_ui};
 pub(crate) use weight_curve::{WeightCurveEvent, WeightCurveRow, weight_curve_ui};
 #[cfg(all(test, feature = "ui-tests"))]

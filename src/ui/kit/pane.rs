@@ -37,10 +37,6 @@ pub(crate) fn pane_header_ui(title: &PaneTitle<'_>, pane: Rect, ui: &mut Ui) -> 
     let strip = Rect::from_min_size(pane.min, vec2(pane.width(), pane_header_height(ui)));
     scrim(strip, Direction::TopDown, ui);
     let mut right = strip.right() - space::M;
-    if !title.chip.is_empty() && chip_size(title.chip.into(), ui).x < strip.width() * 0.5 {
-        right = paint_chip(title.chip.into(), title.mood, pos2(right, strip.center().y), ui).left()
-            - space::S;
-    }
     let left = strip.left() + space::M;
     let mut runs = vec![Run::new(title.strong, Type::Title, palette.text)];
     if !title.text.is_empty() {
@@ -50,6 +46,18 @@ pub(crate) fn pane_header_ui(title: &PaneTitle<'_>, pane: Rect, ui: &mut Ui) -> 
     if !title.secondary.is_empty() {
         runs.push(Run::new(Text::Data("·"), Type::Body, palette.muted).after(space::XS + 1.0));
         runs.push(Run::new(title.secondary, Type::Body, palette.muted).after(space::XS + 1.0));
+    }
+    if !title.chip.is_empty() {
+        let chip = chip_size(title.chip.into(), ui);
+        let needed = line_of(&runs[..essential], f32::INFINITY, ui).size().x + space::S + chip.x;
+        if needed <= right - left {
+            let at = pos2(right, strip.center().y);
+            right = paint_chip(title.chip.into(), title.mood, at, ui).left() - space::S;
+        } else {
+            // Below a title that needs all the room: a value without its unit says nothing.
+            let at = pos2(left + chip.x, strip.bottom() + 0.5 * chip.y);
+            paint_chip(title.chip.into(), title.mood, at, ui);
+        }
     }
     // Where there is little room, the second form of the value is left out before anything is cut.
     let fits = line_of(&runs, f32::INFINITY, ui).size().x <= right - left;

@@ -70,7 +70,7 @@ fn segments_ui<T: Copy + PartialEq>(
 ) -> Option<T> {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let enabled = ui.is_enabled();
-    let well = full_width((30.0 * theme.scale()).round(), ui);
+    let well = full_width((30.0 * theme.scale()).max(theme.hit()).round(), ui);
     let line = Stroke::new(theme.hairline(), palette.line);
     ui.painter().rect(well, radius::M, palette.panel_raised, line, StrokeKind::Inside);
 

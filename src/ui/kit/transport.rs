@@ -113,13 +113,15 @@ pub(crate) fn transport_ui(transport: &Transport<'_>, ui: &mut Ui) -> Option<Tra
 
 /// Returns the height of [`transport_ui`].
 pub(crate) fn transport_height(ui: &Ui) -> f32 {
-    (36.0 * theme_of(ui).scale()).round()
+    let theme = theme_of(ui);
+    (36.0 * theme.scale()).max(theme.hit()).round()
 }
 
 /// Draws the round button that plays and pauses. Returns whether it was pressed.
 pub(crate) fn play_button_ui(playing: bool, ui: &mut Ui) -> bool {
     let palette = palette_of(ui);
-    let side = (34.0 * theme_of(ui).scale()).round();
+    let theme = theme_of(ui);
+    let side = (34.0 * theme.scale()).max(theme.hit()).round();
     let (rect, response) = ui.allocate_exact_size(vec2(side, side), Sense::click());
     let response = response.on_hover_cursor(CursorIcon::PointingHand);
     let hot = ui.ctx().animate_bool(response.id, response.hovered() || response.has_focus());

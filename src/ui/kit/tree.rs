@@ -61,7 +61,7 @@ pub(crate) fn tree_ui(
     let id = ui.make_persistent_id(tree.label.english());
     let mut folded: BTreeSet<usize> = ui.data_mut(|data| data.get_temp(id)).unwrap_or_default();
     let rows = open_rows(tree.parents, &folded);
-    let height = (HIT * theme_of(ui).scale()).round();
+    let height = (HIT * theme_of(ui).scale()).max(theme_of(ui).hit()).round();
     let focused =
         rows.iter().position(|row| ui.memory(|memory| memory.has_focus(id.with(row.item))));
     // An item that was chosen elsewhere is scrolled into sight.

@@ -76,7 +76,9 @@ const FIRST_SHARE: f64 = 0.25;
 pub(super) fn register_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     clip_sets_ui(session, out, ui);
     pair_ui(session, out, ui);
-    map_ui(session, state, out, ui);
+    // The whole map should be in sight at once.
+    let room = 0.85 * ui.clip_rect().height();
+    map_ui(session, room, state, out, ui);
     let params = session.params();
     let plain = Detail::default();
     param_row_ui(Key::WarpWith, &plain, session, out, ui);
@@ -236,9 +238,15 @@ pub(super) fn compare_warps(session: &Session, out: &mut Out) {
     out.compare(Compare::parse(query).ok());
 }
 
-/// Draws the map, its legend, and the distance of the pair under the pointer, else of the one at
-/// the playhead.
-fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+/// Draws the map, at most `room` points high, its legend, and the distance of the pair under the
+/// pointer, else of the one at the playhead.
+pub(super) fn map_ui(
+    session: &Session,
+    room: f32,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
     let palette = palette_of(ui);
     let job = session.jobs().into_iter().find(|job| job.kind == JobKind::Registering);
     let waits = job.map(|job| {
@@ -287,8 +295,6 @@ fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
         pins: &pin_secs,
         now: now.filter(inside).map(secs),
     };
-    // The whole map should be in sight at once.
-    let room = 0.85 * ui.clip_rect().height();
     for event in kit::heat_map_ui(&view, room, ui) {
         map_event(event, map, registered.first().copied(), pins, state, out);
     }
@@ -300,7 +306,8 @@ fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let known = pair.map(|frames| text::pair_apart(secs(frames), map.cm_at(frames)));
     kit::note_ui(&waits.or(known).unwrap_or_default(), palette.muted, ui);
     if pins.is_empty() {
-        kit::note_ui(text::MAP_HELP, palette.muted, ui);
+        let help = if theme_of(ui).touch { text::MAP_HELP_TOUCH } else { text::MAP_HELP };
+        kit::note_ui(help, palette.muted, ui);
     } else {
         ui.horizontal(|ui| {
             ui.label(

@@ -78,7 +78,7 @@ pub(super) fn transition_ui(session: &Session, _: &mut UiState, out: &mut Out, u
     // With several methods side by side, the parameters of all of them are shown.
     let methods: Vec<TransitionMethod> = session.choices();
     let any = |of: &[TransitionMethod]| methods.iter().any(|method| of.contains(method));
-    if any(&[TransitionMethod::Inertialize]) {
+    if has_ruler(session) {
         param_row_ui(Key::HalfLife, &Detail::default(), session, out, ui);
         half_life_ruler_ui(params.number(Key::HalfLife), fps, ui);
         compare_ui(Key::HalfLife, session, out, ui);
@@ -111,6 +111,17 @@ pub(super) fn transition_ui(session: &Session, _: &mut UiState, out: &mut Out, u
     param_row_ui(Key::AlignBy, &Detail::default(), session, out, ui);
     param_row_ui(Key::RootBlend, &Detail::default(), session, out, ui);
     foot_rows_ui(session, out, ui);
+}
+
+/// Returns whether a pane inertializes, and so has a half-life.
+pub(super) fn has_ruler(session: &Session) -> bool {
+    session.choices::<TransitionMethod>().contains(&TransitionMethod::Inertialize)
+}
+
+/// Draws the ruler of the half-life.
+pub(super) fn ruler_ui(session: &Session, ui: &mut Ui) {
+    let fps = session.main_outcome().map_or(60.0, |outcome| outcome.motion.clip().fps());
+    half_life_ruler_ui(session.params().number(Key::HalfLife), fps, ui);
 }
 
 /// Draws the times after which shares of the offset remain, and the equivalent dissolve.

@@ -2,38 +2,28 @@
 
 use crate::ui::commands::{UiCommand, command_icon_ui};
 use crate::ui::kit::{self, Button, Icon};
-use crate::ui::language::Text;
 use crate::ui::out::{Action, Out};
-use crate::ui::state::{Filming, UiState};
+use crate::ui::state::{Filming, Layout, UiState};
 use crate::ui::text;
 use crate::ui::theme::{space, theme_of};
 use eframe::egui::{Rect, Ui, UiBuilder, pos2, vec2};
 use segue_session::{Key, Session};
 
-/// Draws the button that goes to the next pane: a phone shows one at a time.
-pub(super) fn pane_switch_ui(count: usize, stage: Rect, state: &mut UiState, ui: &mut Ui) {
-    let rect =
-        Rect::from_min_size(pos2(stage.right() - 92.0, stage.top() + 44.0), vec2(84.0, 28.0));
-    let label = format!("{} / {count}", state.shown_pane + 1);
-    ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
-        if kit::button_ui(Button::new(Text::Data(&label)).icon(Icon::Swap), ui).clicked() {
-            state.shown_pane = (state.shown_pane + 1) % count;
-        }
-    });
-}
-
-/// Draws the buttons of the camera, and below them those for pictures, reports and videos.
+/// Draws the buttons of the camera at the right of `free`, and below them those for pictures,
+/// reports and videos, which a phone has in its menu.
 pub(super) fn camera_buttons_ui(
     session: &Session,
-    stage: Rect,
+    free: Rect,
+    layout: Layout,
     state: &mut UiState,
     out: &mut Out,
     ui: &mut Ui,
 ) {
     let params = session.params();
-    let side = (30.0 * theme_of(ui).scale()).round();
+    let theme = theme_of(ui);
+    let side = (30.0 * theme.scale()).max(theme.row_height()).round();
     let rect = Rect::from_min_size(
-        pos2(stage.right() - side - space::S, stage.top() + 76.0),
+        pos2(free.right() - side - space::S, free.top() + space::S),
         vec2(side, 3.0 * side + 2.0 * space::XS),
     );
     ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
@@ -44,7 +34,7 @@ pub(super) fn camera_buttons_ui(
             command_icon_ui(command, session, state, out, ui);
         }
     });
-    if !params.is_on(Key::Embed) {
+    if !params.is_on(Key::Embed) && layout != Layout::Phone {
         let below = Rect::from_min_size(
             rect.left_bottom() + vec2(0.0, space::M),
             vec2(side, 3.0 * side + 2.0 * space::XS),

@@ -24,7 +24,7 @@ fn deliver(session: &mut Session) {
     while session.work() {}
 }
 
-fn lesson(link: &str) -> Page {
+pub(super) fn lesson(link: &str) -> Page {
     let mut page = page(link);
     deliver(&mut page.session);
     page

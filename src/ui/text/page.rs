@@ -35,6 +35,16 @@ pub(crate) const PANE_LESS: Word = Word::new("Remove a pane");
 pub(crate) const COMPARE_HELP: Word = Word::new("Full, half and a third of the value side by side");
 pub(crate) const FULL_HALF_THIRD: Word = Word::new("full, half, third");
 pub(crate) const COPY_LINK: Word = Word::new("Copy link");
+/// The line of the menu that copies the link with what is each reader's own otherwise.
+pub(crate) const COPY_LINK_AS_SHOWN: Word = Word::new("Copy link with text size and language");
+pub(crate) const SHARE: Word = Word::new("More ways to share");
+pub(crate) const PRESENT: Word = Word::new("Present");
+pub(crate) const STOP_PRESENTING: Word = Word::new("Stop presenting");
+pub(crate) const PREVIOUS: Word = Word::new("Previous");
+/// The step of a presenter that shows a whole comparison.
+pub(crate) const ALL_PANES: Word = Word::new("All panes");
+pub(crate) const NEXT_PANE: Word = Word::new("Next pane");
+pub(crate) const PREVIOUS_PANE: Word = Word::new("Previous pane");
 pub(crate) const LINK: Word = Word::new("Link");
 pub(crate) const LINK_COPIED: Word = Word::new("Link copied. It opens exactly this state.");
 pub(crate) const COPY_REPORT: Word = Word::new("Copy a report: picture, settings, numbers, link");
@@ -196,6 +206,11 @@ pub(crate) fn status(entry: &Entry) -> Word {
         (None, Origin::File(_)) if entry.awaits_skeleton() => AWAITS_SKELETON,
         (None, Origin::File(_)) => READING,
     }
+}
+
+/// Returns the name of the pane that is shown, and its number among all.
+pub(crate) fn pane_of(name: Message, number: usize, of: usize) -> Message {
+    msg!("{name} · {number} / {of}", name, number, of)
 }
 
 /// Returns how far the work is stored.

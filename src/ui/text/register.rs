@@ -31,6 +31,10 @@ pub(crate) const DISTANCES: Word = Word::new("Distances between A and B");
 pub(crate) const MAP_HELP: Word = Word::new(
     "Hover: shows both poses. Click: goes there. Drag: adds a pin; drag it out or double-click it to remove it.",
 );
+/// The help below the map of distances where it is worked by fingers.
+pub(crate) const MAP_HELP_TOUCH: Word = Word::new(
+    "Tap: goes there. Hold: adds a pin; drag it to move it, or out of the map to remove it.",
+);
 /// The button that removes all pins.
 pub(crate) const REMOVE_PINS: Word = Word::new("Remove pins");
 /// The heading of the parameters below the map.

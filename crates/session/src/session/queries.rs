@@ -279,17 +279,6 @@ fn to_step(value: f64, step: f64) -> f64 {
     (value / step).round() * step + 0.0
 }
 
-fn query_of(params: &Params) -> String {
-    let query = link::write(params);
-    if would_set_up(params) {
-        // The lab, which is usually named only if it is not the first one, shows that there is a
-        // state besides.
-        format!("{query}&{}={}", Key::Lab.param().name, params.lab().word())
-    } else {
-        query
-    }
-}
-
 /// Returns the query string of parameters, with the corrected contacts of the clips that they name.
 fn query_with_edits(params: &Params) -> String {
     if params.contact_edits().is_empty() {

@@ -27,13 +27,13 @@ pub(crate) fn slider_row_ui(value: f64, row: &SliderRow<'_>, ui: &mut Ui) -> Sli
     let id = ui.make_persistent_id(row.label.english());
     let previous_spacing = std::mem::replace(&mut ui.spacing_mut().item_spacing.y, 0.0);
 
-    let head = full_width((20.0 * scale).round(), ui);
+    let touch = theme_of(ui).touch;
+    let head = full_width(((if touch { 26.0 } else { 20.0 }) * scale).round(), ui);
     // The hit target is taller than the track, and reaches up under the label.
-    let track_area = full_width((18.0 * scale).round(), ui);
-    let track_hit = Rect::from_min_max(
-        pos2(track_area.left(), track_area.bottom() - (theme::HIT * scale).round()),
-        track_area.max,
-    );
+    let track_area = full_width(((if touch { 32.0 } else { 18.0 }) * scale).round(), ui);
+    let hit = theme_of(ui).hit().max((theme::HIT * scale).round());
+    let track_hit =
+        Rect::from_min_max(pos2(track_area.left(), track_area.bottom() - hit), track_area.max);
 
     let mut out = SliderResponse {
         changed: None,

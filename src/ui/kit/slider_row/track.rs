@@ -41,7 +41,7 @@ pub(super) fn drag(value: f64, row: &SliderRow<'_>, hit: Rect, out: &mut SliderR
         let handle_x = f64::from(rail.left()) + position * width;
         // A press on the handle keeps the value; a press elsewhere on the track moves it to the
         // pointer.
-        let grabbed = (f64::from(x) - handle_x).abs() <= 12.0;
+        let grabbed = (f64::from(x) - handle_x).abs() <= f64::from(theme_of(ui).hit()) / 2.0;
         let position = if grabbed { position } else { (f64::from(x - rail.left())) / width };
         Held { position, pointer_x: x }
     };
@@ -98,7 +98,8 @@ fn rail(area: Rect, ui: &Ui) -> Rect {
 }
 
 fn handle_radius(ui: &Ui) -> f32 {
-    7.0 * theme_of(ui).scale()
+    let theme = theme_of(ui);
+    if theme.touch { 11.0 } else { 7.0 * theme.scale() }
 }
 
 pub(super) fn paint_track(

@@ -6,7 +6,7 @@ use super::super::paint::focus_ring;
 use super::super::time_axis::TimeAxis;
 use super::content::{Timeline, TimelineEvent};
 use crate::ui::language::{Word, say};
-use crate::ui::theme::{HIT, palette_of, radius, theme_of};
+use crate::ui::theme::{palette_of, radius, theme_of};
 use eframe::egui::{
     CursorIcon, EventFilter, Id, Key, Rangef, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2,
 };
@@ -38,7 +38,7 @@ impl Handles {
             name,
             time,
             Rangef::new(self.top, self.bottom),
-            HIT / 2.0,
+            theme_of(ui).hit() / 2.0,
             event,
             timeline,
             events,
@@ -83,8 +83,8 @@ impl Handles {
         let response = self.handle(
             name,
             time,
-            Rangef::new(self.top - 6.0, self.top + HIT - 6.0),
-            HIT,
+            Rangef::new(self.top - 6.0, self.top - 6.0 + theme_of(ui).hit()),
+            theme_of(ui).hit(),
             event,
             timeline,
             events,

@@ -13,12 +13,12 @@ use self::look::{
 };
 use self::scrub::scrub_ui;
 use self::stances::Lanes;
-use super::curves::{curves_ui, hover_ui, key_ui, plots_in};
+use super::curves::{curves_ui, hover_ui, key_height, key_ui, plots_in};
 use super::paint::{Run, focus_ring, full_width, line_of, put};
 use super::time_axis::TimeAxis;
 use super::words;
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
-use eframe::egui::{Align2, Rangef, Rect, Sense, Ui, pos2};
+use eframe::egui::{Align2, Id, Rangef, Rect, Sense, Ui, pos2};
 
 pub(crate) use self::content::{
     Moment, StanceEdit, StanceEvent, Stripe, Timeline, TimelineEvent, Track,
@@ -44,13 +44,26 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
     let tracks_height = head + timeline.tracks.len() as f32 * pitch;
     let stripes_height: f32 = timeline.stripes.iter().map(stripe_pitch).sum();
     let bars = full_width(tracks_height + stripes_height, ui);
+    let mut slack = None;
     let curve_height = if timeline.curves.is_empty() {
         0.0
     } else {
-        (ui.available_height() - RULER * scale).max(48.0).floor()
+        let key = match timeline.curves {
+            [curves] if gutter > 0.0 => {
+                key_height(curves, gutter - SCALE_WIDTH * scale, timeline.now, ui)
+            }
+            _ => 0.0,
+        };
+        let least = (LEAST_CURVES * timeline.curves.len() as f32).max(key).ceil();
+        let height = (ui.available_height() - (RULER * scale).round()).max(least).floor();
+        slack = Some(height - least);
+        height
     };
     let plot_row = full_width(curve_height, ui);
-    let ruler = full_width(RULER * scale, ui);
+    let ruler = full_width((RULER * scale).round(), ui);
+    if let Some(slack) = slack {
+        ui.data_mut(|data| data.insert_temp(least_bottom_id(), ruler.bottom() - slack));
+    }
     ui.spacing_mut().item_spacing.y = spacing;
 
     let axis = TimeAxis {
@@ -67,7 +80,12 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
     let mut now = timeline.now;
     scrub_ui(timeline, axis, &scrub, &mut now, &mut events, ui);
 
-    if let Some(transition) = &timeline.transition {
+    // The window of a transition may be longer than what is left of the motion.
+    let transition = timeline.transition.as_ref().map(|transition| {
+        let within = |secs: f64| secs.clamp(0.0, timeline.duration.max(0.0));
+        within(transition.start)..within(transition.end)
+    });
+    if let Some(transition) = &transition {
         let shade = Rect::from_x_y_ranges(
             axis.x_of(transition.start)..=axis.x_of(transition.end),
             bars.top()..=plot_row.bottom(),
@@ -114,7 +132,7 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
         curves_ui(curves, axis, plot, gutter > 0.0, ui);
         if gutter > 0.0 {
             // The values of the scale stand beside it.
-            let x = bars.left()..=axis.x.min - 32.0 * scale;
+            let x = bars.left()..=axis.x.min - SCALE_WIDTH * scale;
             let key = Rect::from_x_y_ranges(x, plot.y_range());
             key_ui(curves, key, now, ui);
         }
@@ -142,7 +160,7 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
         lanes.stances_ui(timeline, &mut events, ui);
     }
     let handles = Handles { axis, top: bars.top(), bottom: plot_row.bottom(), id };
-    if let (Some(transition), true) = (&timeline.transition, timeline.transition_editable) {
+    if let (Some(transition), true) = (&transition, timeline.transition_editable) {
         handles.edge_ui(
             words::TRANSITION_START,
             transition.start,
@@ -188,6 +206,16 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
     events
 }
 
+/// Returns the lower edge on the page that the timeline drawn last needs: its curves fill all the
+/// room that there is. `None` where none with curves was drawn since the last call.
+pub(crate) fn take_least_bottom(ui: &Ui) -> Option<f32> {
+    ui.data_mut(|data| data.remove_temp(least_bottom_id()))
+}
+
+fn least_bottom_id() -> Id {
+    Id::unique("least bottom of the timeline")
+}
+
 struct Heights {
     head: f32,
     bar: f32,
@@ -201,6 +229,12 @@ impl Heights {
         Self { head: (10.0 * scale).round(), bar, pitch: bar + space::S }
     }
 }
+
+/// Least height of a plot, points.
+const LEAST_CURVES: f32 = 48.0;
+
+/// Width of the values of a scale beside a plot at scale 1, points.
+const SCALE_WIDTH: f32 = 32.0;
 
 /// Height of a stripe of stances at scale 1, points.
 const STRIPE: f32 = 15.0;

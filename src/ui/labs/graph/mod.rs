@@ -7,7 +7,7 @@ mod rows;
 mod strip;
 mod table;
 
-pub(crate) use map::{is_open, map_panel_ui, map_share};
+pub(crate) use map::{is_open, map_panel_ui, map_share, map_ui};
 pub(crate) use rows::{compare_windows, graph_ui, seed_detail};
 pub(crate) use strip::walk_panel_ui;
 

@@ -1,0 +1,117 @@
+//! Panes one at a time, where there is room for one: the finger's swipe from one to the next, and
+//! the row with their names.
+
+use crate::ui::kit::{self, Icon};
+use crate::ui::language::{Text, say};
+use crate::ui::state::UiState;
+use crate::ui::text;
+use crate::ui::theme::{Type, palette_of, space, theme_of};
+use eframe::egui::{
+    Align2, InputState, Pos2, Rect, Response, Role, Sense, Ui, UiBuilder, WidgetInfo, pos2, vec2,
+};
+use segue_session::Session;
+
+/// The way of a swipe, points.
+const WAY: f32 = 36.0;
+/// The time within which a finger goes that far, seconds. A slower one turns the camera.
+const SECS: f64 = 0.15;
+
+/// A finger on the stage of several panes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Swipe {
+    from: Pos2,
+    began: f64,
+    /// Whether it is known what the finger does: it turns the camera (`false`), or has turned the
+    /// page (`true`).
+    is_swipe: Option<bool>,
+}
+
+/// Shows another pane when a finger swipes over the stage. Returns whether the drag is not the
+/// camera's.
+pub(super) fn takes_drag(count: usize, response: &Response, state: &mut UiState, ui: &Ui) -> bool {
+    if count < 2 || ui.input(InputState::multi_touch).is_some() {
+        state.swipe = None;
+        return false;
+    }
+    let now = ui.input(|input| input.time);
+    if response.drag_started() {
+        let origin = ui.input(|input| input.pointer.press_origin());
+        let began = ui.input(|input| input.pointer.press_start_time()).unwrap_or(now);
+        state.swipe = origin.map(|from| Swipe { from, began, is_swipe: None });
+    }
+    let Some(mut swipe) = state.swipe else {
+        return false;
+    };
+    if !response.dragged() && !response.drag_stopped() {
+        state.swipe = None;
+        return false;
+    }
+    let moved = response.interact_pointer_pos().map_or(vec2(0.0, 0.0), |at| at - swipe.from);
+    if swipe.is_swipe.is_none() {
+        if now - swipe.began > SECS || moved.y.abs() > WAY {
+            swipe.is_swipe = Some(false);
+        } else if moved.x.abs() >= WAY && moved.x.abs() > 1.5 * moved.y.abs() {
+            swipe.is_swipe = Some(true);
+            go(moved.x < 0.0, count, state);
+        }
+    }
+    state.swipe = (!response.drag_stopped()).then_some(swipe);
+    swipe.is_swipe != Some(false)
+}
+
+/// Shows the next pane, or the previous one, as far as there are any.
+fn go(forward: bool, count: usize, state: &mut UiState) {
+    let pane = state.shown_pane;
+    state.shown_pane =
+        if forward { (pane + 1).min(count.saturating_sub(1)) } else { pane.saturating_sub(1) };
+}
+
+/// Returns the height of the row with the names of the panes.
+pub(super) fn switch_height(ui: &Ui) -> f32 {
+    44.0 * theme_of(ui).scale()
+}
+
+/// Draws the row that tells which of several panes is shown, at the top of `place`: a dot for each,
+/// the name, and a button to either side.
+pub(super) fn pane_switch_ui(session: &Session, place: Rect, state: &mut UiState, ui: &mut Ui) {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    let panes = session.panes();
+    let count = panes.len();
+    let row = Rect::from_min_size(place.min, vec2(place.width(), switch_height(ui)));
+    let side = theme.row_height().max(theme.hit());
+    let ways = [
+        (false, Icon::ChevronLeft, text::PREVIOUS_PANE, row.left() + space::XS),
+        (true, Icon::ChevronRight, text::NEXT_PANE, row.right() - space::XS - side),
+    ];
+    for (forward, icon, name, left) in ways {
+        let at = pos2(left, row.center().y - 0.5 * side);
+        let builder = UiBuilder::new().max_rect(Rect::from_min_size(at, vec2(side, side)));
+        let ends = if forward { count.saturating_sub(1) } else { 0 };
+        let pressed = ui.scope_builder(builder.id_salt(("pane", forward)), |ui| {
+            ui.add_enabled_ui(state.shown_pane != ends, |ui| {
+                kit::icon_button_ui(icon, name, ui).clicked()
+            })
+        });
+        if pressed.inner.inner {
+            go(forward, count, state);
+        }
+    }
+    let (gap, radius) = (14.0 * theme.scale(), 3.5 * theme.scale());
+    let first = row.center().x - 0.5 * gap * count.saturating_sub(1) as f32;
+    for index in 0..count {
+        let at = pos2(first + gap * index as f32, row.top() + 0.3 * row.height());
+        let is_shown = index == state.shown_pane;
+        let color = if is_shown { palette.accent } else { palette.line_strong };
+        ui.painter().circle_filled(at, if is_shown { radius + 1.0 } else { radius }, color);
+    }
+    let name = panes.get(state.shown_pane).and_then(|pane| session.variant_name(pane));
+    let words = text::pane_of(name.unwrap_or_default(), state.shown_pane + 1, count);
+    let run = kit::paint::Run::new(&words, Type::Strong, palette.text);
+    let width = row.width() - 2.0 * (side + space::S);
+    let galley = kit::paint::line_of(&[run], width, ui);
+    let at = pos2(row.center().x, row.top() + 0.72 * row.height());
+    let rect = kit::paint::put(ui.painter(), at, Align2::CENTER_CENTER, galley);
+    let response = ui.interact(rect, ui.make_persistent_id("pane name"), Sense::hover());
+    let said = say(Text::Message(&words), ui);
+    kit::describe(&response, &WidgetInfo::labeled(Role::Label, true, said));
+}
