@@ -321,13 +321,16 @@ fn phone_ui(
     });
     let lesson = lessons_panel::is_open(session);
     let height = ui.available_height();
-    Panel::top("stage")
-        .exact_size((height * if lesson { 0.42 } else { 0.5 }).round())
-        .frame(Frame::new())
-        .show(ui, |ui| {
-            kit::set_role(Role::Main, text::STAGE, ui);
-            stage_panel_ui(session, Layout::Phone, state, out, paint, ui);
-        });
+    // A list of clips needs more room than a panel of sliders.
+    let share = match (state.library_open, lesson) {
+        (true, _) => 0.4,
+        (false, true) => 0.42,
+        (false, false) => 0.5,
+    };
+    Panel::top("stage").exact_size((height * share).round()).frame(Frame::new()).show(ui, |ui| {
+        kit::set_role(Role::Main, text::STAGE, ui);
+        stage_panel_ui(session, Layout::Phone, state, out, paint, ui);
+    });
     slim_time_ui(Panel::top("timeline"), space::L, session, state, curves, out, ui);
     egui::CentralPanel::default().frame(scrolling_frame(ui, space::L, space::M)).show(ui, |ui| {
         let part = if state.library_open {

@@ -311,6 +311,8 @@ fn library_of_a_phone_opens_at_its_top_and_scrolls_by_finger() {
     assert!(open.top() > harness.state().stage.bottom() && open.bottom() < PHONE.y, "{open}");
     harness.get_by_label(text::CLOSE.english());
     picture("library-phone-dark", &mut harness);
+    let fourth = row_of("Walk, turn right", &harness);
+    assert!(fourth.bottom() < PHONE.y, "four rows are in sight: {fourth}");
     let before = slots(&harness);
     let row = row_of("Walk", &harness);
     swipe(row.center(), vec2(0.0, -120.0), &mut harness);
