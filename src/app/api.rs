@@ -281,15 +281,17 @@ impl Segue {
     /// Returns the metrics of the results by their names.
     pub(crate) fn metrics(&self) -> Result<BTreeMap<&'static str, MetricInfo>, NoResult> {
         let panes = self.session.panes();
-        let of_pane = |pane: &Pane, id| pane.result().ok()?.outcome.metric(id)?.value;
+        let of_pane = |pane: &Pane, id| pane.result().ok()?.outcome.metric(id);
+        let value_of = |pane: &Pane, id| of_pane(pane, id)?.value;
         let main = self.session.first_result()?;
         let info = |id: MetricId| {
             let row = id.row();
             let info = MetricInfo {
                 label: row.label,
-                value: panes.first().and_then(|pane| of_pane(pane, id)),
+                value: panes.first().and_then(|pane| value_of(pane, id)),
                 unit: row.unit.text(),
-                panes: panes.iter().map(|pane| of_pane(pane, id)).collect(),
+                panes: panes.iter().map(|pane| value_of(pane, id)).collect(),
+                at: panes.iter().map(|pane| of_pane(pane, id)?.at_secs).collect(),
                 better: row.better.name(),
                 help: row.help,
             };

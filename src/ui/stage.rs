@@ -2,16 +2,19 @@
 
 mod buttons;
 mod camera;
+mod explanation;
 pub(crate) mod framing;
 mod pane;
 mod pick;
+pub(crate) mod strip;
 mod swipe;
 mod verdicts;
 
-use self::buttons::camera_buttons_ui;
+use self::buttons::{buttons_width, camera_buttons_ui};
 use self::camera::camera_input;
 use self::pane::pane_ui;
 use self::pick::pick_ui;
+use self::strip::Strip;
 use self::swipe::{pane_switch_ui, switch_height};
 use self::verdicts::verdicts;
 use crate::ui::appearance::stage_theme;
@@ -21,8 +24,8 @@ use crate::ui::labs::on_stage;
 use crate::ui::out::Out;
 use crate::ui::state::{Layout, UiState};
 use crate::ui::theme::{palette_of, space, theme_of};
-use eframe::egui::{self, Rect, Sense, Ui, pos2};
-use segue_session::Session;
+use eframe::egui::{self, Event, Rect, Response, Sense, Ui, pos2, vec2};
+use segue_session::{Command, Session};
 
 pub(crate) use self::swipe::Swipe;
 
@@ -30,7 +33,8 @@ pub(crate) use self::swipe::Swipe;
 /// and its place.
 pub(crate) type Paint<'a> = &'a mut dyn FnMut(Rect, &[(usize, Rect)], &mut Ui);
 
-/// Draws the stage, as large as `ui`, in its own theme.
+/// Draws the stage in its own theme, and below it the numbers of its panes, on the ground of the
+/// panels; both together as large as `ui`.
 pub(crate) fn stage_panel_ui(
     session: &Session,
     layout: Layout,
@@ -39,8 +43,13 @@ pub(crate) fn stage_panel_ui(
     paint: Paint<'_>,
     ui: &mut Ui,
 ) {
+    let whole = ui.available_rect_before_wrap();
+    state.shown_pane = state.shown_pane.min(session.panes().len().saturating_sub(1));
+    let strip = Strip::new(session, whole, layout, state, ui);
+    state.stage = whole.with_max_y(whole.bottom() - strip.height());
     stage_theme(session, theme_of(ui))
         .within(ui, |ui| stage_ui(session, layout, state, out, paint, ui));
+    strip.show(session, layout, state, out, ui);
 }
 
 fn stage_ui(
@@ -51,17 +60,11 @@ fn stage_ui(
     paint: Paint<'_>,
     ui: &mut Ui,
 ) {
-    let stage = ui.available_rect_before_wrap();
-    state.stage = stage;
+    let stage = state.stage;
     let panes = session.panes();
-    state.shown_pane = state.shown_pane.min(panes.len().saturating_sub(1));
-    // A phone, or a presenter, shows one pane at a time.
+    // A phone shows one pane at a time.
     let is_switched = layout == Layout::Phone && panes.len() > 1;
-    let alone = (layout == Layout::Phone).then_some(state.shown_pane);
-    let shown: Vec<(usize, Rect)> = match alone.or(state.presenter.pane_alone(panes.len())) {
-        Some(pane) => vec![(pane, stage)],
-        None => columns(stage, panes.len()).enumerate().collect(),
-    };
+    let shown = shown_panes(session, stage, layout, state);
     let response = ui.allocate_rect(stage, Sense::click_and_drag());
     on_stage::frame_once(session, state, out);
     let takes_drag = on_stage::takes_drag(session, &shown, &response, state, out, ui)
@@ -71,7 +74,6 @@ fn stage_ui(
     on_stage::handles_ui(session, &shown, &response, state, out, ui);
 
     let verdicts = verdicts(panes);
-    let mut numbers_top = stage.bottom();
     for (place, &(index, rect)) in shown.iter().enumerate() {
         if place > 0 {
             let line = egui::Stroke::new(theme_of(ui).hairline(), palette_of(ui).line);
@@ -79,7 +81,7 @@ fn stage_ui(
         }
         take_drop_on_pane(index, rect, session, out, ui);
         if let Some(pane) = panes.get(index) {
-            numbers_top = numbers_top.min(pane_ui(pane, index, &verdicts, session, rect, out, ui));
+            pane_ui(pane, index, verdicts, session, rect, out, ui);
         }
     }
     if !takes_drag && !state.presenter.is_on {
@@ -94,26 +96,73 @@ fn stage_ui(
         camera_buttons_ui(session, free, layout, state, out, ui);
     }
     on_stage::controls_ui(session, stage, layout, state, ui);
-    let roomy = numbers_top - stage.top() > 240.0 * theme_of(ui).scale();
+    caption_ui(session, layout, &response, state, out, ui);
+}
+
+/// Returns the panes that are shown, and the column of `place` that each has. A phone, or a presenter, shows one pane at a time.
+fn shown_panes(
+    session: &Session,
+    place: Rect,
+    layout: Layout,
+    state: &UiState,
+) -> Vec<(usize, Rect)> {
+    let count = session.panes().len();
+    let alone = (layout == Layout::Phone).then_some(state.shown_pane);
+    match alone.or(state.presenter.pane_alone(count)) {
+        Some(pane) => vec![(pane, place)],
+        None => columns(place, count).enumerate().collect(),
+    }
+}
+
+/// Draws the note on the last action, or on the character, or the hint of the lab, below the titles
+/// of the panes and clear of the buttons.
+fn caption_ui(
+    session: &Session,
+    layout: Layout,
+    response: &Response,
+    state: &mut UiState,
+    out: &Out,
+    ui: &mut Ui,
+) {
+    let lab = session.params().lab();
+    if is_used(response, out, ui) && !state.hints_used.contains(&lab) {
+        state.hints_used.push(lab);
+    }
+    let stage = state.stage;
+    let beside = buttons_width(ui) + space::S;
+    let top = stage.top() + kit::pane_header_height(ui) + space::S;
+    let free = stage.shrink2(vec2(beside, 0.0)).with_min_y(top);
+    let is_roomy = stage.height() > 240.0 * theme_of(ui).scale();
     // A pane without a result needs no hint.
     let is_refused = session.panes().iter().any(|pane| pane.problem.is_some());
     if let Some(note) = on_stage::note(session, state) {
-        kit::caption_ui(&note, stage.with_max_y(numbers_top - space::S), ui);
-    } else if let Some(note) = session.character_note().filter(|_| roomy) {
-        kit::caption_ui(&note, stage.with_max_y(numbers_top - space::S), ui);
-    } else if let Some(hint) = on_stage::hint(session)
-        .filter(|_| state.hint && roomy && layout != Layout::Phone && !is_refused)
+        kit::caption_ui(&note, free, ui);
+    } else if let Some(note) = session.character_note().filter(|_| is_roomy) {
+        kit::caption_ui(&note, free, ui);
+    } else if is_roomy
+        && layout != Layout::Phone
+        && !is_refused
+        && !state.hints_used.contains(&lab)
+        && let Some(hint) = on_stage::hint(session)
     {
-        let mut free = stage.with_max_y(numbers_top - space::S);
-        if session.is_driven() {
-            free.min.x += kit::stick_size(ui) + space::L;
-        }
         kit::caption_ui(hint, free, ui);
-        if ui.input(|input| input.pointer.any_pressed() || input.keys_down.iter().next().is_some())
-        {
-            state.hint = false;
-        }
     }
+}
+
+/// Returns whether the user works with the lab: presses the stage or a key, or changes a parameter
+/// of the lab. From then on its hint is not needed.
+fn is_used(response: &Response, out: &Out, ui: &Ui) -> bool {
+    let is_pressed = response.is_pointer_button_down_on()
+        || ui.input(|input| {
+            input.events.iter().any(|event| {
+                matches!(event, Event::Key { key, pressed: true, .. } if *key != egui::Key::Tab)
+            })
+        });
+    let is_set = |command: &Command| match command {
+        Command::Set(values) => values.iter().any(|(key, _)| key.param().group.is_of_lab()),
+        _ => false,
+    };
+    is_pressed || out.commands.iter().any(is_set)
 }
 
 /// Returns the places of panes side by side.
@@ -130,7 +179,6 @@ fn columns(stage: Rect, count: usize) -> impl Iterator<Item = Rect> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use eframe::egui::vec2;
 
     #[test]
     fn columns_fill_the_stage_without_gaps() {

@@ -6,11 +6,12 @@ use super::library_panel::LibraryState;
 use super::notices::NoticePlace;
 use super::presenter::Presenter;
 use super::stage::Swipe;
+use super::stage::strip::StripState;
 use eframe::egui::Rect;
 use glam::{DVec2, Vec3};
 use segue_scene::Camera;
-use segue_session::StorageState;
 use segue_session::export::ExportOptions;
+use segue_session::{LabId, StorageState};
 
 /// The layouts of the page, by the room that there is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -136,8 +137,10 @@ pub(crate) struct UiState {
     pub(crate) language: Language,
     /// The pictures and videos that can be taken here.
     pub(crate) filming: Filming,
-    /// Whether the hint over the stage is shown, until the first input.
-    pub(crate) hint: bool,
+    /// The labs whose hint has been followed, and is not shown again.
+    pub(crate) hints_used: Vec<LabId>,
+    /// The state of the numbers below the stage.
+    pub(crate) strip: StripState,
     /// The place of the stage, points.
     pub(crate) stage: Rect,
     /// Files that are being fetched, with the share of each that has arrived, 0 to 1, where it is
@@ -182,7 +185,8 @@ impl Default for UiState {
             saved_pane: 0,
             language: Language::default(),
             filming: Filming::default(),
-            hint: true,
+            hints_used: Vec::new(),
+            strip: StripState::default(),
             stage: Rect::NOTHING,
             fetching: Vec::new(),
             host_reads: false,

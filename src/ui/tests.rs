@@ -39,6 +39,7 @@ mod path;
 mod register;
 mod samples;
 mod screens;
+mod strip;
 
 const DESK: Vec2 = vec2(1440.0, 900.0);
 const PHONE: Vec2 = vec2(390.0, 844.0);

@@ -19,6 +19,7 @@ mod page;
 mod path;
 mod register;
 mod speed;
+mod stage;
 mod transition;
 
 pub(crate) use edit::*;
@@ -31,4 +32,5 @@ pub(crate) use page::*;
 pub(crate) use path::*;
 pub(crate) use register::*;
 pub(crate) use speed::*;
+pub(crate) use stage::*;
 pub(crate) use transition::*;

@@ -36,8 +36,8 @@ pub fn command(program: impl AsRef<OsStr>, args: &[&str]) -> Command {
 
 /// Returns the cargo that runs this xtask, so that a toolchain chosen for one applies to the other.
 ///
-/// Under CI it keeps nothing for a next build and no lines for a debugger: neither is used, and both
-/// take time.
+/// Under CI it keeps nothing for a next build and no lines for a debugger: neither is used, and
+/// both take time.
 pub fn cargo(args: &[&str]) -> Command {
     let mut cargo = command(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()), args);
     if std::env::var_os("CI").is_some() {

@@ -125,7 +125,7 @@ pub use library::{ClipGroup, Entry, Library, Origin, SourceFile, file_id, split_
 pub use memory::{MemoryUse, PageMemory};
 pub use motion::{curve_kind, foot_options, frame_at, joint_of, word_of_joint};
 pub use notice::{AddedClips, Level, Notice, Notices};
-pub use numbers::{NumberRow, NumberTable, digits};
+pub use numbers::{NumberRow, NumberTable, digits, listed_metrics};
 pub use pane::{NoResult, Pane, PaneContent, PaneResult};
 pub use params::choices::{self, LabId, Selected};
 pub use params::{

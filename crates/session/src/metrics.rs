@@ -4,7 +4,7 @@ mod table;
 
 pub use table::{METRICS, MetricId};
 
-use segue_motion::metrics::ResultMetrics;
+use segue_motion::metrics::{Extreme, ResultMetrics, SPIN_SECS};
 
 /// The direction in which a metric improves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,17 +86,6 @@ impl Unit {
             | Self::StepsPerMinute => usize::from(value < 9.95),
         }
     }
-
-    /// Returns the smallest difference between two results that makes one the better.
-    #[must_use]
-    pub fn least_difference(self) -> f64 {
-        match self {
-            Self::DegreesPerSec => 5.0,
-            Self::Degrees => 1.0,
-            Self::Secs => 0.05,
-            _ => 0.5,
-        }
-    }
 }
 
 /// All facts about a metric: a row of [`METRICS`].
@@ -106,17 +95,58 @@ pub struct MetricRow {
     pub id: MetricId,
     /// The key in the page's API and in lessons; never changes.
     pub name: &'static str,
-    /// The name on screen and in tables.
+    /// The name on screen, in lessons and in tables.
     pub label: &'static str,
-    /// The name below the number on the stage, with the unit; `None` for a metric that is listed in
-    /// tables alone.
-    pub short: Option<&'static str>,
+    /// The name where there is little room: words of the name.
+    pub short: &'static str,
     /// The unit.
     pub unit: Unit,
     /// The direction in which it improves.
     pub better: Better,
+    /// The least difference that a viewer can see: values closer than this are equally good.
+    /// `None` where neither direction is better.
+    pub noticeable: Option<f64>,
     /// One or two sentences: its meaning and how it is measured.
     pub help: &'static str,
+    /// One or two sentences: which values are good, or what to compare it with.
+    pub good: &'static str,
+}
+
+impl MetricRow {
+    /// Returns the places of the best and of the worst of some values. Each is marked only if it
+    /// differs from all others by what a viewer can see: equal values have no best.
+    #[must_use]
+    pub fn ends(&self, values: &[Option<f64>]) -> Ends {
+        let Some(noticeable) = self.noticeable else {
+            return Ends::default();
+        };
+        let mut known: Vec<(usize, f64)> = values
+            .iter()
+            .enumerate()
+            .filter_map(|(place, value)| Some((place, (*value)?)))
+            .collect();
+        known.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let ([lowest, second, ..], [.., last_but_one, highest]) = (&*known, &*known) else {
+            return Ends::default();
+        };
+        let apart = |a: &(usize, f64), b: &(usize, f64)| b.1 - a.1 >= noticeable;
+        let low = apart(lowest, second).then_some(lowest.0);
+        let high = apart(last_but_one, highest).then_some(highest.0);
+        match self.better {
+            Better::Lower => Ends { best: low, worst: high },
+            Better::Higher => Ends { best: high, worst: low },
+            Better::Neutral => Ends::default(),
+        }
+    }
+}
+
+/// The places of the best and of the worst of several values; `None` where none stands out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Ends {
+    /// The place of the best.
+    pub best: Option<usize>,
+    /// The place of the worst.
+    pub worst: Option<usize>,
 }
 
 impl MetricId {
@@ -142,22 +172,49 @@ pub struct Metric {
     /// The number; `None` where there is nothing to measure (no feet, no foot on the ground, no
     /// change of speed).
     pub value: Option<f64>,
+    /// The time of the result where it happens, seconds: that of the frame with the worst value.
+    /// `None` for means, lengths and rates, and where the number is 0.
+    pub at_secs: Option<f64>,
 }
 
 impl Metric {
-    /// Returns a metric with its value.
+    /// Returns a metric with its value, which no single frame has.
     #[must_use]
     pub fn new(id: MetricId, value: impl Into<Option<f64>>) -> Self {
-        Self { id, value: value.into() }
+        Self { id, value: value.into(), at_secs: None }
+    }
+
+    /// Returns a metric with its value, and the frame where it happens.
+    #[must_use]
+    pub fn at_frame(
+        id: MetricId,
+        value: impl Into<Option<f64>>,
+        frame: Option<usize>,
+        fps: f64,
+    ) -> Self {
+        let at_secs = frame.map(|frame| frame as f64 / fps).filter(|secs| secs.is_finite());
+        Self { at_secs, ..Self::new(id, value) }
+    }
+
+    /// Returns a metric whose value is the largest of all frames.
+    #[must_use]
+    pub fn extreme(id: MetricId, found: Option<Extreme>, fps: f64) -> Self {
+        let frame = found.as_ref().and_then(Extreme::place);
+        Self::at_frame(id, found.map(|found| found.value), frame, fps)
     }
 }
 
-/// Returns the metrics that results of every lab have, in the order of the lists.
-pub(crate) fn of_result(found: &ResultMetrics) -> [Metric; 4] {
+/// Returns the metrics that results of every lab have, in the order of the lists; `fps` is the
+/// result's frame rate.
+pub(crate) fn of_result(found: &ResultMetrics, fps: f64) -> [Metric; 4] {
+    // The first frame that is displaced, and the middle of a spin.
+    let pose = found.pose_jump_at.map(|at| at.frame + 1);
+    let velocity = found.velocity_jump_at.map(|at| at.frame);
+    let spin = found.spin_at.map(|frame| frame + (0.5 * SPIN_SECS * fps).round() as usize);
     [
-        Metric::new(MetricId::PoseJump, found.pose_jump_deg),
-        Metric::new(MetricId::VelocityJump, found.velocity_jump_dps),
-        Metric::new(MetricId::Spin, found.spin_deg),
+        Metric::at_frame(MetricId::PoseJump, found.pose_jump_deg, pose, fps),
+        Metric::at_frame(MetricId::VelocityJump, found.velocity_jump_dps, velocity, fps),
+        Metric::at_frame(MetricId::Spin, found.spin_deg, spin, fps),
         Metric::new(MetricId::Skating, found.skating_cm_per_sec),
     ]
 }

@@ -1,11 +1,13 @@
 //! The metrics of all panes as a table.
 
-use super::metrics::{Better, Metric, MetricId, Unit};
+use super::labs::Outcome;
+use super::metrics::{Ends, METRICS, MetricId, Unit};
 use super::outside::markdown;
 use super::pane::Pane;
 use super::session::Session;
 use segue_formats::csv;
 use segue_text::{Message, msg};
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 /// The heading of a result that is not compared with another one.
@@ -36,13 +38,13 @@ impl NumberTable {
         let panes = session.panes();
         let name = |pane: &Pane| session.variant_name(pane).unwrap_or(RESULT);
         let of_pane = |pane: &Pane, id| pane.result().ok()?.outcome.metric(id)?.value;
-        let first = panes.iter().find_map(|pane| pane.result().ok());
-        let metrics = first.map_or(&[][..], |made| made.outcome.metrics.as_slice());
-        let row = |metric: &Metric| NumberRow {
-            metric: metric.id,
-            values: panes.iter().map(|pane| of_pane(pane, metric.id)).collect(),
+        let results = panes.iter().filter_map(|pane| pane.result().ok());
+        let row = |metric: MetricId| NumberRow {
+            metric,
+            values: panes.iter().map(|pane| of_pane(pane, metric)).collect(),
         };
-        let mut rows: Vec<NumberRow> = metrics.iter().map(row).collect();
+        let listed = listed_metrics(results.map(|made| &**made.outcome));
+        let mut rows: Vec<NumberRow> = listed.into_iter().map(row).collect();
         let walk = |pane: &Pane| pane.result().ok()?.outcome.walk().cloned();
         if panes.iter().any(|pane| walk(pane).is_some()) {
             let built =
@@ -103,22 +105,18 @@ impl NumberRow {
         }
     }
 
-    /// Returns the best and the worst value; `None` if they are equal, and if neither direction is
-    /// better.
+    /// Returns the panes with the best and the worst value.
     #[must_use]
-    pub fn ends(&self) -> [Option<f64>; 2] {
-        let values = || self.values.iter().flatten().copied();
-        let (low, high) = (values().min_by(f64::total_cmp), values().max_by(f64::total_cmp));
-        match (low, high, self.metric.row().better) {
-            (Some(low), Some(high), Better::Lower) if high - low > 0.05 * high.abs() => {
-                [Some(low), Some(high)]
-            }
-            (Some(low), Some(high), Better::Higher) if high - low > 0.05 * high.abs() => {
-                [Some(high), Some(low)]
-            }
-            _ => [None, None],
-        }
+    pub fn ends(&self) -> Ends {
+        self.metric.row().ends(&self.values)
     }
+}
+
+/// Returns the metrics that any of some results has, in the order of [`METRICS`].
+pub fn listed_metrics<'a>(results: impl IntoIterator<Item = &'a Outcome>) -> Vec<MetricId> {
+    let lists = results.into_iter().flat_map(|outcome| &outcome.metrics);
+    let had: BTreeSet<MetricId> = lists.map(|metric| metric.id).collect();
+    METRICS.iter().map(|row| row.id).filter(|id| had.contains(id)).collect()
 }
 
 /// Formats a number with about three digits; a dash for none.

@@ -64,6 +64,8 @@ pub(crate) struct MetricInfo {
     pub(super) unit: &'static str,
     /// The numbers of all panes, left to right.
     pub(super) panes: Vec<Option<f64>>,
+    /// The time of the worst frame in each of them, seconds; `null` where no single frame has it.
+    pub(super) at: Vec<Option<f64>>,
     /// `lower`, `higher`, or `neutral` where neither is better.
     pub(super) better: &'static str,
     pub(super) help: &'static str,

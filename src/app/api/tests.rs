@@ -116,7 +116,7 @@ fn metrics_of_compared_panes_have_a_number_for_each() {
     let metrics = segue.metrics().unwrap();
     assert!(!metrics.is_empty());
     for (name, metric) in metrics {
-        assert_eq!(metric.panes.len(), 3, "{name}");
+        assert_eq!((metric.panes.len(), metric.at.len()), (3, 3), "{name}");
         assert_eq!(metric.panes[0], metric.value, "{name}");
     }
 }

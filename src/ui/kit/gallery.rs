@@ -323,7 +323,6 @@ fn stage_ui(mock: &Mock, phone: bool, ui: &mut Ui) {
         ("10", "0.17 s", Word::new("roughest"), Mood::Bad),
     ];
     let count = if phone { 1 } else { 3 };
-    let mut footer_top = stage.bottom();
     let width = (stage.width() / count as f32).floor();
     for (index, (strong, secondary, chip, mood)) in panes.into_iter().take(count).enumerate() {
         let pane = Rect::from_min_size(
@@ -339,41 +338,42 @@ fn stage_ui(mock: &Mock, phone: bool, ui: &mut Ui) {
         let title = PaneTitle { strong: &strong, text: &text, secondary: &secondary, chip, mood };
         pane_header_ui(&title, pane, ui);
         let rank = [Rank::Best, Rank::Middle, Rank::Worst][index];
+        let metric = |value: &'static str, unit, name, rank| Metric {
+            value,
+            unit: Word::new(unit),
+            name: Word::new(name),
+            short: Word::new(name),
+            rank,
+            ..Metric::default()
+        };
         let metrics = [
-            Metric {
-                value: ["41", "126", "214"][index],
-                label: Word::new("velocity jump °/s"),
-                rank,
-                hint: Word::new("How much the speed of the joints jumps."),
-            },
-            Metric {
-                value: ["0.6", "0.9", "1.8"][index],
-                label: Word::new("slide cm"),
-                rank: Rank::Middle,
-                hint: Word::default(),
-            },
-            Metric {
-                value: ["0.38", "0.19", "0.12"][index],
-                label: Word::new("lag s"),
-                rank: Rank::Middle,
-                hint: Word::default(),
-            },
-            Metric {
-                value: "0°",
-                label: Word::new("spin"),
-                rank: Rank::Middle,
-                hint: Word::default(),
-            },
+            metric(["41", "126", "214"][index], "°/s", "Velocity jump", rank),
+            metric(["0.6", "0.9", "1.8"][index], "cm", "Foot slide", Rank::Middle),
+            metric(["0.38", "0.19", "0.12"][index], "s", "Lag", Rank::Middle),
+            metric("0°", "", "Spin", Rank::Middle),
         ];
-        footer_top = footer_top.min(pane_footer_ui(&metrics, pane, ui).top());
+        let names = metrics.map(|metric| (metric.short, metric.unit));
+        let room = GridRoom {
+            width: width - 2.0 * space::M,
+            rows: 2,
+            is_ranked: count > 1,
+            least_height: 0.0,
+        };
+        let grid = MetricGrid::new(&names, room, ui);
+        let strip = pane.with_min_y(pane.bottom() - grid.height() - 2.0 * space::S);
+        ui.painter().rect_filled(strip, 0.0, p.panel);
+        for (at, metric) in metrics.iter().take(grid.shown).enumerate() {
+            let rect = grid.place(at, strip.min + vec2(space::M, space::S));
+            metric_cell_ui(metric, rect, ui.scope_id().with((index, at)), ui);
+        }
     }
     if mock.caption && !phone {
-        let above = stage.with_max_y(footer_top - space::S);
+        let free = stage.with_min_y(stage.top() + pane_header_height(ui) + space::S);
         caption_ui(
             Word::new(
                 "Same walk, same instant. Watch the right foot: the shorter the window, the harder the burst into the run.",
             ),
-            above,
+            free,
             ui,
         );
     }

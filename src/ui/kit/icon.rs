@@ -53,6 +53,8 @@ pub(crate) enum Icon {
     Info,
     /// Opens downward.
     ChevronDown,
+    /// Opens upward.
+    ChevronUp,
     /// Back by one.
     ChevronLeft,
     /// Forward by one; folded.
@@ -225,6 +227,7 @@ pub(crate) fn paint_icon(icon: Icon, rect: Rect, color: Color32, painter: &Paint
             pen.disc(8.0, 5.0, 0.9);
         }
         Icon::ChevronDown => pen.stroke(&[(4.0, 6.2), (8.0, 10.2), (12.0, 6.2)]),
+        Icon::ChevronUp => pen.stroke(&[(4.0, 9.8), (8.0, 5.8), (12.0, 9.8)]),
         Icon::ChevronLeft => pen.stroke(&[(9.8, 4.0), (5.8, 8.0), (9.8, 12.0)]),
         Icon::ChevronRight => pen.stroke(&[(6.2, 4.0), (10.2, 8.0), (6.2, 12.0)]),
         Icon::Picture => {

@@ -68,11 +68,11 @@ pub(crate) use menu::{
     MenuItem, choice_row_ui, helped_choice_row_ui, menu_item_ui, menu_line_ui, menu_ui,
     switches_menu_ui,
 };
-pub(crate) use metrics::{Metric, Rank};
+pub(crate) use metrics::{GridRoom, Metric, MetricGrid, Rank, metric_cell_ui, metric_row_ui};
 pub(crate) use notice::{
     Notice, NoticeChip, NoticeEvent, brief_progress_ui, caption_ui, notices_ui, progress_row_ui,
 };
-pub(crate) use pane::{PaneTitle, pane_footer_ui, pane_header_height, pane_header_ui};
+pub(crate) use pane::{PaneTitle, pane_header_height, pane_header_ui};
 pub(crate) use part_bar::{PartBar, PartBarResponse, part_bar_ui};
 pub(crate) use places::{Chosen, PlaceBar, Places, StripPlace, places_ui};
 pub(crate) use pointer_label::pointer_label_ui;

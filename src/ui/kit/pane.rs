@@ -1,14 +1,11 @@
-//! The title and the metrics of a pane, over the stage.
+//! The title of a pane, over the stage.
 
 use super::assistive::describe;
 use super::chip::{Mood, chip_size, paint_chip};
-use super::metrics::{Metric, metric_strip_height, metric_strip_ui};
 use super::paint::{Run, line_of, put};
 use crate::ui::language::{Text, Word, say};
 use crate::ui::theme::{Type, palette_of, space, theme_of};
-use eframe::egui::{
-    Align2, Direction, Rect, Role, Sense, Shape, Ui, UiBuilder, WidgetInfo, pos2, vec2,
-};
+use eframe::egui::{Align2, Direction, Rect, Role, Sense, Shape, Ui, WidgetInfo, pos2, vec2};
 use segue_text::Message;
 
 /// The title of a pane.
@@ -72,21 +69,6 @@ pub(crate) fn pane_header_ui(title: &PaneTitle<'_>, pane: Rect, ui: &mut Ui) -> 
     let said = words.into_iter().chain([title.chip.into()]).map(|part| say(part, ui));
     let said = said.collect::<Vec<_>>().join(" ");
     describe(&response, &WidgetInfo::labeled(Role::Heading, true, said));
-    strip
-}
-
-/// Draws the metrics over the bottom of `pane`. Returns their strip, so that a caption can keep
-/// clear of it.
-pub(crate) fn pane_footer_ui(metrics: &[Metric<'_>], pane: Rect, ui: &mut Ui) -> Rect {
-    if metrics.is_empty() {
-        return pane.with_min_y(pane.bottom());
-    }
-    let height = metric_strip_height(metrics, pane.width() - 2.0 * space::M, ui) + 2.0 * space::M;
-    let strip = Rect::from_min_max(pos2(pane.left(), pane.bottom() - height), pane.max);
-    scrim(strip.with_min_y(strip.top() - space::L), Direction::BottomUp, ui);
-    let inner = strip.shrink(space::M);
-    let builder = UiBuilder::new().id_salt(("footer", pane.min.x.to_bits())).max_rect(inner);
-    metric_strip_ui(metrics, &mut ui.new_child(builder));
     strip
 }
 

@@ -1,15 +1,13 @@
 //! The In place lab: a clip, and the treatment of its root motion.
 
-use crate::ui::kit;
 use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
 use crate::ui::out::Out;
 use crate::ui::rows::{Detail, Kept, clip_sets_ui, foot_rows_ui, param_row_ui, slot_row_ui};
 use crate::ui::state::UiState;
 use crate::ui::text;
-use crate::ui::theme::{palette_of, space};
+use crate::ui::theme::space;
 use eframe::egui::Ui;
 use segue_session::{Compare, Key, Session, Slot};
-use segue_text::ToMessage;
 
 /// The lab's part of the page.
 pub(super) const LAB: LabUi = LabUi {
@@ -30,9 +28,6 @@ fn title(shown: &Shown<'_>) -> Title {
 fn in_place_ui(session: &Session, _: &mut UiState, out: &mut Out, ui: &mut Ui) {
     clip_sets_ui(session, out, ui);
     slot_row_ui(Slot::A, session, out, ui);
-    if let Some(problem) = session.panes().first().and_then(|pane| pane.problem.as_ref()) {
-        kit::note_ui(&problem.to_sentence(), palette_of(ui).warning, ui);
-    }
     ui.add_space(space::S);
     param_row_ui(Key::RootWay, &Detail::default(), session, out, ui);
     param_row_ui(Key::RootWayTurn, &Detail::default(), session, out, ui);

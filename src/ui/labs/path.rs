@@ -62,9 +62,6 @@ pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     slot_row_ui(Slot::A, session, out, ui);
     let pane = session.panes().first();
     let path = pane.and_then(|pane| path_of(session, pane));
-    if let Some(problem) = pane.and_then(|pane| pane.problem.as_ref()) {
-        kit::note_ui(&problem.to_sentence(), palette.warning, ui);
-    }
     ui.add_space(space::S);
     let edited = path.filter(|path| path.is_edited);
     let detail = Detail {

@@ -23,7 +23,7 @@ use segue_session::{
     Command, Compare, DistanceMap, Key, List, MAX_WEIGHTED_CLIPS, PlaybackCommand,
     RegistrationFacts, Session, Value, weight_curve,
 };
-use segue_text::{Message, ToMessage, msg};
+use segue_text::{Message, msg};
 use std::sync::Arc;
 
 /// The lab's part of the page.
@@ -318,9 +318,6 @@ pub(super) fn map_ui(
                 out.reset(Key::Pins);
             }
         });
-    }
-    if let Some(problem) = session.panes().first().and_then(|pane| pane.problem.as_ref()) {
-        kit::note_ui(&problem.to_sentence(), palette.warning, ui);
     }
     ui.add_space(space::S);
 }

@@ -9,6 +9,11 @@ use crate::ui::theme::{space, theme_of};
 use eframe::egui::{Rect, Ui, UiBuilder, pos2, vec2};
 use segue_session::{Key, Session};
 
+/// Returns the width of the buttons at the right edge of the stage, with their margin.
+pub(super) fn buttons_width(ui: &Ui) -> f32 {
+    (30.0 * theme_of(ui).scale()).round() + space::S
+}
+
 /// Draws the buttons of the camera at the right of `free`, and below them those for pictures,
 /// reports and videos, which a phone has in its menu.
 pub(super) fn camera_buttons_ui(

@@ -1,29 +1,28 @@
-//! The title of a pane, and its numbers or the reason why there are none.
+//! The title of a pane, and the reason why it has no result.
 
-use super::verdicts::{Verdicts, ranking};
-use crate::ui::kit::{self, Metric, Mood, PaneTitle, Rank};
+use super::verdicts::Verdicts;
+use crate::ui::kit::{self, Mood, PaneTitle};
 use crate::ui::labs::{Shown, Title, on_stage, title};
 use crate::ui::language::{Word, say};
 use crate::ui::out::Out;
 use crate::ui::rows::remedy_buttons_ui;
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
-use eframe::egui::{self, Align2, Frame, Rect, Ui, UiBuilder, pos2};
-use segue_session::metrics::{METRICS, MetricRow, Unit};
-use segue_session::{Kind, Pane, Session, Value};
+use eframe::egui::{self, Align2, Frame, Rect, Ui, UiBuilder};
+use segue_session::{Kind, LabError, Pane, Session, Value};
 use segue_text::{Message, ToMessage, msg};
 
-/// Draws the title and the numbers of a pane. Returns the top of its numbers on the page.
+/// Draws the title of a pane, and, where no figure stands, why.
 pub(super) fn pane_ui(
     pane: &Pane,
     index: usize,
-    verdicts: &Verdicts,
+    verdicts: Verdicts,
     session: &Session,
     rect: Rect,
     out: &mut Out,
     ui: &mut Ui,
-) -> f32 {
-    let (theme, palette) = (theme_of(ui), palette_of(ui));
+) {
+    let palette = palette_of(ui);
     let Title { strong, text, secondary } = pane_words(pane, session);
     if pane.is_outdated() {
         // The picture is outdated.
@@ -42,9 +41,9 @@ pub(super) fn pane_ui(
     };
     let title = PaneTitle { strong: &strong, text: &text, secondary: &secondary, chip, mood };
     kit::pane_header_ui(&title, rect, ui);
-    if let Some(problem) = &pane.problem {
-        return problem_ui(&problem.to_sentence(), pane, session, rect, out, ui);
-    } else if pane.outcome.is_none() {
+    if let Some(problem) = pane.problem.as_ref().filter(|_| problem_below(pane).is_none()) {
+        problem_plate_ui(problem, pane, session, rect, out, ui);
+    } else if pane.problem.is_none() && pane.outcome.is_none() {
         let jobs = session.jobs();
         let words = jobs.first().map_or(text::EMPTY_PANE.into(), text::under_way);
         let galley = kit::paint::line_of(
@@ -54,80 +53,56 @@ pub(super) fn pane_ui(
         );
         kit::paint::put(ui.painter(), rect.center(), Align2::CENTER_CENTER, galley);
     }
-    let Some(outcome) = pane.outcome.as_deref() else {
-        return rect.bottom();
-    };
-    let panes = session.panes();
-    let room = if rect.width() < 280.0 * theme.scale() { 6 } else { METRICS.len() };
-    let shown = METRICS
-        .iter()
-        .filter_map(|row| Some((row, outcome.metric(row.id)?, row.short?)))
-        .take(room);
-    let numbers: Vec<(String, Word, Rank, Word)> = shown
-        .map(|(row, metric, label)| {
-            let ranks = ranking(panes, row.id);
-            let rank = if ranks.best == Some(index) {
-                Rank::Best
-            } else if ranks.worst == Some(index) {
-                Rank::Worst
-            } else {
-                Rank::Middle
-            };
-            (written(row, metric.value), Word::new(label), rank, Word::new(row.help))
-        })
-        .collect();
-    let strip: Vec<Metric<'_>> = numbers
-        .iter()
-        .map(|(value, label, rank, hint)| Metric { value, label: *label, rank: *rank, hint: *hint })
-        .collect();
-    kit::pane_footer_ui(&strip, rect, ui).top()
 }
 
-/// Draws why a pane has no result, and the buttons that help, on a plate in the place of its
-/// numbers, so that the clips above it stay visible. Returns its top.
-fn problem_ui(
-    problem: &Message,
+/// Returns why a pane has no result, if that is said below it: where the clips stand from which it
+/// would be made, no sentence may cover them.
+pub(super) fn problem_below(pane: &Pane) -> Option<&LabError> {
+    pane.problem.as_ref().filter(|_| !pane.sources.is_empty())
+}
+
+/// Draws why a pane has no result on a plate in the middle of it.
+fn problem_plate_ui(
+    problem: &LabError,
     pane: &Pane,
     session: &Session,
     rect: Rect,
     out: &mut Out,
     ui: &mut Ui,
-) -> f32 {
-    let (theme, palette) = (theme_of(ui), palette_of(ui));
-    let width = (rect.width() - 2.0 * space::L).min(420.0 * theme.scale());
-    let place = Rect::from_min_max(
-        pos2(rect.center().x - 0.5 * width, rect.top()),
-        pos2(rect.center().x + 0.5 * width, rect.bottom() - space::L),
-    );
+) {
+    let width = (rect.width() - 2.0 * space::L).min(420.0 * theme_of(ui).scale());
+    let place = Rect::from_center_size(rect.center(), egui::vec2(width, rect.height() * 0.6));
     let builder = UiBuilder::new()
         .id_salt(("problem", rect.min.x.to_bits()))
         .max_rect(place)
-        .layout(egui::Layout::bottom_up(egui::Align::Center));
-    let plate =
-        Frame::new().fill(palette.panel_raised).corner_radius(radius::L).inner_margin(space::M);
-    let shown = ui.scope_builder(builder, |ui| {
-        plate.show(ui, |ui| {
-            let words = egui::RichText::new(say(problem, ui)).font(theme.font(Type::Body));
-            // Laid out from the bottom up.
-            remedy_buttons_ui(pane, session, out, ui);
-            ui.add(egui::Label::new(words.color(palette.warning)).wrap());
-        })
+        .layout(egui::Layout::centered_and_justified(egui::Direction::TopDown));
+    let plate = Frame::new()
+        .fill(palette_of(ui).panel_raised)
+        .corner_radius(radius::L)
+        .inner_margin(space::M);
+    ui.scope_builder(builder, |ui| {
+        ui.vertical_centered(|ui| plate.show(ui, |ui| problem_ui(problem, pane, session, out, ui)));
     });
-    shown.inner.response.rect.top()
 }
 
-/// Returns the value of a metric as short text.
-fn written(row: &MetricRow, value: Option<f64>) -> String {
-    let Some(value) = value else {
-        return "–".to_owned();
-    };
-    let decimals = row.unit.decimals(value);
-    let degree = if row.unit == Unit::Degrees { "°" } else { "" };
-    let digits = format!("{value:.decimals$}");
-    // A number that rounds to zero has no sign.
-    let is_zero = digits.bytes().all(|byte| matches!(byte, b'-' | b'0' | b'.'));
-    let digits = if is_zero { digits.trim_start_matches('-') } else { &digits };
-    format!("{}{degree}", digits.replace('-', "−"))
+/// Returns the least height of [`problem_ui`] in a width.
+pub(super) fn problem_height(problem: &LabError, width: f32, ui: &Ui) -> f32 {
+    let ink = palette_of(ui).warning;
+    kit::paint::paragraph(&problem.to_sentence(), Type::Body, ink, width, ui).size().y
+}
+
+/// Draws why there is no result, and the buttons that help.
+pub(super) fn problem_ui(
+    problem: &LabError,
+    pane: &Pane,
+    session: &Session,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
+    let sentence = say(&problem.to_sentence(), ui);
+    let words = egui::RichText::new(sentence).font(theme_of(ui).font(Type::Body));
+    ui.add(egui::Label::new(words.color(palette_of(ui).warning)).wrap());
+    remedy_buttons_ui(pane, session, out, ui);
 }
 
 /// Returns the title of a pane: the value in which it differs, or the title of its lab.

@@ -1,15 +1,10 @@
 //! The best and the worst pane.
 
 use segue_session::Pane;
-use segue_session::metrics::{Better, MetricId};
+use segue_session::metrics::{Ends, MetricId, MetricRow};
 
-/// The best and the worst pane: by the velocity jump, which is seen as smooth or rough; for
-/// registered clips by foot skating. For equal values the next of these numbers decides.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Verdicts {
-    pub(super) best: Option<usize>,
-    pub(super) worst: Option<usize>,
-}
+/// The best and the worst pane.
+pub(super) type Verdicts = Ends;
 
 /// Returns a number of a pane's result; `None` for an earlier result, which is compared with
 /// nothing.
@@ -17,7 +12,8 @@ fn value_of(pane: &Pane, id: MetricId) -> Option<f64> {
     pane.result().ok()?.outcome.metric(id)?.value
 }
 
-/// Compares all panes.
+/// Compares all panes: by the velocity jump, which is seen as smooth or rough; for registered clips
+/// by foot skating. Where no difference can be seen, the next of these numbers decides.
 pub(super) fn verdicts(panes: &[Pane]) -> Verdicts {
     let is_registered = panes
         .iter()
@@ -29,33 +25,16 @@ pub(super) fn verdicts(panes: &[Pane]) -> Verdicts {
         [MetricId::VelocityJump, MetricId::PoseJump, MetricId::Skating]
     };
     looked_at
-        .map(|id| ranking(panes, id))
+        .map(|id| ends(panes, id.row()))
         .into_iter()
-        .find(|verdicts| verdicts.best.is_some())
+        .find(|ends| *ends != Ends::default())
         .unwrap_or_default()
 }
 
-/// Returns which panes have the lowest and the highest value; none where they hardly differ.
-pub(super) fn ranking(panes: &[Pane], id: MetricId) -> Verdicts {
-    let metric = id.row();
-    // A number that only describes has no best value.
-    if metric.better != Better::Lower {
-        return Verdicts::default();
-    }
-    let values: Vec<(usize, f64)> = panes
-        .iter()
-        .enumerate()
-        .filter_map(|(index, pane)| Some((index, value_of(pane, id)?)))
-        .collect();
-    let least = metric.unit.least_difference();
-    let best = values.iter().copied().min_by(|x, y| x.1.total_cmp(&y.1));
-    let worst = values.iter().copied().max_by(|x, y| x.1.total_cmp(&y.1));
-    match (best, worst) {
-        (Some(best), Some(worst)) if worst.1 - best.1 >= least => {
-            Verdicts { best: Some(best.0), worst: Some(worst.0) }
-        }
-        _ => Verdicts::default(),
-    }
+/// Returns the panes whose number is seen to be the best and the worst.
+pub(super) fn ends(panes: &[Pane], row: &MetricRow) -> Ends {
+    let values: Vec<Option<f64>> = panes.iter().map(|pane| value_of(pane, row.id)).collect();
+    row.ends(&values)
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ use crate::{LabId, choices};
 use segue_motion::blend::{AlignBy, RootBlend, WeightLaw};
 use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::math::{Decay, Planar};
-use segue_motion::metrics::{TransitionMetrics, foot_slide_cm};
+use segue_motion::metrics::{TransitionMetrics, worst_foot_slide};
 use segue_motion::registration::{
     PoseSearch, PoseWeights, SearchOptions, TransitionSearch, limb_weights,
 };
@@ -493,16 +493,20 @@ impl LabInputs for BlendInputs {
                 .with_contacts(contacts)
                 .with_ground_m(pair.ground_m())
                 .with_seams(pair.a.seams_joined(&window, &pair.incoming, place.enter));
-        let slid = |clip: &Clip| foot_slide_cm(clip, motion.roles(), motion.contacts());
-        let mut metrics = vec![slide(slid(motion.clip()))];
+        let slid = |clip: &Clip| worst_foot_slide(clip, motion.roles(), motion.contacts());
+        let fps = motion.clip().fps();
+        let mut metrics = vec![slide(slid(motion.clip()), fps)];
         if foot_lock.is_some() {
             metrics.push(slide_before(slid(&free)));
         }
         let at_seam = TransitionMetrics::measure(from, to, &made);
+        let at = |id, value: Option<f64>, frame| Metric::at_frame(id, value, frame, fps);
+        // The frame in which the velocity is that of B.
+        let arrival = at_seam.lag_s.map(|lag_s| window.start + (lag_s * fps).round() as usize);
         metrics.extend([
-            Metric::new(MetricId::PositionJump, at_seam.jump_cm),
-            Metric::new(MetricId::Penetration, at_seam.penetration_cm),
-            Metric::new(MetricId::Lag, at_seam.lag_s),
+            at(MetricId::PositionJump, at_seam.jump_cm, at_seam.jump_at),
+            at(MetricId::Penetration, at_seam.penetration_cm, at_seam.penetration_at),
+            at(MetricId::Lag, at_seam.lag_s, arrival),
         ]);
         let sources = vec![
             PlacedClip::new(Slot::A, &pair.a, 0.0, Planar::IDENTITY),

@@ -10,7 +10,7 @@ use crate::metrics::{Metric, MetricId};
 use crate::params::{Key, Kind, PARAMS, Param, Params, Value};
 use segue_motion::clip::{Interpolation, Motion, ground_speed};
 use segue_motion::math::Planar;
-use segue_motion::metrics::foot_slide_cm;
+use segue_motion::metrics::worst_foot_slide;
 use segue_motion::transition::{repeat_clip, treat_as_cycle};
 use segue_text::{Message, msg};
 use std::ops::Range;
@@ -234,13 +234,14 @@ impl LabInputs for EditInputs {
         let part = self.edits.part(&self.motion)?;
         let free = self.edits.apply(&self.motion)?;
         let slid =
-            |motion: &Motion| foot_slide_cm(motion.clip(), motion.roles(), motion.contacts());
-        let mut slides = vec![slide(slid(&free))];
+            |motion: &Motion| worst_foot_slide(motion.clip(), motion.roles(), motion.contacts());
+        let fps = free.clip().fps();
+        let mut slides = vec![slide(slid(&free), fps)];
         let motion = match self.foot_lock {
             None => free,
             Some(lock) => {
                 let held = locked(&free, lock)?;
-                slides = vec![slide(slid(&held)), slide_before(slides[0].value)];
+                slides = vec![slide(slid(&held), fps), slide_before(slid(&free))];
                 held
             }
         };

@@ -4,6 +4,7 @@ use crate::labs::LabError;
 use crate::metrics::{Metric, MetricId};
 use crate::params::{Key, Params};
 use segue_motion::clip::{Clip, Contacts};
+use segue_motion::metrics::Extreme;
 use segue_motion::skeleton::Roles;
 use segue_motion::transition::{FootLockError, FootLockOptions, FootLocking};
 use std::sync::Arc;
@@ -68,14 +69,15 @@ pub(super) fn with_feet(
 }
 
 /// Returns the metric of foot slide over a whole result, defined in all labs as
-/// [`foot_slide_cm`](segue_motion::metrics::foot_slide_cm).
-pub(super) fn slide(cm: Option<f64>) -> Metric {
-    Metric::new(MetricId::FootSlide, cm)
+/// [`worst_foot_slide`](segue_motion::metrics::worst_foot_slide).
+pub(super) fn slide(worst: Option<Extreme>, fps: f64) -> Metric {
+    Metric::extreme(MetricId::FootSlide, worst, fps)
 }
 
-/// Returns the metric of foot slide without the foot lock.
-pub(super) fn slide_before(cm: Option<f64>) -> Metric {
-    Metric::new(MetricId::FootSlideBefore, cm)
+/// Returns the metric of foot slide without the foot lock. It has no place: that motion is not
+/// shown.
+pub(super) fn slide_before(worst: Option<Extreme>) -> Metric {
+    Metric::new(MetricId::FootSlideBefore, worst.map(|slide| slide.value))
 }
 
 #[cfg(test)]

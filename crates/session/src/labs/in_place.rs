@@ -9,7 +9,7 @@ use crate::metrics::{Metric, MetricId};
 use crate::params::{Key, Params};
 use segue_motion::clip::{Clip, Motion, root_motion_from_feet, take_in_place};
 use segue_motion::math::Planar;
-use segue_motion::metrics::foot_slide_cm;
+use segue_motion::metrics::worst_foot_slide;
 use segue_text::{Message, msg};
 use std::sync::Arc;
 
@@ -104,10 +104,11 @@ impl LabInputs for InPlaceInputs {
             }
         };
         let clip = Arc::clone(if self.way == RootWay::TakeOut { &standing } else { &going });
-        let slid = |clip| foot_slide_cm(clip, source.roles(), &contacts);
-        let mut metrics = travel_metrics(frames, source.clip().fps()).to_vec();
-        metrics.push(slide(slid(&going)));
-        metrics.push(Metric::new(MetricId::FootSlideInPlace, slid(&standing)));
+        let slid = |clip| worst_foot_slide(clip, source.roles(), &contacts);
+        let fps = source.clip().fps();
+        let mut metrics = travel_metrics(frames, fps).to_vec();
+        metrics.push(slide(slid(&going), fps));
+        metrics.push(Metric::extreme(MetricId::FootSlideInPlace, slid(&standing), fps));
         Ok(Outcome {
             metrics,
             beside: vec![Arc::clone(source.clip())],

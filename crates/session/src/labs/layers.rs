@@ -14,7 +14,7 @@ use segue_motion::blend::{
 use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::gait::{GaitCycle, strike_phases};
 use segue_motion::math::Planar;
-use segue_motion::metrics::{Deviations, foot_slide_cm, penetration_cm};
+use segue_motion::metrics::{Deviations, deepest_penetration, worst_foot_slide};
 use segue_motion::transition::{Loop, LoopOptions, close_loop};
 use segue_text::{Message, msg};
 use std::sync::Arc;
@@ -282,15 +282,16 @@ impl LabInputs for LayerInputs {
             Contacts::detect(&free, &roles, &a.feet().contacts)
         };
         let clip = with_feet(&free, &roles, &contacts, ground_m, self.foot_lock)?;
-        let slid = |clip: &Clip| foot_slide_cm(clip, &roles, &contacts);
-        let mut metrics = vec![slide(slid(&clip))];
+        let slid = |clip: &Clip| worst_foot_slide(clip, &roles, &contacts);
+        let fps = clip.fps();
+        let mut metrics = vec![slide(slid(&clip), fps)];
         if self.foot_lock.is_some() {
             metrics.push(slide_before(slid(&free)));
         }
-        let depth_cm = penetration_cm(&clip, 0..clip.frames(), ground_m);
+        let depth = deepest_penetration(&clip, 0..clip.frames(), ground_m);
         let off_a = Deviations::measure(&clip, a.clip(), &roles);
         metrics.extend([
-            Metric::new(MetricId::Penetration, depth_cm),
+            Metric::extreme(MetricId::Penetration, depth, fps),
             Metric::new(MetricId::ArmsOffA, off_a.arms_deg),
             Metric::new(MetricId::SpineOffA, off_a.spine_deg),
             Metric::new(MetricId::HeadOffA, off_a.head_deg),

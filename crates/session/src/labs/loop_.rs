@@ -164,9 +164,11 @@ impl LabInputs for LoopInputs {
             .frames
             .first()
             .map_or(Planar::IDENTITY, |first| first.inverse().after(&looped.cycle.after(first)));
+        // The seam is where the first cycle ends.
+        let at_seam = |id, value: f64| Metric::at_frame(id, value, Some(frames), fps);
         let mut metrics = vec![
-            Metric::new(MetricId::LoopSeam, looped.seam.turn_deg),
-            Metric::new(MetricId::LoopVelocitySeam, looped.seam.turn_dps),
+            at_seam(MetricId::LoopSeam, looped.seam.turn_deg),
+            at_seam(MetricId::LoopVelocitySeam, looped.seam.turn_dps),
         ];
         metrics.append(&mut slides);
         metrics.extend([

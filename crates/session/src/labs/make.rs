@@ -9,7 +9,7 @@ use crate::outside::short;
 use crate::params::{Key, Kind, Params, Value};
 use crate::{LabId, choices};
 use segue_motion::clip::Motion;
-use segue_motion::metrics::foot_slide_cm;
+use segue_motion::metrics::worst_foot_slide;
 use segue_motion::synth::{self, Action};
 use segue_text::Message;
 use std::sync::Arc;
@@ -130,15 +130,18 @@ fn make(params: &Params) -> Result<Outcome, LabError> {
     let made = synth::synthesize(&synth_params(params))?;
     let mut motion =
         Motion::analyze(made.clip.with_name(made_id(params))).with_feet(foot_options(params));
-    let slid = |motion: &Motion| foot_slide_cm(motion.clip(), motion.roles(), motion.contacts());
-    let mut metrics = vec![slide(slid(&motion))];
+    let slid = |motion: &Motion| worst_foot_slide(motion.clip(), motion.roles(), motion.contacts());
+    let free = slid(&motion);
     let lock = Lock::of(params);
     let clip =
         with_feet(motion.clip(), motion.roles(), motion.contacts(), motion.ground_m(), lock)?;
     motion = motion.with_clip(clip, motion.ground_frames().to_vec());
-    if lock.is_some() {
-        metrics = vec![slide(slid(&motion)), slide_before(metrics[0].value)];
-    }
+    let fps = motion.clip().fps();
+    let metrics = if lock.is_some() {
+        vec![slide(slid(&motion), fps), slide_before(free)]
+    } else {
+        vec![slide(free, fps)]
+    };
     Ok(Outcome { metrics, ..Outcome::plain(Arc::new(motion)) })
 }
 

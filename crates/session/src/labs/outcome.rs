@@ -225,7 +225,7 @@ impl Outcome {
 
     /// Returns whether the metrics of every lab apply but are not yet known.
     pub(crate) fn awaits_numbers(&self) -> bool {
-        let common = metrics::of_result(&ResultMetrics::default());
+        let common = metrics::of_result(&ResultMetrics::default(), 1.0);
         !self.is_measured
             && self.metrics.iter().zip(&common).filter(|(own, common)| own.id == common.id).count()
                 == common.len()
@@ -234,7 +234,8 @@ impl Outcome {
     /// Puts the metrics of every lab before those of its own; without values if they are not yet
     /// known.
     pub(crate) fn take_numbers(&mut self, found: Option<ResultMetrics>) {
-        let common = metrics::of_result(&found.unwrap_or_default());
+        let fps = self.motion.clip().fps();
+        let common = metrics::of_result(&found.unwrap_or_default(), fps);
         self.metrics.retain(|metric| common.iter().all(|other| other.id != metric.id));
         self.metrics.splice(..0, common);
         self.is_measured = found.is_some();

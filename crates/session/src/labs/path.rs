@@ -12,10 +12,10 @@ use crate::params::{Key, List, MAX_PANES, Params, Value};
 use locked_feet::{LockedFeet, LockedFeetCache};
 use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::math::Planar;
-use segue_motion::metrics::foot_slide_cm;
+use segue_motion::metrics::{Extreme, worst_foot_slide};
 use segue_motion::path::{
     ArcLengthPath, CarryOptions, EditedMotion, FitError, FitOptions, FittedPath, GroundSpline,
-    HardTurn, MotionOptions, Offset, Orientation, PathEditor, SplineEnds, Timing, Waypoint,
+    HardTurn, MotionOptions, Offset, Orientation, PathEditor, Slide, SplineEnds, Timing, Waypoint,
 };
 use segue_motion::transition::FootLocking;
 use segue_text::{Message, msg};
@@ -339,28 +339,35 @@ impl LabInputs for PathInputs {
         let (curve, made) = free_motion(self)?;
         let fitted = &self.fitted;
         let free = Arc::new(made.clip);
-        let (clip, slide_cm) = match &self.feet {
-            Feet::Free | Feet::Awaited => (free, made.slide_cm.carried),
+        let Slide { original, carried, carried_at, .. } = made.slide_cm;
+        let free_slide =
+            carried.map(|value| Extreme { value, frame: carried_at.unwrap_or_default() });
+        let (clip, worst_slide) = match &self.feet {
+            Feet::Free | Feet::Awaited => (free, free_slide),
             Feet::AtOnce => {
                 let clip = match self.locking(&free, &made.contacts, &made.turns)? {
                     Some(locking) => Arc::new(locking.finish()?),
                     None => free,
                 };
-                let slide_cm = foot_slide_cm(&clip, fitted.motion.roles(), &made.contacts);
-                (clip, slide_cm)
+                let worst = worst_foot_slide(&clip, fitted.motion.roles(), &made.contacts);
+                (clip, worst)
             }
             Feet::Locked(planted) => planted.made.clone()?,
         };
+        let fps = clip.fps();
+        let hard_turns = made.hard_turns.len() as f64;
+        let hardest = made.hard_turns.iter().max_by(|a, b| a.turn_dps.total_cmp(&b.turn_dps));
+        let hardest = hardest.map(|turn| turn.worst);
         let mut metrics = vec![
-            slide(slide_cm),
-            Metric::new(MetricId::FootSlideOriginal, made.slide_cm.original),
+            slide(worst_slide, fps),
+            Metric::new(MetricId::FootSlideOriginal, original),
             Metric::new(MetricId::FitError, fitted.error.rms_cm),
             Metric::new(MetricId::LargestFitError, fitted.error.most_cm),
             Metric::new(MetricId::PathLength, curve.length_m()),
-            Metric::new(MetricId::HardTurns, made.hard_turns.len() as f64),
+            Metric::at_frame(MetricId::HardTurns, hard_turns, hardest, fps),
         ];
         if matches!(self.feet, Feet::AtOnce | Feet::Locked(_)) {
-            metrics.push(slide_before(made.slide_cm.carried));
+            metrics.push(slide_before(free_slide));
         }
         if self.edited.is_some() {
             metrics.push(Metric::new(MetricId::OriginalPathLength, fitted.curve.length_m()));

@@ -22,7 +22,7 @@ use segue_motion::blend::{
 };
 use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::math::Planar;
-use segue_motion::metrics::{foot_slide_cm, penetration_cm};
+use segue_motion::metrics::{deepest_penetration, worst_foot_slide};
 use segue_motion::registration::Registration;
 use segue_motion::skeleton::Side;
 use segue_text::{Message, msg};
@@ -439,17 +439,16 @@ impl RegisterInputs {
         distance_cm: Option<f64>,
     ) -> Vec<Metric> {
         let roles = self.pair.a.roles();
-        let slid = |clip: &Clip| foot_slide_cm(clip, roles, contacts);
-        let mut metrics = vec![slide(slid(clip))];
+        let slid = |clip: &Clip| worst_foot_slide(clip, roles, contacts);
+        let fps = clip.fps();
+        let mut metrics = vec![slide(slid(clip), fps)];
         if self.foot_lock.is_some() {
             metrics.push(slide_before(slid(free)));
         }
         metrics.push(Metric::new(MetricId::FrameDistance, distance_cm));
         let frames = mixed.start.saturating_sub(1)..mixed.end.saturating_add(1);
-        metrics.push(Metric::new(
-            MetricId::Penetration,
-            penetration_cm(clip, frames, self.ground_m()),
-        ));
+        let depth = deepest_penetration(clip, frames, self.ground_m());
+        metrics.push(Metric::extreme(MetricId::Penetration, depth, fps));
         metrics
     }
 }

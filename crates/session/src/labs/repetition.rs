@@ -4,7 +4,7 @@ use super::feet::{Lock, slide, slide_before, with_feet};
 use crate::labs::LabError;
 use crate::metrics::Metric;
 use segue_motion::clip::{Clip, Contacts, Motion, character_frames};
-use segue_motion::metrics::foot_slide_cm;
+use segue_motion::metrics::{Extreme, worst_foot_slide};
 use segue_motion::skeleton::{Roles, Side};
 use segue_motion::transition::repeat_clip;
 use std::sync::Arc;
@@ -41,12 +41,18 @@ pub(super) fn repeat_cycle(
     };
     let cycle = second.after(&first.inverse());
     let three = Arc::new(three);
-    let slid = |clip: &Clip| foot_slide_cm(clip, roles, contacts);
-    let mut slides = vec![slide(slid(&three))];
+    // A frame of any of the three cycles is shown in the first one.
+    let slid = |clip: &Clip| -> Option<Extreme> {
+        let worst = worst_foot_slide(clip, roles, contacts)?;
+        Some(Extreme { frame: worst.frame % cycle_frames.max(1), ..worst })
+    };
+    let free = slid(&three);
     let held = with_feet(&three, roles, contacts, ground_m, lock)?;
-    if lock.is_some() {
-        slides = vec![slide(slid(&held)), slide_before(slides[0].value)];
-    }
+    let slides = if lock.is_some() {
+        vec![slide(slid(&held), fps), slide_before(free)]
+    } else {
+        vec![slide(free, fps)]
+    };
     let middle = held.crop(cycle_frames..2 * cycle_frames)?;
     let frames = count * cycle_frames + 1;
     let clip = repeat_clip(&middle.transformed(&cycle.inverse()), &cycle, count + 1)

@@ -1,7 +1,7 @@
 //! The View lab: one clip, with its planted feet locked, at another place or without its root
 //! motion, and its metrics.
 
-use super::feet::{Lock, locking, slide, slide_before};
+use super::feet::{Lock, locking, slide_before};
 use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs, can_change_result};
 use super::sliced::{JobKind, Sliced};
 use super::{MeasuredMotion, Outcome};
@@ -12,7 +12,7 @@ use crate::params::{Compare, Key, Kind, MAX_PANES, PARAMS, Param, Params, Value}
 use crate::{LabId, choices};
 use segue_motion::clip::{Motion, take_in_place};
 use segue_motion::math::Planar;
-use segue_motion::metrics::{ClipMeter, SlideMeter};
+use segue_motion::metrics::{ClipMeter, Extreme, SlideMeter};
 use segue_motion::path::{FitOptions, FittedPath};
 use segue_motion::transition::FootLocking;
 use segue_text::{Message, msg};
@@ -220,7 +220,8 @@ enum Stage {
     /// Measures the unlocked feet of a clip that will be locked.
     Before(Lock, SlideMeter),
     Locking {
-        before_cm: Option<f64>,
+        /// The foot slide before locking.
+        before: Option<Extreme>,
         locking: Box<FootLocking>,
     },
     Measuring {
@@ -354,22 +355,22 @@ fn next(of: &Arc<Motion>, stage: Stage) -> Step {
             if meter.advance(of.clip(), of.contacts(), PER_SLICE) {
                 return on(Stage::Before(lock, meter));
             }
-            let before_cm = meter.worst_cm();
+            let before = meter.worst();
             match locking(Arc::clone(of.clip()), of.roles(), of.contacts(), of.ground_m(), lock) {
-                Ok(Some(locking)) => on(Stage::Locking { before_cm, locking: Box::new(locking) }),
-                Ok(None) => on(Stage::measuring(Arc::clone(of), Some(slide_before(before_cm)))),
+                Ok(Some(locking)) => on(Stage::Locking { before, locking: Box::new(locking) }),
+                Ok(None) => on(Stage::measuring(Arc::clone(of), Some(slide_before(before)))),
                 Err(error) => Step::Done(Box::new(Err(error))),
             }
         }
-        Stage::Locking { before_cm, mut locking } => {
+        Stage::Locking { before, mut locking } => {
             if locking.advance(PER_SLICE) {
-                return on(Stage::Locking { before_cm, locking });
+                return on(Stage::Locking { before, locking });
             }
             match locking.finish() {
                 // Hips are only raised and lowered, so the character's ground frames stay.
                 Ok(locked) => {
                     let motion = of.with_clip(locked, of.ground_frames().to_vec());
-                    on(Stage::measuring(Arc::new(motion), Some(slide_before(before_cm))))
+                    on(Stage::measuring(Arc::new(motion), Some(slide_before(before))))
                 }
                 Err(error) => Step::Done(Box::new(Err(error.into()))),
             }
@@ -379,10 +380,13 @@ fn next(of: &Arc<Motion>, stage: Stage) -> Step {
                 return on(Stage::Measuring { motion, before, meter });
             }
             let found = meter.finish(motion.ground_frames());
-            let slides = std::iter::once(slide(found.foot_slide_cm)).chain(before);
+            let fps = motion.clip().fps();
+            let at = |id, value: Option<f64>, frame| Metric::at_frame(id, value, frame, fps);
+            let slide = at(MetricId::FootSlide, found.foot_slide_cm, found.foot_slide_at);
+            let slides = std::iter::once(slide).chain(before);
             let faults = [
-                Metric::new(MetricId::ClipPenetration, found.penetration_cm),
-                Metric::new(MetricId::ClipPositionJump, found.jump_cm),
+                at(MetricId::ClipPenetration, found.penetration_cm, found.penetration_at),
+                at(MetricId::ClipPositionJump, found.jump_cm, found.jump_at),
             ];
             Step::Done(Box::new(Ok(Outcome {
                 metrics: slides.chain(faults).collect(),

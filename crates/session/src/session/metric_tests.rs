@@ -47,7 +47,7 @@ fn metrics_of_every_lab_come_first_and_are_clean_for_clean_results() {
         LABS.iter().map(|link| link[4..].split('&').next().unwrap()).collect();
     let Kind::Choice(all) = Key::Lab.param().kind else { panic!() };
     assert_eq!(labs, all.iter().map(|choice| choice.key).collect());
-    let expected = of_result(&ResultMetrics::default());
+    let expected = of_result(&ResultMetrics::default(), 60.0);
     assert_eq!(expected.map(|metric| metric.id.name()), METRICS_OF_ALL);
     assert!(expected.iter().all(|metric| metric.id.row().better == Better::Lower));
     let mut seen = BTreeSet::new();
@@ -66,7 +66,13 @@ fn metrics_of_every_lab_come_first_and_are_clean_for_clean_results() {
         }
         let found = common(&session);
         for (found, expected) in found.iter().zip(expected) {
-            assert_eq!(Metric { value: None, ..*found }, expected, "{link}");
+            assert_eq!(Metric::new(found.id, None), expected, "{link}");
+        }
+        // What happens somewhere happens while the result plays.
+        let outcome = session.main_outcome().unwrap();
+        for Metric { id, at_secs, .. } in &outcome.metrics {
+            let is_inside = |secs: f64| (0.0..=outcome.duration_secs() + 1e-9).contains(&secs);
+            assert!(at_secs.is_none_or(is_inside), "{link}: {id:?} at {at_secs:?}");
         }
         let values: Vec<f64> = found.iter().map(|metric| metric.value.unwrap()).collect();
         let [jump, _, spin, skating] = values[..] else { panic!("{values:?}") };
@@ -154,6 +160,15 @@ fn fault_in_the_result_of_any_lab_is_measured() {
             "{link}: {flash:?}"
         );
         assert!(flash.velocity_jump_dps.unwrap() > 900.0, "{link}: {flash:?}");
+        // The time that is shown is that of the frame: the next one, where the joint turns back.
+        let mut shown = outcome.as_ref().clone();
+        shown.take_numbers(Some(flash));
+        let at_secs = shown.metric(MetricId::PoseJump).unwrap().at_secs.unwrap();
+        let frame = (at_secs * clip.fps()).round() as usize;
+        assert!((half..=half + 1).contains(&frame), "{link}: {frame}, not {half}");
+        let at_secs = shown.metric(MetricId::VelocityJump).unwrap().at_secs.unwrap();
+        assert!(((at_secs * clip.fps()) - half as f64).abs() < 4.0, "{link}: {at_secs}");
+        assert_eq!(shown.metric(MetricId::Skating).unwrap().at_secs, None, "it is a mean");
         let turn = 0.2 * clip.fps();
         let spin = measured(&spoiled(outcome, |frame, pose| {
             let share = ((frame as f64 - half as f64) / turn).clamp(0.0, 1.0);
@@ -173,7 +188,7 @@ fn long_results_are_shown_at_once_and_measured_in_slices() {
     session.apply(shorter).unwrap();
     let outcome = Arc::clone(session.main_outcome().unwrap());
     assert!(outcome.motion.clip().frames() > 2_000);
-    assert_eq!(outcome.metrics[0], of_result(&ResultMetrics::default())[0]);
+    assert_eq!(outcome.metrics[0], of_result(&ResultMetrics::default(), 60.0)[0]);
     assert!(session.panes()[0].result().is_err() && session.jobs().is_empty());
     let mut slices = 0;
     while session.panes()[0].result().is_err() {

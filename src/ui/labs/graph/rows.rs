@@ -17,21 +17,17 @@ use segue_session::JobKind;
 use segue_session::LabId;
 use segue_session::choices;
 use segue_session::{BuiltGraph, Command, Key, List, Session, Value, graph_of, link};
-use segue_text::{Message, ToMessage, msg};
+use segue_text::{Message, msg};
 use std::sync::Arc;
 
 /// Draws the rows of the lab.
 pub(crate) fn graph_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    let palette = palette_of(ui);
     clip_sets_ui(session, out, ui);
     progress_ui(session, out, ui);
     if shows_jump(session)
         && kit::button_ui(Button::new(text::BACK_TO_WALK).icon(Icon::Undo).outlined(), ui).clicked()
     {
         close_jump(state, out);
-    }
-    if let Some(problem) = session.panes().iter().find_map(|pane| pane.problem.as_ref()) {
-        kit::note_ui(&problem.to_sentence(), palette.warning, ui);
     }
     if !state.labs.graph.has_map_panel {
         map::map_ui(session, f32::INFINITY, state, out, ui);
@@ -71,7 +67,6 @@ fn progress_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
 
 /// Draws the clips, with buttons to remove one and a menu to add one.
 fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
-    let palette = palette_of(ui);
     let ids = session.graph_clip_ids();
     let title = msg!("Clips of the graph: {count}", count = ids.len());
     let mut added = None;
@@ -139,7 +134,6 @@ fn set_clips(ids: &[String], out: &mut Out) {
 
 fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let params = session.params();
-    let palette = palette_of(ui);
     param_row_ui(Key::Construction, &Detail::default(), session, out, ui);
     let longest = session.graph_clips().map(|graph_clips| graph_clips.set().longest() as f64);
     let window = Detail {
@@ -241,7 +235,6 @@ fn walk_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
 
 /// Draws the rows that send the walk to a clip, or along a path.
 fn ways_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    let palette = palette_of(ui);
     let visits = session.graph_visits();
     if let Some(graph_clips) = session.graph_clips() {
         let reached = reached(session, ui);

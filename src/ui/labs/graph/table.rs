@@ -27,11 +27,11 @@ pub(crate) fn table_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         for row in &table.rows {
             ui.label(small(&row.heading(), palette.muted, ui))
                 .on_hover_text(say(Word::new(row.metric.row().help), ui));
-            let [best, worst] = row.ends();
-            for value in &row.values {
-                let color = match value {
-                    Some(value) if Some(*value) == best => palette.good,
-                    Some(value) if Some(*value) == worst => palette.bad,
+            let ends = row.ends();
+            for (pane, value) in row.values.iter().enumerate() {
+                let color = match Some(pane) {
+                    of if of == ends.best => palette.good,
+                    of if of == ends.worst => palette.bad,
                     _ => palette.text,
                 };
                 ui.label(small(&Message::data(digits(*value)), color, ui));

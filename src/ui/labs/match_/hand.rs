@@ -13,8 +13,6 @@ use segue_session::{Command, DriveCommand, Key, Session, Value};
 
 /// The push below which a stick is at rest.
 const DEAD: f32 = 0.18;
-/// Height of a row of metrics below the stick at scale 1, points.
-const NUMBERS: f32 = 36.0;
 /// The speed at which a gamepad turns the camera, degrees per second.
 const TURN_DPS: f64 = 130.0;
 
@@ -92,7 +90,7 @@ pub(crate) fn steer(session: &Session, state: &mut UiState, out: &mut Out, ctx: 
     }
 }
 
-/// Draws the stick over the lower left of the stage, above its metrics.
+/// Draws the stick over the lower left of the stage.
 pub(crate) fn stick_on_stage_ui(
     session: &Session,
     stage: Rect,
@@ -105,9 +103,7 @@ pub(crate) fn stick_on_stage_ui(
         return;
     }
     let size = kit::stick_size(ui);
-    // The stick must not move under the thumb when a metric appears or disappears.
-    let numbers = if layout == Layout::Phone { 2.0 } else { 1.0 } * NUMBERS + 2.0 * space::M;
-    let bottom = stage.bottom() - numbers * theme_of(ui).scale() - space::S;
+    let bottom = stage.bottom() - space::M;
     let center = pos2(stage.left() + space::L + 0.5 * size, bottom - 0.5 * size);
     // Without room for the stick, keys and gamepad remain.
     if center.y - 0.5 * size < stage.top() + 40.0 {

@@ -18,11 +18,7 @@ use segue_text::{Message, ToMessage};
 
 /// Draws the rows of the lab.
 pub(crate) fn drive_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    let palette = palette_of(ui);
     clip_sets_ui(session, out, ui);
-    if let Some(problem) = session.panes().first().and_then(|pane| pane.problem.as_ref()) {
-        kit::note_ui(&problem.to_sentence(), palette.warning, ui);
-    }
     ui.add_space(space::XS);
     row(Key::Scenario, session, out, ui);
     input_ui(session, out, ui);

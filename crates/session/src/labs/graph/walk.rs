@@ -190,11 +190,12 @@ impl Walk {
 
 /// Returns the metrics of a walk beyond those of every result, in the order in which they are
 /// listed.
-pub(super) fn of_walk(found: &WalkMetrics) -> [Metric; 5] {
+pub(super) fn of_walk(found: &WalkMetrics, fps: f64) -> [Metric; 5] {
+    let at = |id, count: usize, frame| Metric::at_frame(id, count as f64, frame, fps);
     [
         Metric::new(MetricId::SeamsPerMinute, found.seams_per_minute()),
-        Metric::new(MetricId::Spins, found.spins() as f64),
-        Metric::new(MetricId::Flashes, found.flashes() as f64),
+        at(MetricId::Spins, found.spins(), found.worst_spin_at()),
+        at(MetricId::Flashes, found.flashes(), found.worst_flash_at()),
         Metric::new(MetricId::Lag, found.median_lag_s()),
         Metric::new(MetricId::Variety, found.variety * 100.0),
     ]

@@ -99,10 +99,11 @@ impl Measuring {
     }
 
     fn finish(self) -> (Motion, WalkMeasurements) {
-        let before = self.free.map(|(_, meter)| slide_before(meter.worst_cm()));
+        let before = self.free.map(|(_, meter)| slide_before(meter.worst()));
+        let slide = slide(self.slide.worst(), self.shown.clip().fps());
         let seen = WalkMeasurements {
             trace: Arc::new(self.meter.finish(self.shown.clip())),
-            slides: std::iter::once(slide(self.slide.worst_cm())).chain(before).collect(),
+            slides: std::iter::once(slide).chain(before).collect(),
         };
         (self.shown, seen)
     }
@@ -474,7 +475,7 @@ impl WalkBuilder {
     }
 
     fn measured(&self) -> Vec<Metric> {
-        of_walk(&self.meter.metrics(self.built.clips.profile())).to_vec()
+        of_walk(&self.meter.metrics(self.built.clips.profile()), self.fps()).to_vec()
     }
 
     /// Returns the assembled frames as a motion.

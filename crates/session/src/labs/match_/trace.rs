@@ -222,11 +222,12 @@ impl Tracer {
 /// Returns the metrics of a drive beyond those of every result, in the order in which they are
 /// listed.
 pub(super) fn of_drive(found: &DriveMetrics) -> [Metric; 5] {
+    let at = |id, value: Option<f64>, frame| Metric::at_frame(id, value, frame, RATE as f64);
     [
         Metric::new(MetricId::PositionError, found.error_cm),
-        Metric::new(MetricId::LargestPositionError, found.worst_error_cm),
-        Metric::new(MetricId::TurnTime, found.turn_secs),
-        Metric::new(MetricId::FootSlide, found.worst_skate_cm),
+        at(MetricId::LargestPositionError, Some(found.worst_error_cm), found.worst_error_at),
+        at(MetricId::TurnTime, found.turn_secs, found.turned_at),
+        at(MetricId::FootSlide, found.worst_skate_cm, found.worst_skate_at),
         Metric::new(MetricId::JumpsPerMinute, found.seams_per_minute),
     ]
 }

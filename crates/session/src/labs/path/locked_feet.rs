@@ -5,15 +5,15 @@ use super::{PathInputs, free_motion};
 use crate::labs::LabError;
 use crate::params::MAX_PANES;
 use segue_motion::clip::{Clip, Contacts};
-use segue_motion::metrics::SlideMeter;
+use segue_motion::metrics::{Extreme, SlideMeter};
 use segue_motion::transition::FootLocking;
 use std::sync::Arc;
 
 /// The number of frames in one slice of work: about 2 ms for 31 joints in a browser.
 const PER_SLICE: usize = 500;
 
-/// The motion with its feet locked, and their slide, centimetres.
-type LockedMotion = Result<(Arc<Clip>, Option<f64>), LabError>;
+/// The motion with its feet locked, and their slide in the worst stance, centimetres.
+type LockedMotion = Result<(Arc<Clip>, Option<Extreme>), LabError>;
 
 /// The result for one request.
 #[derive(Debug)]
@@ -118,7 +118,7 @@ fn step(of: &PathInputs, stage: Stage) -> Result<Stage, LockedMotion> {
             if meter.advance(&clip, &contacts, PER_SLICE) {
                 return Ok(Stage::Measuring(clip, contacts, meter));
             }
-            Err(Ok((clip, meter.worst_cm())))
+            Err(Ok((clip, meter.worst())))
         }
     }
 }
