@@ -99,9 +99,9 @@ pub(super) fn problem_ui(
     out: &mut Out,
     ui: &mut Ui,
 ) {
-    let sentence = say(&problem.to_sentence(), ui);
-    let words = egui::RichText::new(sentence).font(theme_of(ui).font(Type::Body));
-    ui.add(egui::Label::new(words.color(palette_of(ui).warning)).wrap());
+    let (font, ink) = (theme_of(ui).font(Type::Body), palette_of(ui).warning);
+    let words = egui::RichText::new(say(&problem.to_sentence(), ui)).font(font);
+    ui.add(egui::Label::new(words.color(ink)).wrap());
     remedy_buttons_ui(pane, session, out, ui);
 }
 

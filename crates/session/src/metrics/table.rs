@@ -136,11 +136,11 @@ metrics! {
 
     // The artefacts of every lab, and of transitions.
 
-    // The limbs of a walk turn by 100 to 200°/s, and speeds are told apart from 5 % on (McKee 1981).
+    // The limbs of a walk turn by 100 to 200°/s, and speeds are told apart from 5 % on (McKee).
     VelocityJump "velocity_jump_dps" "Velocity jump", DegreesPerSec, Lower by 5.0,
         "How much a joint's angular velocity changes within 1/30 s, beyond the most that it does in the clips: the worst. Of a clip by itself, beyond all but one in a hundred of its frames.",
         "0 is best: nothing speeds up or slows down faster than in the clips. From about 100°/s on it is seen as a jolt.";
-    // Three frames of a display, and half of the 0.1 s that players notice (Claypool, Claypool 2006).
+    // Three frames of a display, and half of the 0.1 s that players notice (Claypool, Claypool).
     Lag "lag_s" "Lag", Secs, Lower by 0.05,
         "The time until the velocity over the ground has changed by 90 % to that of the incoming clip; the median of several transitions.",
         "Lower responds faster, and jolts more: weigh it against the velocity jump. Below 0.1 s it feels immediate.";
