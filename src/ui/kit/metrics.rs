@@ -143,7 +143,9 @@ impl MetricGrid {
         let gaps = (columns - 1) as f32 * space::M;
         let left = (room.width - widths.iter().sum::<f32>() - gaps).max(0.0);
         let share = (left / columns as f32).min(1.5 * space::L * theme.scale());
-        widths.iter_mut().for_each(|width| *width += share.floor());
+        for width in &mut widths {
+            *width += share.floor();
+        }
         let height = if room.is_ranked { 44.0 } else { 38.0 } * theme.scale();
         Self {
             shown,
@@ -180,7 +182,7 @@ pub(crate) fn metric_cell_ui(metric: &Metric<'_>, rect: Rect, id: Id, ui: &Ui) -
     let ink = metric.ink(ui);
     let name = line_of(&[Run::new(metric.short, Type::Small, palette.muted)], rect.width(), ui);
     let name_top = rect.bottom() - name.size().y - 1.0;
-    let number = vec![
+    let number = [
         Run::new(Text::Data(metric.value), Type::Metric, ink),
         Run::new(metric.unit, Type::Small, palette.muted).after(space::XS),
     ];

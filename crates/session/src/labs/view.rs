@@ -218,7 +218,7 @@ struct PendingView {
 #[derive(Debug)]
 enum Stage {
     /// Measures the unlocked feet of a clip that will be locked.
-    Before(Lock, SlideMeter),
+    Before(Lock, Box<SlideMeter>),
     Locking {
         /// The foot slide before locking.
         before: Option<Extreme>,
@@ -280,7 +280,10 @@ impl ViewCache {
             lock,
             is_wanted: true,
             stage: match lock {
-                Some(lock) => Stage::Before(lock, SlideMeter::new(motion.clip(), motion.roles())),
+                Some(lock) => {
+                    let meter = SlideMeter::new(motion.clip(), motion.roles());
+                    Stage::Before(lock, Box::new(meter))
+                }
                 None => Stage::measuring(Arc::clone(motion), None),
             },
         });
