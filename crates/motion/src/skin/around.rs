@@ -79,7 +79,7 @@ enum Stage {
 
 impl SkinBuilder {
     /// Begins the body of a skeleton: a mannequin of human proportions where the roles are those of
-    /// a human, otherwise limbs along the bones. It is built on the skeleton's
+    /// a person on two legs, otherwise limbs along the bones. It is built on the skeleton's
     /// [`canonical_stance`]; `reference` is a pose that shows the directions of its bones
     /// ([`crate::clip::reference_pose`]). The joints of the mesh are those of the skeleton (at most
     /// the first 65,536).

@@ -7,8 +7,9 @@
 //! by the weighted mean of the motions themselves ([`dual_quaternion`]), which keeps it. Both are
 //! written here plainly, one vertex after the other; the renderer does the same on the GPU.
 //!
-//! [`SkinnedMesh::around_clip`] makes a mesh for any skeleton, a mannequin where the roles of a
-//! human are known. A [`SkinBuilder`] makes it in slices, and the resulting [`ProceduralSkin`]
+//! [`SkinnedMesh::around_clip`] makes a mesh for any skeleton: a mannequin where the joints of a
+//! person on two legs are known, otherwise limbs along the bones, with the trunk, the head and the
+//! paws of an animal. A [`SkinBuilder`] makes it in slices, and the resulting [`ProceduralSkin`]
 //! takes any girth at once. A mesh that was read from a file is a [`SkinnedMesh`], too.
 //!
 //! A motion with weights `w` that sum to 1 takes a point `p` of the bind pose to

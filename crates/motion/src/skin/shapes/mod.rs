@@ -1,5 +1,5 @@
-//! The shapes of a body: tapered limbs from the bones alone, and a mannequin where the roles of a
-//! human are known.
+//! The shapes of a body: tapered limbs from the bones alone, and a mannequin where the joints of
+//! a person on two legs are known.
 //!
 //! The same shapes are drawn as limbs and used as the surface around which the smooth mesh is
 //! built.
@@ -139,7 +139,7 @@ pub struct PlacedShape {
 }
 
 /// Returns the shapes of a skeleton whose joints rest at `rest` (metres, the root at the origin):
-/// those of a mannequin where the roles are those of a human, otherwise one per bone. All of their
+/// those of a mannequin where the roles are those of a person, otherwise one per bone, and a head. All of their
 /// numbers are finite.
 #[must_use]
 pub fn limb_shapes(skeleton: &Skeleton, rest: &[Vec3], roles: Option<&Roles>) -> Vec<Shape> {
