@@ -27,9 +27,9 @@ fn set_balls_apart(shapes: &mut [Shape]) {
 
 /// The shapes of one skeleton's body, generated once and posed every frame.
 ///
-/// With the roles of a person on two legs it becomes a mannequin of human proportions (segment lengths are the
-/// skeleton's own; girths follow the body height). Any other tree gets one tapered limb per bone,
-/// whose girth grows with the length of all bones below it.
+/// With the roles of a person on two legs it becomes a mannequin of human proportions (segment
+/// lengths are the skeleton's own; girths follow the body height). Any other tree gets one tapered
+/// limb per bone, whose girth grows with the length of all bones below it.
 #[derive(Clone, Debug, Default)]
 pub struct Body {
     shapes: Vec<Shape>,

@@ -60,8 +60,8 @@ pub(super) struct WeightDiffusion {
 }
 
 /// Returns the rate at which weights diffuse at each vertex so that they reach as far as `spreads`
-/// says (the standard deviation of their transition, metres): on a surface with edges of length `e`,
-/// `n` rounds with the rate `r` have a variance of `n r e² / 2`.
+/// says (the standard deviation of their transition, metres): on a surface with edges of length
+/// `e`, `n` rounds with the rate `r` have a variance of `n r e² / 2`.
 pub(super) fn rates(
     positions: &[Vec3],
     neighbours: &Neighbours,

@@ -88,8 +88,8 @@ impl Search<'_> {
         self.ranked(words, side, above).min().map(|(_, _, joint)| joint)
     }
 
-    /// Returns whether a side has several limbs of the kind of `words`, as spiders have legs: none of
-    /// them is the limb of a person.
+    /// Returns whether a side has several limbs of the kind of `words`, as spiders have legs: none
+    /// of them is the limb of a person.
     fn is_ambiguous(&self, words: Vocabulary, side: Side) -> bool {
         let best = self.ranked(words, Some(side), None).map(|(rank, depth, _)| (rank, depth)).min();
         let equal = self.ranked(words, Some(side), None);

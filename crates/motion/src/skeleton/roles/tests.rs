@@ -179,7 +179,8 @@ fn body_height_follows_from_the_legs() {
     assert!((Roles::default().body_height(&skeleton) - longest).abs() < 1e-4);
 }
 
-/// Returns a spider: eight legs of four joints, named by `name` from the side, the leg and the part.
+/// Returns a spider: eight legs of four joints, named by `name` from the side, the leg and the
+/// part.
 fn spider(name: impl Fn(&str, usize, usize) -> String) -> Skeleton {
     let mut joints = vec![Joint {
         name: "body".into(),

@@ -9,8 +9,8 @@ use glam::Vec3;
 const GIRTH_POWER: f32 = 0.6;
 /// Radius of a bone with the whole skeleton below it, per metre of the skeleton's total length.
 const GIRTH: f32 = 0.04;
-/// The greatest total length that counts, in lengths of the longest path from the root: eight legs do
-/// not make each of them thicker.
+/// The greatest total length that counts, in lengths of the longest path from the root: eight legs
+/// do not make each of them thicker.
 const MAX_TOTAL: f32 = 3.5;
 /// The greatest radius of a bone as a share of its length, so that short bones do not become balls,
 /// and as a share of the length of all bones below it, so that a back of many short bones does not
@@ -98,8 +98,8 @@ pub(super) fn shapes(skeleton: &Skeleton, rest: &[Vec3], roles: Option<&Roles>) 
     shapes
 }
 
-/// Returns the head, from its joint to the farthest end of the bones below it; `None` where the joint
-/// has neither an end nor children.
+/// Returns the head, from its joint to the farthest end of the bones below it; `None` where the
+/// joint has neither an end nor children.
 fn head_shape(skeleton: &Skeleton, rest: &[Vec3], lengths: &Lengths, head: usize) -> Option<Shape> {
     let joint = skeleton.joints().get(head)?;
     let children = skeleton.children(head).map(|child| rest[child] - rest[head]);

@@ -16,8 +16,8 @@ const CHEST_SPREAD: f32 = 0.25;
 /// swells beside the chest.
 const SHOULDER_HELD: f32 = 0.25;
 
-/// The least distance of a thigh's axis from the middle, on an adult: less would melt the thighs into
-/// one. Above the greatest one, which is outside of the pelvis, half of the rest is kept.
+/// The least distance of a thigh's axis from the middle, on an adult: less would melt the thighs
+/// into one. Above the greatest one, which is outside of the pelvis, half of the rest is kept.
 const MIN_HALF_HIPS: f32 = 0.090;
 const MAX_HALF_HIPS: f32 = 0.115;
 
@@ -51,12 +51,12 @@ const MAX_HEAD: f32 = 2.0;
 /// an adult, metres: twist and helper joints lie in it.
 const MIN_PROTRUSION: f32 = 0.045;
 
-/// The least cosine of the angle between the trunk and either leg of a person, downwards: less is an
-/// animal on four legs, or a body that lies folded.
+/// The least cosine of the angle between the trunk and either leg of a person, downwards: less is
+/// an animal on four legs, or a body that lies folded.
 const MIN_UPRIGHT: f32 = 0.55;
 
-/// Returns whether a skeleton that rests at `rest` is that of a person: two legs that point down from
-/// the trunk, two arms and a head.
+/// Returns whether a skeleton that rests at `rest` is that of a person: two legs that point down
+/// from the trunk, two arms and a head.
 pub(in crate::skin) fn is_person(rest: &[Vec3], roles: &Roles) -> bool {
     let at = |role| roles.get_within(role, rest.len()).map(|joint| rest[joint]);
     let direction = |from, to| Some((at(to)? - at(from)?).normalize_or_zero());
@@ -110,8 +110,8 @@ pub(super) fn shapes(skeleton: &Skeleton, rest: &[Vec3], roles: &Roles) -> Optio
     Some(human.shapes)
 }
 
-/// Returns the size of the body relative to an adult of 1.75 m: that of its legs, and more where its
-/// trunk is much longer than an adult's on such legs (a child, a figure of a comic).
+/// Returns the size of the body relative to an adult of 1.75 m: that of its legs, and more where
+/// its trunk is much longer than an adult's on such legs (a child, a figure of a comic).
 fn scale(skeleton: &Skeleton, rest: &[Vec3], roles: &Roles) -> Option<f32> {
     let at = |role| roles.get_within(role, rest.len()).map(|joint| rest[joint]);
     let middle =

@@ -139,8 +139,8 @@ pub struct PlacedShape {
 }
 
 /// Returns the shapes of a skeleton whose joints rest at `rest` (metres, the root at the origin):
-/// those of a mannequin where the roles are those of a person, otherwise one per bone, and a head. All of their
-/// numbers are finite.
+/// those of a mannequin where the roles are those of a person, otherwise one per bone, and a head.
+/// All of their numbers are finite.
 #[must_use]
 pub fn limb_shapes(skeleton: &Skeleton, rest: &[Vec3], roles: Option<&Roles>) -> Vec<Shape> {
     let mut shapes = roles
