@@ -76,9 +76,11 @@ pub(crate) fn pair_ui(session: &Session, out: &mut Out, ui: &mut Ui) -> f64 {
 }
 
 /// Draws the rows of where A is left and B entered, in seconds or in frames of each clip. The help
-/// of each says how its place was found.
+/// says how they were found.
 pub(crate) fn place_rows_ui(keys: [Key; 2], session: &Session, out: &mut Out, ui: &mut Ui) {
     let automatic = keys.map(|key| session.params().optional(key).is_none());
+    // Both were found together, so that this is said once.
+    let said_at = usize::from(automatic == [false, true]);
     let transition = session.main_outcome().and_then(|outcome| outcome.transition);
     let search = transition.and_then(|transition| transition.search);
     for (index, (key, slot)) in keys.into_iter().zip([Slot::A, Slot::B]).enumerate() {
@@ -91,10 +93,10 @@ pub(crate) fn place_rows_ui(keys: [Key; 2], session: &Session, out: &mut Out, ui
             |secs: f64| motion.map_or(secs, |motion| (secs * motion.clip().fps()).round());
         let max =
             latest_secs.map(|secs| if key.param().unit == "s" { secs } else { in_frames(secs) });
-        let more = if automatic[index] || automatic == [false, false] {
-            found_sentence(session, automatic)
-        } else {
-            text::BY_HAND.into()
+        let more = match (said_at == index, automatic[index]) {
+            (true, _) => found_sentence(session, automatic),
+            (false, true) => Message::default(),
+            (false, false) => text::BY_HAND.into(),
         };
         let detail = Detail {
             max,

@@ -62,7 +62,7 @@ impl Help<'_> {
     }
 
     fn open_id(self) -> Id {
-        self.id.with("help open")
+        self.id.with("help_open")
     }
 
     /// Returns whether the text stands open below the row.

@@ -57,7 +57,12 @@ pub(super) fn loop_ui(session: &Session, _: &mut UiState, out: &mut Out, ui: &mu
     });
     let poor = distance_cm.is_some_and(|distance_cm| distance_cm > POOR_ENDS_CM);
     let place = |key| Detail {
-        more: Some(if automatic(key) { found_sentence(cycle) } else { text::BY_HAND.into() }),
+        more: Some(match (automatic(key), key) {
+            (false, _) => text::BY_HAND.into(),
+            // Both were found together, so that this is said once.
+            (true, Key::LoopTo) if automatic(Key::LoopFrom) => Message::default(),
+            (true, _) => found_sentence(cycle),
+        }),
         ..Detail::default()
     };
     param_row_ui(Key::LoopFrom, &place(Key::LoopFrom), session, out, ui);

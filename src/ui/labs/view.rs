@@ -56,7 +56,7 @@ fn kept(session: &Session, pane: usize) -> Kept {
     let unchanged = session.slot(Slot::A).filter(|_| !session.view_is_changed());
     match unchanged {
         Some(entry) if session.panes().len() < 2 => {
-            Kept { saved: entry.id.clone(), not_kept: text::KEPT_ALREADY, ..Kept::result(pane) }
+            Kept { saved: entry.id.clone(), keep_refused: text::KEPT_ALREADY, ..Kept::result(pane) }
         }
         _ => Kept::result(pane),
     }

@@ -9,7 +9,7 @@ use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{palette_of, space};
 use eframe::egui::{Id, Response, Ui};
-use segue_session::{Command, NoResult, Session};
+use segue_session::{Command, NoResult, Pane, Session};
 use segue_text::Message;
 
 /// The motion that a lab keeps and saves.
@@ -17,9 +17,9 @@ pub(crate) struct Kept {
     /// The motion that is saved: a clip's id, or `result:1` for the second pane.
     pub(crate) saved: String,
     /// The reason why it cannot be kept, beside that there is no result; empty if it can.
-    pub(crate) not_kept: Word,
+    pub(crate) keep_refused: Word,
     /// The reason why it cannot be saved, beside that there is no result; empty if it can.
-    pub(crate) not_saved: Word,
+    pub(crate) save_refused: Word,
 }
 
 impl Kept {
@@ -27,8 +27,8 @@ impl Kept {
     pub(crate) fn result(pane: usize) -> Self {
         Self {
             saved: format!("result:{pane}"),
-            not_kept: Word::default(),
-            not_saved: Word::default(),
+            keep_refused: Word::default(),
+            save_refused: Word::default(),
         }
     }
 }
@@ -59,7 +59,8 @@ pub(crate) fn footer_ui(
     }
     let missing = no_result(state.saved_pane, session, ui);
     let kept = kept(session, state.saved_pane);
-    let [not_kept, not_saved] = [kept.not_kept, kept.not_saved].map(|own| missing.unwrap_or(own));
+    let [not_kept, not_saved] =
+        [kept.keep_refused, kept.save_refused].map(|own| missing.unwrap_or(own));
     let can_save = not_saved.is_empty();
     if state.save_open && can_save {
         save_options_ui(&kept.saved, state, out, ui);
@@ -102,7 +103,7 @@ fn enabled_ui(button: Button<'_>, reason: Word, ui: &mut Ui) -> Response {
 /// Returns the reason why a pane has no result; `None` if it has one, and in the first moments in
 /// which it is computed.
 fn no_result(pane: usize, session: &Session, ui: &Ui) -> Option<Word> {
-    let missing = match session.panes().get(pane).map(|pane| pane.result()) {
+    let missing = match session.panes().get(pane).map(Pane::result) {
         Some(Ok(_)) => None,
         // The reason is shown on the stage.
         Some(Err(NoResult::Refused(_))) | None => Some(text::NOTHING_TO_KEEP),

@@ -63,8 +63,8 @@ pub(crate) fn drive_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
 
 /// Returns the recorded drive; a live one is kept, and saved when it is replayed.
 pub(super) fn kept(session: &Session, pane: usize) -> Kept {
-    let not_saved = if session.is_driven() { text::LIVE_NOT_SAVED } else { Word::default() };
-    Kept { not_saved, ..Kept::result(pane) }
+    let save_refused = if session.is_driven() { text::LIVE_NOT_SAVED } else { Word::default() };
+    Kept { save_refused, ..Kept::result(pane) }
 }
 
 fn row(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
