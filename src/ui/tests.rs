@@ -157,6 +157,26 @@ fn button(pos: egui::Pos2, pressed: bool) -> egui::Event {
     }
 }
 
+/// Presses a text, and drags to another.
+fn select(from: egui::Pos2, to: egui::Pos2, harness: &mut Harness<'_, Page>) {
+    step(vec![egui::Event::PointerMoved(from)], harness);
+    step(vec![button(from, true)], harness);
+    step(vec![egui::Event::PointerMoved(from.lerp(to, 0.5))], harness);
+    step(vec![egui::Event::PointerMoved(to)], harness);
+    step(vec![button(to, false)], harness);
+}
+
+/// Copies the selection, and returns it.
+fn copied(harness: &mut Harness<'_, Page>) -> String {
+    step(vec![egui::Event::Copy], harness);
+    let commands = &harness.output().platform_output.commands;
+    let texts = commands.iter().filter_map(|command| match command {
+        egui::OutputCommand::CopyText(text) => Some(text.as_str()),
+        _ => None,
+    });
+    texts.collect()
+}
+
 /// Scrolls a widget into sight and presses it.
 fn press(label: &str, harness: &mut Harness<'_, Page>) {
     harness.get_by_label(label).scroll_to_me();

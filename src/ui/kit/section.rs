@@ -6,8 +6,8 @@ use super::paint::{Run, full_width, line_of, put};
 use crate::ui::language::{Text, Word, say};
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{
-    Align, Align2, CollapsingHeader, Color32, Layout, Rect, RichText, Role, Sense, Ui, UiBuilder,
-    WidgetInfo, vec2,
+    Align, Align2, CollapsingHeader, Color32, Label, Layout, Rect, RichText, Role, Sense, Ui,
+    UiBuilder, WidgetInfo, vec2,
 };
 
 /// Draws the heading of a section, in quiet capitals. Returns its line, for a mark at the right
@@ -77,8 +77,9 @@ pub(crate) fn folded_unless_ui<'a>(
     shown.body_response.is_some()
 }
 
-/// Draws a sentence about the rows above or below it.
+/// Draws a sentence about the rows above or below it. It can be selected, with the numbers in it.
 pub(crate) fn note_ui<'a>(words: impl Into<Text<'a>>, color: Color32, ui: &mut Ui) {
-    ui.label(RichText::new(say(words, ui)).font(theme_of(ui).font(Type::Small)).color(color));
+    let words = RichText::new(say(words, ui)).font(theme_of(ui).font(Type::Small)).color(color);
+    ui.add(Label::new(words).selectable(true));
     ui.add_space(space::XS);
 }

@@ -128,6 +128,17 @@ fn layers_lab_describes_timing_and_mask() {
 }
 
 #[test]
+fn note_of_a_panel_is_selected_and_copied() {
+    let mut harness = harness(DESK, DARK, page("lab=speed&play=off"));
+    let note = "A: 1.41 m/s · B: 3.50 m/s";
+    harness.get_by_label(note).scroll_to_me();
+    harness.run();
+    let rect = harness.get_by_label(note).rect();
+    select(rect.left_center() + vec2(1.0, 0.0), rect.right_center(), &mut harness);
+    assert_eq!(copied(&mut harness), note);
+}
+
+#[test]
 fn mistake_is_explained_and_compared_with_the_right_way() {
     let mut harness = harness(DESK, DARK, page("lab=transition&play=off&t=2.3"));
     assert!(harness.query_by_label(text::RIGHT_AND_WRONG.english()).is_none());

@@ -227,26 +227,6 @@ fn lesson_that_is_loading_can_be_stopped() {
     assert_eq!(harness.state().out.actions.as_slice(), [Action::StopLesson]);
 }
 
-/// Presses a text, and drags to another.
-fn select(from: egui::Pos2, to: egui::Pos2, harness: &mut Harness<'_, Page>) {
-    step(vec![egui::Event::PointerMoved(from)], harness);
-    step(vec![button(from, true)], harness);
-    step(vec![egui::Event::PointerMoved(from.lerp(to, 0.5))], harness);
-    step(vec![egui::Event::PointerMoved(to)], harness);
-    step(vec![button(to, false)], harness);
-}
-
-/// Copies the selection, and returns it.
-fn copied(harness: &mut Harness<'_, Page>) -> String {
-    step(vec![egui::Event::Copy], harness);
-    let commands = &harness.output().platform_output.commands;
-    let texts = commands.iter().filter_map(|command| match command {
-        egui::OutputCommand::CopyText(text) => Some(text.as_str()),
-        _ => None,
-    });
-    texts.collect()
-}
-
 #[test]
 fn text_of_a_lesson_is_selected_and_copied_across_paragraphs() {
     let mut harness = harness(DESK, DARK, lesson("lesson=half_life&lab=transition&play=off"));
