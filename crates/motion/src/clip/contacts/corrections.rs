@@ -134,7 +134,7 @@ impl Contacts {
     #[must_use]
     pub fn with(&self, side: Side, frames: Range<usize>, planted: bool) -> Self {
         let correction = ContactCorrection { side, frames, planted };
-        ContactCorrections::from_iter([correction]).applied_to(self)
+        ContactCorrections(vec![correction]).applied_to(self)
     }
 
     /// Returns the contacts with a new stance around a frame in which the foot is not planted: of
