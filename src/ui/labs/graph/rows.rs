@@ -67,6 +67,7 @@ fn progress_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
 
 /// Draws the clips, with buttons to remove one and a menu to add one.
 fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    let palette = palette_of(ui);
     let ids = session.graph_clip_ids();
     let title = msg!("Clips of the graph: {count}", count = ids.len());
     let mut added = None;
@@ -134,6 +135,7 @@ fn set_clips(ids: &[String], out: &mut Out) {
 
 fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let params = session.params();
+    let palette = palette_of(ui);
     param_row_ui(Key::Construction, &Detail::default(), session, out, ui);
     let longest = session.graph_clips().map(|graph_clips| graph_clips.set().longest() as f64);
     let window = Detail {
@@ -235,6 +237,7 @@ fn walk_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
 
 /// Draws the rows that send the walk to a clip, or along a path.
 fn ways_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    let palette = palette_of(ui);
     let visits = session.graph_visits();
     if let Some(graph_clips) = session.graph_clips() {
         let reached = reached(session, ui);
