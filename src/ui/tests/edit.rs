@@ -109,11 +109,9 @@ fn ends_of_the_part_are_dragged_and_moved_by_keys() {
 /// Opens the menu of a clip in the library.
 fn open_menu(name: &str, harness: &mut Harness<'_, Page>) {
     // The row, which lies below its letter and its buttons.
-    let at = {
-        let rows = harness.get_all_by_label_contains(name);
-        let mut rows = rows.map(|row| row.rect()).filter(|rect| rect.right() < 260.0);
-        rows.next().expect("a row").center_top() + vec2(0.0, 12.0)
-    };
+    let rows = harness.get_all_by_label_contains(name).map(|row| row.rect());
+    let rows: Vec<Rect> = rows.filter(|row| row.right() < 260.0).collect();
+    let at = rows.first().expect("a row").center_top() + vec2(0.0, 12.0);
     for pressed in [true, false] {
         let event = egui::Event::PointerButton {
             pos: at,
