@@ -62,7 +62,7 @@ const UNSEEN: [&str; 17] = [
 
 /// Literals that look like sentences and are not: names of files, of joints and of widgets' memory,
 /// and texts that only the tests of a library read.
-const NO_SENTENCE: [&str; 30] = [
+const NO_SENTENCE: [&str; 32] = [
     "{} and {}",
     "{} and {} registered",
     "{} loop",
@@ -85,6 +85,8 @@ const NO_SENTENCE: [&str; 30] = [
     "Inter SemiBold",
     "Noto Sans TC",
     "segue outline",
+    "segue tab presses",
+    "(pointer: coarse)",
     "BTreeMap<Role, RoleJoint>",
     "LargeFile({} bytes)",
     "a joint that this skeleton does not have",

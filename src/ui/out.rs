@@ -10,8 +10,8 @@ pub(crate) enum Action {
     OpenFiles,
     /// Open a page of the web beside this one.
     OpenPage(String),
-    /// Put the address of this state into the clipboard, for readers with a type size and a language
-    /// of their own.
+    /// Put the address of this state into the clipboard, for readers with a type size and a
+    /// language of their own.
     CopyLink,
     /// Put the address of this state into the clipboard, with the type size and the language.
     CopyLinkAsShown,

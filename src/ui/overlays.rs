@@ -58,10 +58,12 @@ fn help_ui(state: &mut UiState, ui: &mut Ui) {
                         let column = vec2(keys, 0.0);
                         ui.allocate_ui_with_layout(column, Layout::top_down(Align::Min), |ui| {
                             ui.set_width(keys);
-                            let key = RichText::new(key).font(theme.font(Type::Strong));
+                            let key = RichText::new(say(Text::Data(key), ui))
+                                .font(theme.font(Type::Strong));
                             ui.add(egui::Label::new(key.color(palette.text)).wrap());
                         });
-                        let words = RichText::new(sentence).font(theme.font(Type::Body));
+                        let words = RichText::new(say(Text::Data(sentence), ui))
+                            .font(theme.font(Type::Body));
                         ui.add(egui::Label::new(words.color(palette.muted)).wrap());
                     });
                 }

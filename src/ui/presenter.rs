@@ -3,7 +3,7 @@
 use super::appearance::stage_theme;
 use super::commands::{UiCommand, command_button_ui};
 use super::kit::{self, Button, Icon};
-use super::language::say;
+use super::language::{Text, say};
 use super::lessons_panel::go_to;
 use super::out::{Action, Out};
 use super::stage::{Paint, stage_panel_ui};
@@ -189,7 +189,8 @@ fn bar_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
             out.commands.push(Command::Playback(PlaybackCommand::TogglePlay));
         }
         let time = format!("{:.2} s", session.now_secs());
-        ui.label(RichText::new(time).font(theme.font(Type::Number)).color(palette.text));
+        let time = RichText::new(say(Text::Data(&time), ui));
+        ui.label(time.font(theme.font(Type::Number)).color(palette.text));
         ui.with_layout(Flow::right_to_left(Align::Center), |ui| {
             for (command, icon) in [
                 (UiCommand::Present, Icon::Close),
@@ -199,8 +200,9 @@ fn bar_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
                 let button = Button::icon_only(icon, command.name(state));
                 command_button_ui(command, button, session, state, out, ui);
             }
-            let step = say(&step_name(session, state), ui);
-            let words = RichText::new(&step).font(theme.font(Type::Strong)).color(palette.text);
+            let words = RichText::new(say(&step_name(session, state), ui))
+                .font(theme.font(Type::Strong))
+                .color(palette.text);
             ui.add(egui::Label::new(words).truncate());
             ui.add_space(space::M);
             ui.with_layout(Flow::top_down(Align::Min), |ui| scrub_ui(session, out, ui));

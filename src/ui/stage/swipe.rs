@@ -111,7 +111,7 @@ pub(super) fn pane_switch_ui(session: &Session, place: Rect, state: &mut UiState
     let galley = kit::paint::line_of(&[run], width, ui);
     let at = pos2(row.center().x, row.top() + 0.72 * row.height());
     let rect = kit::paint::put(ui.painter(), at, Align2::CENTER_CENTER, galley);
-    let response = ui.interact(rect, ui.make_persistent_id("pane name"), Sense::hover());
+    let response = ui.interact(rect, ui.make_persistent_id("pane_name"), Sense::hover());
     let said = say(Text::Message(&words), ui);
     kit::describe(&response, &WidgetInfo::labeled(Role::Label, true, said));
 }
