@@ -99,7 +99,8 @@ fn stage_ui(
     caption_ui(session, layout, &response, state, out, ui);
 }
 
-/// Returns the panes that are shown, and the column of `place` that each has. A phone, or a presenter, shows one pane at a time.
+/// Returns the panes that are shown, and the column of `place` that each has. A phone, or a
+/// presenter, shows one pane at a time.
 fn shown_panes(
     session: &Session,
     place: Rect,

@@ -8,7 +8,7 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
 use wasm_bindgen::prelude::Closure;
-use wasm_bindgen::{JsCast as _, JsValue};
+use wasm_bindgen::{JsCast, JsValue};
 use wasm_bindgen_futures::{JsFuture, spawn_local};
 use web_sys::{
     Document, EventTarget, HtmlCanvasElement, HtmlElement, MessageChannel, MessagePort, Window,
@@ -169,9 +169,8 @@ pub(crate) fn set_fullscreen(whole: bool, ctx: &egui::Context) {
 
 /// Calls a method that answers by a promise, and may be refused.
 fn attempt(target: &JsValue, method: &'static str) {
-    let call = Reflect::get(target, &method.into()).and_then(|call| call.dyn_into::<Function>());
-    let answer =
-        call.and_then(|call| call.call0(target)).and_then(|answer| answer.dyn_into::<Promise>());
+    let call = Reflect::get(target, &method.into()).and_then(JsCast::dyn_into::<Function>);
+    let answer = call.and_then(|call| call.call0(target)).and_then(JsCast::dyn_into::<Promise>);
     match answer {
         Ok(promise) => spawn_local(async move {
             if let Err(error) = JsFuture::from(promise).await {

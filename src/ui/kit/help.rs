@@ -84,7 +84,7 @@ impl Help<'_> {
             pos2(after.x + space::XS + side / 2.0, after.y),
             vec2(1.0, 1.0) * side,
         );
-        let hit = Rect::from_center_size(at.center(), vec2(HIT, HIT));
+        let hit = Rect::from_center_size(at.center(), vec2(HIT, theme_of(ui).hit()));
         let response = ui
             .interact(hit, self.id.with("help"), Sense::click())
             .on_hover_cursor(CursorIcon::PointingHand);

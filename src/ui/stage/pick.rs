@@ -61,7 +61,7 @@ pub(super) fn pick_ui(
         }
     }
     // Fingers cover what they touch.
-    if ui.input(|input| input.any_touches()) {
+    if ui.input(eframe::egui::InputState::any_touches) {
         return;
     }
     ui.ctx().set_cursor_icon(CursorIcon::PointingHand);

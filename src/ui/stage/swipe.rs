@@ -23,7 +23,7 @@ pub(crate) struct Swipe {
     began: f64,
     /// Whether it is known what the finger does: it turns the camera (`false`), or has turned the
     /// page (`true`).
-    is_swipe: Option<bool>,
+    turns_page: Option<bool>,
 }
 
 /// Shows another pane when a finger swipes over the stage. Returns whether the drag is not the
@@ -37,7 +37,7 @@ pub(super) fn takes_drag(count: usize, response: &Response, state: &mut UiState,
     if response.drag_started() {
         let origin = ui.input(|input| input.pointer.press_origin());
         let began = ui.input(|input| input.pointer.press_start_time()).unwrap_or(now);
-        state.swipe = origin.map(|from| Swipe { from, began, is_swipe: None });
+        state.swipe = origin.map(|from| Swipe { from, began, turns_page: None });
     }
     let Some(mut swipe) = state.swipe else {
         return false;
@@ -47,16 +47,16 @@ pub(super) fn takes_drag(count: usize, response: &Response, state: &mut UiState,
         return false;
     }
     let moved = response.interact_pointer_pos().map_or(vec2(0.0, 0.0), |at| at - swipe.from);
-    if swipe.is_swipe.is_none() {
+    if swipe.turns_page.is_none() {
         if now - swipe.began > SECS || moved.y.abs() > WAY {
-            swipe.is_swipe = Some(false);
+            swipe.turns_page = Some(false);
         } else if moved.x.abs() >= WAY && moved.x.abs() > 1.5 * moved.y.abs() {
-            swipe.is_swipe = Some(true);
+            swipe.turns_page = Some(true);
             go(moved.x < 0.0, count, state);
         }
     }
     state.swipe = (!response.drag_stopped()).then_some(swipe);
-    swipe.is_swipe != Some(false)
+    swipe.turns_page != Some(false)
 }
 
 /// Shows the next pane, or the previous one, as far as there are any.

@@ -199,7 +199,7 @@ fn presenter_sees_the_stage_alone_and_goes_on_by_page_keys() {
     harness.key_press(Keyboard::P);
     harness.run();
     let stage = harness.state().stage;
-    assert!(stage.width() == HALL_SIZE.x && stage.height() > 650.0, "{stage:?}");
+    assert!(stage.width() == HALL_SIZE.x && stage.height() > 580.0, "{stage:?}");
     assert!(harness.query_by_label(text::COPY_LINK.english()).is_none());
     assert!(harness.state().out.actions.contains(&Action::Fullscreen(true)));
     let lab = |harness: &Harness<'_, Page>| harness.state().session.params().lab().word();

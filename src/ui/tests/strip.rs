@@ -11,7 +11,16 @@ const THREE: &str = "lab=blend&compare=blend_window:30,15,10&play=off&t=2.9";
 
 /// Returns the places of the buttons of a number, pane by pane.
 fn places(name: &str, harness: &Harness<'_, Page>) -> Vec<Rect> {
-    let is_it = |label: &str| label.strip_prefix(name).is_some_and(|rest| rest.starts_with(' '));
+    let begins_with = |label: &str, name: &str| {
+        label.strip_prefix(name).is_some_and(|rest| rest.starts_with(' '))
+    };
+    // Another number may have a longer name with the same beginning, and the sign of the help of a
+    // lab has a name like `Speed lab: help`.
+    let is_it = |label: &str| {
+        let rows = segue_session::metrics::METRICS.iter();
+        let named = rows.map(|row| row.label).filter(|name| begins_with(label, name));
+        named.max_by_key(|name| name.len()) == Some(name) && !label.contains(':')
+    };
     let found = harness.get_all_by_role(Role::Button);
     let found = found.filter(|node| node.accesskit_node().label().is_some_and(|it| is_it(&it)));
     found.map(|node| node.rect()).collect()

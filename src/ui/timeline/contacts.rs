@@ -45,7 +45,7 @@ pub(super) fn stripes<'a>(
                     let own = corrections.list().iter().filter(|edit| edit.side == side);
                     own.map(|edit| secs(&edit.frames)).collect()
                 }),
-                hint: (count > 0).then(|| kit::corrected_hint(title(clip, session), count)),
+                hint: (count > 0).then(|| kit::corrected_hint(&title(clip, session), count)),
             }),
         }
     };

@@ -151,8 +151,8 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
         let Some(edit) = &stripe.edit else {
             continue;
         };
-        let lanes = stripe_lanes(row);
-        let lanes = Lanes { index, stripe, edit, lanes, axis, id: id.with(("stances", index)) };
+        let rows = stripe_lanes(row);
+        let lanes = Lanes { index, stripe, edit, rows, axis, id: id.with(("stances", index)) };
         if gutter > 0.0 {
             let x = bars.left()..=axis.x.min - space::S;
             lanes.label_ui(Rect::from_x_y_ranges(x, row), now, &mut events, ui);

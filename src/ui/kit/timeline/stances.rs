@@ -30,7 +30,7 @@ pub(super) struct Lanes<'a> {
     pub(super) stripe: &'a Stripe<'a>,
     pub(super) edit: &'a StanceEdit,
     /// Left and right foot.
-    pub(super) lanes: [Rangef; 2],
+    pub(super) rows: [Rangef; 2],
     pub(super) axis: TimeAxis,
     pub(super) id: Id,
 }
@@ -45,7 +45,7 @@ impl Lanes<'_> {
         events: &mut Vec<TimelineEvent>,
         ui: &mut Ui,
     ) {
-        for (foot, lane) in self.lanes.into_iter().enumerate() {
+        for (foot, lane) in self.rows.into_iter().enumerate() {
             self.gaps_ui(foot, lane, timeline, events, ui);
             for (stance, span) in self.stripe.feet[foot].iter().enumerate() {
                 let rect = Rect::from_x_y_ranges(
@@ -191,7 +191,7 @@ impl Lanes<'_> {
             }
             self.reset_item_ui(events, ui);
         });
-        self.paint_ends(hot, rect, &response, ui);
+        paint_ends(hot, rect, &response, ui);
         let said = msg!("{from:.2} to {to:.2} s", from = span.start, to = span.end);
         let name = msg!("{foot}, contact {number}", foot = FEET[foot], number = stance + 1);
         let adjustable = Adjustable {
@@ -209,19 +209,9 @@ impl Lanes<'_> {
         response.on_hover_text(say(&hint, ui));
     }
 
-    /// Draws the ends that the pointer is on, and both of a stance that has the focus.
-    fn paint_ends(&self, hot: [bool; 2], rect: Rect, response: &Response, ui: &Ui) {
-        let stroke = Stroke::new(2.0 * theme_of(ui).scale(), palette_of(ui).handle);
-        for (is_hot, x) in hot.into_iter().zip([rect.left(), rect.right()]) {
-            if is_hot || response.has_focus() {
-                ui.painter().vline(x, rect.y_range(), stroke);
-            }
-        }
-    }
-
     /// Draws the letters of the feet at the right edge of `place`.
     fn letters_ui(&self, place: Rect, ui: &Ui) {
-        for (letter, lane) in [words::LEFT, words::RIGHT].into_iter().zip(self.lanes) {
+        for (letter, lane) in [words::LEFT, words::RIGHT].into_iter().zip(self.rows) {
             let run = Run::new(letter, Type::Small, palette_of(ui).muted);
             let at = pos2(place.right(), lane.center());
             put(ui.painter(), at, Align2::RIGHT_CENTER, line_of(&[run], f32::INFINITY, ui));
@@ -283,8 +273,18 @@ fn item_ui(text: Word, is_enabled: bool, ui: &mut Ui) -> bool {
     ui.add_enabled_ui(is_enabled, |ui| menu_item_ui(item, ui).clicked()).inner
 }
 
+/// Draws the ends that the pointer is on, and both of a stance that has the focus.
+fn paint_ends(hot: [bool; 2], rect: Rect, response: &Response, ui: &Ui) {
+    let stroke = Stroke::new(2.0 * theme_of(ui).scale(), palette_of(ui).handle);
+    for (is_hot, x) in hot.into_iter().zip([rect.left(), rect.right()]) {
+        if is_hot || response.has_focus() {
+            ui.painter().vline(x, rect.y_range(), stroke);
+        }
+    }
+}
+
 /// Returns the hint on a clip whose contacts are corrected.
-pub(crate) fn corrected_hint(clip: Message, count: usize) -> Message {
+pub(crate) fn corrected_hint(clip: &Message, count: usize) -> Message {
     msg!(
         "The contacts of {clip} are corrected by hand in {count, plural, one {# place} other {# places}}.",
         clip,
