@@ -17,6 +17,9 @@ pub(super) struct Playhead {
     pub(super) frames: usize,
 }
 
+/// The room behind the caption for the mark of its menu, points.
+const MENU_WIDTH: f32 = 16.0;
+
 /// Draws the row, with a caption at its end where there is room.
 pub(super) fn transport_row_ui(
     playhead: Playhead,
@@ -36,7 +39,12 @@ pub(super) fn transport_row_ui(
         frames: playhead.frames,
         caption: if layout == Layout::Phone { Text::EMPTY } else { caption.into() },
     };
-    let row = ui.horizontal(|ui| kit::transport_ui(&transport, ui));
+    let row = ui.horizontal(|ui| {
+        if layout != Layout::Phone {
+            ui.set_max_width(ui.available_width() - MENU_WIDTH);
+        }
+        kit::transport_ui(&transport, ui)
+    });
     match row.inner {
         Some(TransportEvent::SetPlaying(_)) => {
             out.commands.push(Command::Playback(PlaybackCommand::TogglePlay));

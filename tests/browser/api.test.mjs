@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { onBothBackends } from "./harness.mjs";
-import { apart, count, isClay, timelineOf, until } from "./help.mjs";
+import { STRIP, apart, count, isClay, timelineOf, until } from "./help.mjs";
 
 const SMALL = { viewport: [960, 640] };
 
@@ -77,7 +77,7 @@ onBothBackends("a snapshot is a picture of the stage", async ({ open }) => {
   const { segue, snapshot } = await open("lab=blend&play=off", SMALL);
   await segue("set", {});
   const picture = await snapshot();
-  assert.equal(picture.height, 640 - 48 - timelineOf(640), "between bar and timeline");
+  assert.equal(picture.height, 640 - 48 - timelineOf(640) - STRIP, "between bar and numbers");
   assert.ok(picture.width > 400 && picture.width < 960 - 200 - 288, `${picture.width} points wide: between the panels`);
   assert.ok(count(picture, [0, 40, picture.width, picture.height - 60], isClay) > 2000, "the character is in it");
 });

@@ -131,11 +131,14 @@ export const isClay = (red, green, blue) => Math.min(red, green, blue) > 70 && M
 /** Returns the height of the panel with the timeline, which is lower in low windows. */
 export const timelineOf = (height) => Math.min(214, Math.round(0.31 * height));
 
+/** The height of the numbers below the stage of one pane at a desk, points. */
+export const STRIP = 54;
+
 /**
  * Returns the rectangle of the stage in a window of at least 960 points, without the title at its
  * top and the numbers at its bottom.
  */
-export const stageOf = ({ width, height }) => [248, 48 + 40, width - 288, height - timelineOf(height) - 60];
+export const stageOf = ({ width, height }) => [248, 48 + 40, width - 288, height - timelineOf(height) - STRIP - 8];
 
 /**
  * Starts a server of another origin. Playwright's own answers would have CORS headers, so this is a

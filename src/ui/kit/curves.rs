@@ -156,7 +156,9 @@ fn key_parts(curves: &Curves<'_>, width: f32, now: f64, ui: &Ui) -> Vec<(Vec2, A
             Run::new(series.name, Type::Small, series.ink),
             Run::new(Text::Data(&value), Type::SmallStrong, palette.text).after(space::XS),
         ];
-        let entry = line_of(&runs, width, ui);
+        // A number that is cut says nothing: a long name stands alone.
+        let fits = line_of(&runs, f32::INFINITY, ui).size().x <= width;
+        let entry = line_of(&runs[..if fits { 2 } else { 1 }], width, ui);
         if corner.x > 0.0 && corner.x + entry.size().x > width {
             corner = vec2(0.0, corner.y + entry.size().y);
         }

@@ -192,7 +192,7 @@ pub(crate) fn metric_cell_ui(metric: &Metric<'_>, rect: Rect, id: Id, ui: &Ui) -
     if metric.rank != Rank::Middle {
         let word = run(metric.rank.word().into(), Type::Small, ink);
         // Above the unit; beside a number without one.
-        let raised = if metric.unit.is_empty() { 0.0 } else { 0.82 * word.size().y };
+        let raised = if metric.unit.is_empty() { 0.0 } else { 0.94 * word.size().y };
         let bottom = pos2(rect.left() + digits + space::XS, at.bottom() - raised);
         put(ui.painter(), bottom, Align2::LEFT_BOTTOM, word);
     }

@@ -1,13 +1,13 @@
 //! Panes one at a time, where there is room for one: the finger's swipe from one to the next, and
-//! the row with their names.
+//! the row with a dot for each.
 
 use crate::ui::kit::{self, Icon};
 use crate::ui::language::{Text, say};
 use crate::ui::state::UiState;
 use crate::ui::text;
-use crate::ui::theme::{Type, palette_of, space, theme_of};
+use crate::ui::theme::{palette_of, space, theme_of};
 use eframe::egui::{
-    Align2, InputState, Pos2, Rect, Response, Role, Sense, Ui, UiBuilder, WidgetInfo, pos2, vec2,
+    InputState, Pos2, Rect, Response, Role, Sense, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 use segue_session::Session;
 
@@ -72,7 +72,7 @@ pub(super) fn switch_height(ui: &Ui) -> f32 {
 }
 
 /// Draws the row that tells which of several panes is shown, at the top of `place`: a dot for each,
-/// the name, and a button to either side.
+/// and a button to either side.
 pub(super) fn pane_switch_ui(session: &Session, place: Rect, state: &mut UiState, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let panes = session.panes();
@@ -104,13 +104,11 @@ pub(super) fn pane_switch_ui(session: &Session, place: Rect, state: &mut UiState
         let color = if is_shown { palette.accent } else { palette.line_strong };
         ui.painter().circle_filled(at, if is_shown { radius + 1.0 } else { radius }, color);
     }
+    // The title above shows the name; here it would cover the figure.
     let name = panes.get(state.shown_pane).and_then(|pane| session.variant_name(pane));
     let words = text::pane_of(name.unwrap_or_default(), state.shown_pane + 1, count);
-    let run = kit::paint::Run::new(&words, Type::Strong, palette.text);
-    let width = row.width() - 2.0 * (side + space::S);
-    let galley = kit::paint::line_of(&[run], width, ui);
-    let at = pos2(row.center().x, row.top() + 0.72 * row.height());
-    let rect = kit::paint::put(ui.painter(), at, Align2::CENTER_CENTER, galley);
+    let dots = vec2(gap * count as f32, 0.6 * row.height());
+    let rect = Rect::from_center_size(pos2(row.center().x, row.top() + 0.3 * row.height()), dots);
     let response = ui.interact(rect, ui.make_persistent_id("pane_name"), Sense::hover());
     let said = say(Text::Message(&words), ui);
     kit::describe(&response, &WidgetInfo::labeled(Role::Label, true, said));

@@ -151,8 +151,8 @@ fn menu_of_a_clip_edits_it() {
 }
 
 /// Every button beside a refusal is pressed: then there is a result.
-/// Returns the place of a button beside a refusal: on the stage or below it. A row of the library has
-/// a button of the same name.
+/// Returns the place of a button beside a refusal: on the stage or below it. A row of the library
+/// has a button of the same name.
 fn remedy_place(label: &str, harness: &Harness<'_, Page>) -> Rect {
     let stage = harness.state().stage;
     let is_there = |place: &Rect| {

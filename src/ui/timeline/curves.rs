@@ -213,7 +213,7 @@ pub(super) fn curve_menu_ui(
     let opener = ui
         .interact(rect, ui.scope_id().with("curve menu"), egui::Sense::click())
         .on_hover_cursor(egui::CursorIcon::PointingHand);
-    // In the margin of the panel, behind the caption.
+    // Behind the caption.
     let mark = egui::vec2(12.0, 12.0);
     let at = egui::pos2(rect.right() + 8.0, rect.center().y);
     let ink = if opener.hovered() || opener.has_focus() { palette.text } else { palette.muted };
@@ -345,7 +345,8 @@ mod tests {
             while session.work() {}
             let outcome = session.main_outcome().unwrap();
             cache.update(outcome, &named_outcomes(&session), &Plotted::of(session.params()));
-            let names = cache.plots[0].lines.iter().map(|line| line.of.name().english().to_owned());
+            let names =
+                cache.plots[0].lines.iter().map(|line| line.of.name().english().into_owned());
             names.collect::<Vec<_>>().join(" ")
         };
         assert_eq!(names("lab=blend"), "A B result");

@@ -387,7 +387,7 @@ mod tests {
         let raised = motion.clone().with_ground_m(0.5).with_contact_corrections(all.clone());
         assert_eq!(raised.ground_m(), motion.ground_m(), "estimated anew");
         // Other thresholds leave them alone, as does a place on the ground; new contacts end them.
-        let strict = ContactOptions { enter_height_m: 0.01, ..ContactOptions::default() };
+        let strict = ContactOptions { min_secs: 10.0, ..ContactOptions::default() };
         let strict = FootOptions { contacts: strict, ground_m: None };
         let read = corrected.clone().with_feet(strict);
         assert_eq!(read.contacts(), corrected.contacts());

@@ -72,7 +72,11 @@ fn first_remedy_of_a_refusal_gives_a_result() {
         ),
         (graph, vec![(Key::GoTo, visits)], "Reset Go to"),
         (graph, vec![(Key::Clips, List::ClipIds(Vec::new()).into())], "Reset Clips"),
-        (graph, vec![(Key::EdgeThreshold, Value::Number(0.1))], "Set "),
+        (
+            "lab=graph&clips=start,stop&walk_seconds=20",
+            vec![(Key::EdgeThreshold, Value::Number(0.1))],
+            "Set ",
+        ),
         (matched, vec![(Key::AskTag, text("tired"))], "Reset Only frames of"),
         (matched, vec![(Key::AheadFar, Value::Number(0.3))], "Reset "),
     ] {
