@@ -203,6 +203,15 @@ impl Place<'_> {
             LabError::Graph(GraphError::NoTransition { nearest_cm, .. }) => {
                 set_number(Key::EdgeThreshold, (nearest_cm * 10.0).floor() / 10.0 + 0.1)
             }
+            // No transition leads back. At twice the distance more of them do, and at least at the
+            // usual threshold.
+            LabError::Graph(GraphError::NoCycle { threshold_cm, .. }) => {
+                let usual = match Key::EdgeThreshold.param().default_value() {
+                    Value::Number(usual) => usual,
+                    _ => 0.0,
+                };
+                set_number(Key::EdgeThreshold, usual.max(2.0 * threshold_cm))
+            }
             _ => Vec::new(),
         }
     }

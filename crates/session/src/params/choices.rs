@@ -462,4 +462,5 @@ pub(super) const OF_CONTACTS: &[LabId] = &[
     LabId::Graph,
     LabId::Match,
     LabId::InPlace,
+    LabId::Edit,
 ];

@@ -36,15 +36,24 @@ fn found(session: &Session) -> Vec<Remedy> {
     session.remedies(pane)
 }
 
-/// Applies a remedy and asserts that the lab then has a result.
+/// Applies a remedy and asserts that the lab then has a result. Where the graph has transitions at
+/// last, it may still need a higher threshold for a way that goes round: its next remedy says so.
 fn assert_helps(session: &mut Session, remedy: &Remedy) {
     let state = session.query();
-    for command in remedy.commands() {
-        session.apply(command).unwrap();
+    let mut next = Some(remedy.clone());
+    for _ in 0..3 {
+        for command in next.iter().flat_map(Remedy::commands) {
+            session.apply(command).unwrap();
+        }
+        settle(session);
+        let pane = &session.panes()[0];
+        if pane.result().is_ok() {
+            return;
+        }
+        let is_graph = matches!(pane.problem, Some(LabError::Graph(_)));
+        next = session.remedies(pane).into_iter().next().filter(|_| is_graph);
     }
-    settle(session);
-    let pane = &session.panes()[0];
-    assert!(pane.result().is_ok(), "{state}: {remedy:?} gives {:?}", pane.problem);
+    panic!("{state}: {remedy:?} gives {:?}", session.panes()[0].problem);
 }
 
 #[test]
