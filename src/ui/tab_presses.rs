@@ -19,7 +19,7 @@ impl Plugin for TabPresses {
         let mut events = std::mem::take(&mut self.waiting);
         events.append(&mut input.events);
         if let Some(at) = events.iter().position(is_tab) {
-            // What was typed behind it belongs to the widget that it leads to.
+            // Keys typed after Tab belong to the widget that it focuses.
             self.waiting = events.split_off(at + 1);
         }
         input.events = events;

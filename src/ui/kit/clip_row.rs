@@ -68,7 +68,7 @@ pub(crate) enum ClipRowEvent {
     Held,
 }
 
-/// What a row of the library returns.
+/// The user's input to a row of the library.
 #[derive(Debug)]
 pub(crate) struct ClipRowResponse {
     /// The user's input, if there was any.

@@ -147,7 +147,7 @@ fn points_ui(path: &PathFacts, session: &Session, state: &mut UiState, out: &mut
         param_row_ui(key, &Detail::default(), session, out, ui);
     }
     if out.commands.len() > before {
-        // What a pin refused may be possible now.
+        // A change that was refused because of a pin may be possible now.
         state.labs.path.said = None;
     }
 }

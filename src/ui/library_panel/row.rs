@@ -17,7 +17,7 @@ use segue_session::export::{ExportFormat, ExportOptions};
 use segue_session::{Command, Entry, Key, Session, Slot, Value};
 use segue_text::{Message, msg};
 
-/// What can be done with a clip.
+/// An action of the buttons and keys of a row on its clip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RowAction {
     Details,

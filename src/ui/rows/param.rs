@@ -20,7 +20,7 @@ pub(crate) struct Detail {
     pub(crate) used: Option<f64>,
     /// A help text in place of the table's.
     pub(crate) help: Option<Message>,
-    /// What is known besides, such as how an automatic value was found, behind the help text.
+    /// A sentence after the help text, such as how an automatic value was found.
     pub(crate) more: Option<Message>,
     /// A sentence below the row, always in sight.
     pub(crate) note: Option<Message>,

@@ -45,13 +45,13 @@ const fn optional(numbers: &[f64]) -> Option<f64> {
 // for delays half of what players of games notice (Claypool, Claypool, "Latency and player actions
 // in online games", CACM 2006). Where these do not tell, the comment says why.
 metrics! {
-    // What single labs are about.
+    // Numbers of single labs.
 
-    // A spin is seen by itself.
+    // One spin more is visible.
     Spins "spins" "Spins", Count, Lower by 1.0,
         "Transitions in which the character turns by more than 30° in 0.2 s and neither clip does.",
         "0 is best: every spin is seen as a fault.";
-    // A flash is seen by itself.
+    // One flash more is visible.
     Flashes "flashes" "Flashes", Count, Lower by 1.0,
         "Transitions in which the root or a joint jumps more than twice as far as in all but one in a thousand frames of the clips.",
         "0 is best: every flash is a visible jump. A lower threshold of the graph gives fewer.";
@@ -88,7 +88,7 @@ metrics! {
     BareSeam "loop_before_deg" "Bare seam", Degrees, Neutral,
         "The seam without any correction: the angle that the method had to close.",
         "The smaller it is, the less the motion is changed. Above about 30°, choose other ends.";
-    // What is seen of a foot is seen of any joint.
+    // A displacement of 1 cm, as for a sliding foot.
     FrameDistance "apart_cm" "Pose distance", Centimetres, Lower by 1.0,
         "The mean distance of the frames that are blended: root mean square per joint, after the best alignment.",
         "Lower is better. Up to about 10 cm poses blend well; beyond 20 cm limbs cross and feet slide.";
@@ -96,7 +96,7 @@ metrics! {
     PositionError "match_error" "Position error", Centimetres, Lower by 5.0,
         "Mean distance of the character from where the player steers it: the simulation object.",
         "Lower is better: the character is where the input wants it. Up to 10 cm feels direct.";
-    // As the position error.
+    // A tenth of the width of the shoulders, as for the mean position error.
     LargestPositionError "match_worst_error" "Largest position error" or "Largest error", Centimetres, Lower by 5.0,
         "The largest distance of the character from where the player steers it.",
         "Lower is better. It never exceeds the largest deviation that is set.";
@@ -108,7 +108,7 @@ metrics! {
     JumpsPerMinute "match_seams" "Jumps", PerMinute, Lower by 2.0,
         "How often the character jumps from one place of the clips to another.",
         "Fewer jumps look calmer; without any, the character cannot follow its input.";
-    // A hard turn is seen by itself.
+    // One hard turn more is visible.
     HardTurns "hard_turns" "Hard turns", Bends, Lower by 1.0,
         "Places where curvature times speed is beyond what the original does.",
         "0 is best. Widen the bend or slow down where the path turns too hard.";
@@ -166,19 +166,19 @@ metrics! {
     Spin "spin_deg" "Spin", Degrees, Lower by 3.0,
         "How far the character turns within 0.2 s at most, beyond the most that it does in the clips. Of a clip by itself, beyond what it does three quarters of the time.",
         "0 is best: the character turns no faster than in the clips. A wrong alignment gives 90° and more.";
-    // As a slide of the foot.
+    // A displacement of 1 cm, as for a sliding foot.
     Penetration "penetration_cm" "Penetration", Centimetres, Lower by 1.0,
         "How deep the lowest point of the body is below the ground during the transition.",
         "0 is best. Less than 1 cm is not seen.";
-    // As a slide of the foot.
+    // A displacement of 1 cm, as for a sliding foot.
     ClipPenetration "clip_penetration_cm" "Penetration", Centimetres, Lower by 1.0,
         "How deep the lowest point of the body is below the ground.",
         "0 is best. Less than 1 cm is not seen.";
-    // As a slide of the foot: the feet move with the body.
+    // A displacement of 1 cm, as for a sliding foot: the feet move with the body.
     PositionJump "jump_cm" "Position jump", Centimetres, Lower by 1.0,
         "How far the character moves over the ground in one frame at the transition, beyond its usual step.",
         "0 is best: the character goes on with its usual step. From about 2 cm on the body is seen to jump.";
-    // As a slide of the foot: the feet move with the body.
+    // A displacement of 1 cm, as for a sliding foot: the feet move with the body.
     ClipPositionJump "clip_jump_cm" "Position jump", Centimetres, Lower by 1.0,
         "How far the character moves over the ground in one frame, beyond all but one in a hundred frames of the clip: the worst.",
         "0 is best: all steps are alike. From about 2 cm on the body is seen to jump.";

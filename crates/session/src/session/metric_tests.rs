@@ -68,7 +68,7 @@ fn metrics_of_every_lab_come_first_and_are_clean_for_clean_results() {
         for (found, expected) in found.iter().zip(expected) {
             assert_eq!(Metric::new(found.id, None), expected, "{link}");
         }
-        // What happens somewhere happens while the result plays.
+        // Every time of a metric lies within the result.
         let outcome = session.main_outcome().unwrap();
         for Metric { id, at_secs, .. } in &outcome.metrics {
             let is_inside = |secs: f64| (0.0..=outcome.duration_secs() + 1e-9).contains(&secs);
