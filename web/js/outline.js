@@ -24,10 +24,6 @@ export class Outline {
   #last;
   /** Set while the focus follows that of the app. */
   #follows = false;
-  /** The number of the element that was to get the focus in the app and has not got it yet, and of the one after it; 0 for none. */
-  #sent = 0;
-  #asked = 0;
-  #late;
 
   /** @param canvas returns the app's present canvas: one that is lost is replaced */
   constructor(handle, canvas) {
@@ -63,7 +59,7 @@ export class Outline {
     arrange(this.#root, top.map((number) => this.#elements.get(number)));
     const modal = top.findLast((number) => this.#told.get(number).modal);
     for (const number of top) this.#elements.get(number).inert = modal !== undefined && number !== modal;
-    this.#settle(focus);
+    if (focus !== this.#focus) this.#follow(focus);
     this.#nameEditor();
   }
 
@@ -120,36 +116,6 @@ export class Outline {
     Object.assign(element.style, { left: `${left}px`, top: `${top}px`, width: `${width}px`, height: `${height}px` });
   }
 
-  /**
-   * Asks the app to move its focus, once it has moved it as it was asked before: of several that it gets in one frame, it would
-   * take the one that it draws last.
-   */
-  #ask(number) {
-    this.#asked = number;
-    if (!this.#sent) this.#send();
-  }
-
-  #send() {
-    clearTimeout(this.#late);
-    [this.#sent, this.#asked] = [this.#asked, 0];
-    if (!this.#sent) return;
-    this.#handle.act(this.#sent, "focus");
-    // An element that the app cannot focus holds up no other.
-    this.#late = setTimeout(() => this.#send(), 3000);
-  }
-
-  /** Follows the focus of the app, unless the keyboard has gone on since. */
-  #settle(focus) {
-    if (this.#sent && focus !== this.#sent) {
-      this.#focus = focus;
-    } else if (this.#sent) {
-      this.#focus = focus;
-      this.#send();
-    } else if (focus !== this.#focus) {
-      this.#follow(focus);
-    }
-  }
-
   /** The app has moved the focus. */
   #follow(focus) {
     this.#focus = focus;
@@ -168,8 +134,7 @@ export class Outline {
     this.#last = element;
     this.#handle.setOutlineFocus(true);
     if (this.#follows) return;
-    const number = Number(element?.dataset.number);
-    if (number) this.#ask(number);
+    this.#act(element, "focus");
     if (element.type === "text") this.#canvas().focus({ preventScroll: true });
   }
 
@@ -190,8 +155,6 @@ export class Outline {
     // The browser tells whom the keyboard belongs to what was copied, cut or pasted.
     if (command && /^[cvx]$/i.test(key)) this.#canvas().focus({ preventScroll: true });
     if (KEEPS.test(key) || event.isComposing) return;
-    // A key belongs to the widget that the keyboard has reached.
-    if (this.#asked) this.#send();
     if (!command || /^[opsyz,]$/i.test(key)) event.preventDefault();
     const modifiers = [shiftKey, ctrlKey, altKey, metaKey].reduce((sum, on, bit) => sum + (on ? 2 ** bit : 0), 0);
     this.#handle.press(key, code, type === "keydown", modifiers);
@@ -206,8 +169,7 @@ export class Outline {
     event.preventDefault();
     if (type === "keyup") return;
     const all = [this.#skip, ...this.#stops()];
-    const reached = this.#asked || this.#sent || this.#focus;
-    const at = all.indexOf(this.#elements.get(reached) ?? this.#last);
+    const at = all.indexOf(this.#elements.get(this.#focus) ?? this.#last);
     const next = at < 0 && shiftKey ? all.length - 1 : at + (shiftKey ? -1 : 1);
     (all[next] ?? this.#canvas()).focus({ preventScroll: true });
   }
