@@ -24,6 +24,12 @@ export class Outline {
   #last;
   /** Set while the focus follows that of the app. */
   #follows = false;
+  /** Set when Tab goes out of the page, which then begins anew. */
+  #leaves = false;
+  /** The number of the element that was to get the focus in the app and has not got it yet, and of the one after it; 0 for none. */
+  #sent = 0;
+  #asked = 0;
+  #late;
 
   /** @param canvas returns the app's present canvas: one that is lost is replaced */
   constructor(handle, canvas) {
@@ -59,7 +65,7 @@ export class Outline {
     arrange(this.#root, top.map((number) => this.#elements.get(number)));
     const modal = top.findLast((number) => this.#told.get(number).modal);
     for (const number of top) this.#elements.get(number).inert = modal !== undefined && number !== modal;
-    if (focus !== this.#focus) this.#follow(focus);
+    this.#settle(focus);
     this.#nameEditor();
   }
 
@@ -116,13 +122,50 @@ export class Outline {
     Object.assign(element.style, { left: `${left}px`, top: `${top}px`, width: `${width}px`, height: `${height}px` });
   }
 
+  /**
+   * Asks the app to move its focus, once it has moved it as it was asked before: of several that it gets in one frame, it would
+   * take the one that it draws last.
+   */
+  #ask(number) {
+    this.#asked = number;
+    if (!this.#sent) this.#send();
+  }
+
+  #send() {
+    clearTimeout(this.#late);
+    [this.#sent, this.#asked] = [this.#asked, 0];
+    if (!this.#sent) return;
+    this.#handle.act(this.#sent, "focus");
+    // An element that the app cannot focus holds up no other.
+    this.#late = setTimeout(() => this.#send(), 3000);
+  }
+
+  /** Follows the focus of the app, unless the keyboard has gone on since. */
+  #settle(focus) {
+    const before = this.#focus;
+    this.#focus = focus;
+    if (this.#sent && focus === this.#sent) return this.#send();
+    if (this.#sent && document.activeElement !== document.body) return;
+    if (this.#sent) {
+      // What had the keyboard was moved, or is behind something that has opened.
+      const ahead = this.#elements.get(this.#asked || this.#sent);
+      if (ahead?.isConnected && !ahead.closest("[inert]")) return this.#place(ahead);
+      clearTimeout(this.#late);
+      this.#sent = this.#asked = 0;
+    } else if (focus === before) return;
+    this.#follow(focus);
+  }
+
   /** The app has moved the focus. */
   #follow(focus) {
-    this.#focus = focus;
     const element = this.#elements.get(focus);
     const active = document.activeElement;
     const isHere = active === this.#canvas() || active === document.body || this.#root.contains(active);
-    if (!isHere || element === active) return;
+    if (isHere && element !== active) this.#place(element);
+  }
+
+  /** Gives an element the keyboard as the app has it already. */
+  #place(element) {
     this.#follows = true;
     // A text is edited in the app's own field, which gets the keyboard from the canvas.
     if (!element || element.localName === "input" && element.type === "text") this.#canvas().focus({ preventScroll: true });
@@ -134,7 +177,8 @@ export class Outline {
     this.#last = element;
     this.#handle.setOutlineFocus(true);
     if (this.#follows) return;
-    this.#act(element, "focus");
+    const number = Number(element?.dataset.number);
+    if (number) this.#ask(number);
     if (element.type === "text") this.#canvas().focus({ preventScroll: true });
   }
 
@@ -155,6 +199,8 @@ export class Outline {
     // The browser tells whom the keyboard belongs to what was copied, cut or pasted.
     if (command && /^[cvx]$/i.test(key)) this.#canvas().focus({ preventScroll: true });
     if (KEEPS.test(key) || event.isComposing) return;
+    // A key belongs to the widget that the keyboard has reached.
+    if (this.#asked) this.#send();
     if (!command || /^[opsyz,]$/i.test(key)) event.preventDefault();
     const modifiers = [shiftKey, ctrlKey, altKey, metaKey].reduce((sum, on, bit) => sum + (on ? 2 ** bit : 0), 0);
     this.#handle.press(key, code, type === "keydown", modifiers);
@@ -164,14 +210,22 @@ export class Outline {
   #tab(event) {
     const { key, type, shiftKey, ctrlKey, altKey, metaKey, target } = event;
     if (key !== "Tab" || ctrlKey || altKey || metaKey) return;
+    const all = [this.#skip, ...this.#stops()];
+    const outermost = shiftKey ? all[0] : all.at(-1);
+    if (all.includes(target)) {
+      this.#leaves = target === outermost;
+      return;
+    }
     if (target !== this.#canvas() && target !== this.#editor() && target !== document.body) return;
     event.stopImmediatePropagation();
-    event.preventDefault();
-    if (type === "keyup") return;
-    const all = [this.#skip, ...this.#stops()];
-    const at = all.indexOf(this.#elements.get(this.#focus) ?? this.#last);
+    if (type === "keyup") return event.preventDefault();
+    const reached = this.#asked || this.#sent || this.#focus;
+    const at = this.#leaves ? -1 : all.indexOf(this.#elements.get(reached) ?? this.#last);
     const next = at < 0 && shiftKey ? all.length - 1 : at + (shiftKey ? -1 : 1);
-    (all[next] ?? this.#canvas()).focus({ preventScroll: true });
+    this.#leaves = !all[next];
+    // Beyond the outermost the browser goes on, out of the page.
+    if (!this.#leaves) event.preventDefault();
+    (all[next] ?? outermost).focus({ preventScroll: true });
   }
 
   /** Where Tab stops, within the elements that `within` selects. */
