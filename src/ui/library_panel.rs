@@ -132,8 +132,11 @@ fn search_ui(state: &mut UiState, ui: &mut Ui) {
             (ClipOrder::Name, text::ORDER_NAME),
             (ClipOrder::Length, text::ORDER_LENGTH),
         ] {
-            let item =
-                MenuItem { text: words.into(), chosen: known == order, ..MenuItem::default() };
+            let item = MenuItem {
+                text: words.into(),
+                chosen: Some(known == order),
+                ..MenuItem::default()
+            };
             if kit::menu_item_ui(item, ui).clicked() {
                 state.library.order = known;
             }

@@ -61,7 +61,7 @@ pub(crate) fn command_item_ui(
 ) {
     let shortcut = keys_of(&[command]);
     let (text, icon) = (name_of(command, state), command.row().icon);
-    let item = MenuItem { text: text.into(), icon, shortcut: (&shortcut).into(), chosen: false };
+    let item = MenuItem { text: text.into(), icon, shortcut: (&shortcut).into(), chosen: None };
     let enabled = command.is_enabled(session, state);
     if ui.add_enabled_ui(enabled, |ui| kit::menu_item_ui(item, ui)).inner.clicked() {
         command.run(&mut Target { session, state, out, ui });

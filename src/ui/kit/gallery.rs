@@ -169,7 +169,7 @@ fn top_ui(mock: &mut Mock, phone: bool, ui: &mut Ui) {
                     menu_item_ui(
                         MenuItem {
                             text: Word::new("Three windows").into(),
-                            chosen: true,
+                            chosen: Some(true),
                             ..MenuItem::default()
                         },
                         ui,

@@ -20,8 +20,9 @@ pub(crate) struct MenuItem<'a> {
     pub(crate) icon: Option<Icon>,
     /// The keys of the same command, at the right.
     pub(crate) shortcut: Text<'a>,
-    /// Whether it is the current choice, which has a tick.
-    pub(crate) chosen: bool,
+    /// For one of several choices: whether it is the current one, which has a tick. `None` for a
+    /// command.
+    pub(crate) chosen: Option<bool>,
 }
 
 /// Draws a menu that opens below (or above, where there is no room) `opener` when that is clicked,
@@ -98,11 +99,12 @@ pub(crate) fn menu_item_ui(item: MenuItem<'_>, ui: &mut Ui) -> Response {
     if enabled && (response.hovered() || response.has_focus()) {
         ui.painter().rect_filled(rect, radius::M, palette.pressed);
     }
-    let sign = if item.chosen { Some(Icon::Check) } else { item.icon };
+    let is_chosen = item.chosen == Some(true);
+    let sign = if is_chosen { Some(Icon::Check) } else { item.icon };
     if let Some(sign) = sign {
         let at = Align2::LEFT_CENTER
             .anchor_size(pos2(rect.left() + space::S, rect.center().y), vec2(icon_size, icon_size));
-        let tone = if item.chosen { palette.accent_ink } else { palette.muted };
+        let tone = if is_chosen { palette.accent_ink } else { palette.muted };
         paint_icon(sign, at, faded(tone, enabled), ui.painter());
     }
     put(ui.painter(), pos2(rect.left() + indent, rect.center().y), Align2::LEFT_CENTER, text);
@@ -114,7 +116,9 @@ pub(crate) fn menu_item_ui(item: MenuItem<'_>, ui: &mut Ui) -> Response {
     );
     focus_ring(rect.shrink(2.0), radius::M, &response, ui);
     let name = say(item.text, ui);
-    describe(&response, &WidgetInfo::selected(Role::MenuItem, enabled, item.chosen, name));
+    let mut info = WidgetInfo::labeled(Role::MenuItem, enabled, name);
+    info.selected = item.chosen;
+    describe(&response, &info);
     response
 }
 
@@ -200,8 +204,11 @@ pub(crate) fn helped_choice_row_ui<T: Copy + PartialEq>(
     let picked = menu_ui(&response.with_new_rect(field), RectAlign::BOTTOM_END, |ui| {
         let mut picked = None;
         for &(value, text) in options {
-            if menu_item_ui(MenuItem { text, chosen: value == chosen, ..MenuItem::default() }, ui)
-                .clicked()
+            if menu_item_ui(
+                MenuItem { text, chosen: Some(value == chosen), ..MenuItem::default() },
+                ui,
+            )
+            .clicked()
             {
                 picked = Some(value);
             }

@@ -118,8 +118,11 @@ fn menu_of<T: Copy + PartialEq>(
     let mut picked = None;
     menu_ui(opener, RectAlign::BOTTOM_START, |ui| {
         for (value, text) in options {
-            let item =
-                MenuItem { text: text.into(), chosen: value == chosen, ..MenuItem::default() };
+            let item = MenuItem {
+                text: text.into(),
+                chosen: Some(value == chosen),
+                ..MenuItem::default()
+            };
             if menu_item_ui(item, ui).clicked() {
                 picked = Some(value);
             }

@@ -155,7 +155,7 @@ fn speed_ui(speed: f64, ui: &mut Ui) -> Option<f64> {
             if menu_item_ui(
                 MenuItem {
                     text: Text::Data(&format!("{value}×")),
-                    chosen: value == speed,
+                    chosen: Some(value == speed),
                     ..MenuItem::default()
                 },
                 ui,

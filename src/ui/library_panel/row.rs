@@ -246,7 +246,8 @@ fn menu_ui(
             }
         }
         let is_picked = state.library.picked.contains(&entry.id);
-        let item = MenuItem { text: text::SELECT.into(), chosen: is_picked, ..MenuItem::default() };
+        let item =
+            MenuItem { text: text::SELECT.into(), chosen: Some(is_picked), ..MenuItem::default() };
         if line_ui(item, ui) {
             state.library.toggle(&entry.id);
         }

@@ -256,7 +256,7 @@ pub(super) fn curve_menu_ui(
 }
 
 fn item_ui(text: Text<'_>, chosen: bool, can: bool, ui: &mut Ui) -> bool {
-    let item = MenuItem { text, chosen, ..MenuItem::default() };
+    let item = MenuItem { text, chosen: Some(chosen), ..MenuItem::default() };
     ui.add_enabled_ui(can, |ui| kit::menu_item_ui(item, ui).clicked()).inner
 }
 
