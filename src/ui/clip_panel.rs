@@ -10,6 +10,7 @@ use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{RichText, Ui};
 use segue_formats::ImportOptions;
 use segue_motion::clip::{Motion, UpAxis, ground_speed};
+use segue_motion::math::sort::sort_by_key;
 use segue_motion::skeleton::{Channel, Role, Skeleton};
 use segue_session::{
     Command, Entry, FileCommand, Key, Origin, Session, SourceFile, Value, format_number, joint_of,
@@ -272,7 +273,7 @@ fn channels_in_words(skeleton: &Skeleton) -> Message {
             None => kinds.push((words, 1)),
         }
     }
-    kinds.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    sort_by_key(&mut kinds, |(_, count)| std::cmp::Reverse(*count));
     let mut sentences = Vec::new();
     let of_root = in_words(&root.channels);
     if !of_root.is_empty() {

@@ -4,6 +4,7 @@ use super::library::{Entry, Library, Origin};
 use super::reading::Content;
 use glam::{Quat, Vec3};
 use segue_motion::clip::Clip;
+use segue_motion::math::sort::sort_by_key;
 use segue_text::{Message, msg};
 use std::cmp::Reverse;
 
@@ -150,7 +151,7 @@ pub(super) fn refusal(
         .map(|entry| (entry.name.as_str(), entry_bytes(entry)))
         .filter(|(_, bytes)| *bytes >= MIN_REMOVABLE_BYTES)
         .collect();
-    large.sort_by_key(|(_, bytes)| Reverse(*bytes));
+    sort_by_key(&mut large, |(_, bytes)| Reverse(*bytes));
     let named: Vec<Message> = large
         .iter()
         .take(MAX_NAMED)

@@ -4,6 +4,7 @@ mod table;
 
 pub use table::{METRICS, MetricId};
 
+use segue_motion::math::sort::sort_by;
 use segue_motion::metrics::{Extreme, ResultMetrics, SPIN_SECS};
 
 /// The direction in which a metric improves.
@@ -125,7 +126,7 @@ impl MetricRow {
             .enumerate()
             .filter_map(|(place, value)| Some((place, (*value)?)))
             .collect();
-        known.sort_by(|a, b| a.1.total_cmp(&b.1));
+        sort_by(&mut known, |a, b| a.1.total_cmp(&b.1));
         let ([lowest, second, ..], [.., last_but_one, highest]) = (&*known, &*known) else {
             return Ends::default();
         };

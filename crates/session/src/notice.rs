@@ -1,6 +1,7 @@
 //! Notices: messages to the user that stay until they are read or outdated.
 
 use super::outside::short;
+use segue_motion::math::sort::sort_by_key;
 use segue_text::{Message, msg};
 
 /// The severity of a notice.
@@ -249,7 +250,7 @@ impl Notices {
         let errors = of_list.chain(&self.more);
         let mut errors: Vec<&Notice> =
             errors.filter(|notice| notice.level == Level::Error && notice.id >= id).collect();
-        errors.sort_by_key(|notice| notice.id);
+        sort_by_key(&mut errors, |notice| notice.id);
         errors
     }
 

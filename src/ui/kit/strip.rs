@@ -9,6 +9,7 @@ use eframe::egui::{
     Align2, Color32, CursorIcon, Pos2, Rangef, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2,
     vec2,
 };
+use segue_motion::math::sort::sort_by;
 use segue_text::Message;
 
 /// The reachability of a stretch in the graph.
@@ -124,7 +125,7 @@ pub(crate) fn strip_ui(strip: &Strip<'_>, height: f32, ui: &mut Ui) -> StripResp
     };
     let mut shown: Vec<usize> = (0..strip.arcs.len()).collect();
     if shown.len() > MAX_ARCS {
-        shown.sort_by(|&a, &b| strip.arcs[b].weight.total_cmp(&strip.arcs[a].weight));
+        sort_by(&mut shown, |&a, &b| strip.arcs[b].weight.total_cmp(&strip.arcs[a].weight));
         shown.truncate(MAX_ARCS);
     }
     let pointer = response.hover_pos();

@@ -2,6 +2,7 @@
 
 use super::state::ClipOrder;
 use crate::ui::text;
+use segue_motion::math::sort::sort_by;
 use segue_session::{ClipGroup, Entry, Origin};
 use segue_text::Message;
 use std::cmp::Ordering;
@@ -37,8 +38,8 @@ pub(super) fn arrange<'a>(
     };
     match order {
         ClipOrder::Added => {}
-        ClipOrder::Name => shown.sort_by(|(_, a), (_, b)| by_name(a, b)),
-        ClipOrder::Length => shown.sort_by(|(a, _), (b, _)| secs(a).total_cmp(&secs(b))),
+        ClipOrder::Name => sort_by(&mut shown, |(_, a), (_, b)| by_name(a, b)),
+        ClipOrder::Length => sort_by(&mut shown, |(a, _), (b, _)| secs(a).total_cmp(&secs(b))),
     }
     let groups = groups_of(entries);
     let mut alone = Section { head: None, is_counted: false, entries: Vec::new() };

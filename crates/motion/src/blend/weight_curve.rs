@@ -1,6 +1,7 @@
 //! Weights with keys over the course of a blend.
 
 use super::WeightLaw;
+use crate::math::sort::sort_by;
 
 /// A weight over the course of a blend, interpolated smoothly between keys without overshoot.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -23,7 +24,7 @@ impl WeightCurve {
     pub fn new(keys: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let mut keys: Vec<(f64, f64)> =
             keys.into_iter().filter(|(at, weight)| !at.is_nan() && !weight.is_nan()).collect();
-        keys.sort_by(|a, b| a.0.total_cmp(&b.0));
+        sort_by(&mut keys, |a, b| a.0.total_cmp(&b.0));
         Self {
             keys: keys
                 .into_iter()

@@ -1,6 +1,7 @@
 //! The canonical form of a motion, in which the first joint is the carrier of the body.
 
 use super::{Clip, ClipError, JointTranslations, character_frames};
+use crate::math::sort::sort_by_key;
 use crate::math::{Planar, quat, wrap_angle};
 use crate::skeleton::{
     ChainChild, ChainJoint, ChainMotion, FoldedChain, Joint, Pose, Roles, Skeleton, WorldPose,
@@ -146,7 +147,7 @@ impl<'a> Fold<'a> {
                 tracks.push(JointTranslations { joint, values });
             }
         }
-        tracks.sort_by_key(|track| track.joint);
+        sort_by_key(&mut tracks, |track| track.joint);
         let skeleton = Arc::new(self.skeleton()?.with_folded_chain(Some(self.above(file))));
         let roots = self.carrier_poses.iter().map(|(position, _)| *position).collect();
         Ok(Clip::new(clip.name(), skeleton, clip.fps(), rotations, roots)?
@@ -418,7 +419,7 @@ impl<'a> Unfold<'a> {
             made.rotations[file] = rotation;
             made.translations.push((file, translation));
         }
-        made.translations.sort_by_key(|(joint, _)| *joint);
+        sort_by_key(&mut made.translations, |(joint, _)| *joint);
         if let Some((0, root)) = made.translations.first().copied() {
             made.root_translation = root;
             made.translations.remove(0);

@@ -3,6 +3,7 @@
 use super::GaitError;
 use super::phase::Events;
 use crate::clip::{ContactOptions, Contacts, Motion, ground_speed};
+use crate::math::sort::sort_by;
 use crate::math::{quat, stats};
 use crate::skeleton::{Roles, Side};
 use crate::transition::{CycleSearch, Loop, LoopOptions, WholeCycle, close_loop, find_cycle};
@@ -124,7 +125,7 @@ impl GaitCycle {
             let looped = close_loop(source, cut.cycle.clone(), &LoopOptions::default())?;
             closed.push((cut.rms_cm, cut.cycle.start, looped));
         }
-        closed.sort_by(|a, b| a.0.total_cmp(&b.0));
+        sort_by(&mut closed, |a, b| a.0.total_cmp(&b.0));
         for (_, start, looped) in closed {
             let corrections = source.contact_corrections();
             let by_hand = |side, frame| corrections.planted(side, start + frame);

@@ -1,6 +1,7 @@
 //! Phases of clips by the strikes of the feet.
 
 use crate::clip::Contacts;
+use crate::math::sort::sort_by_key;
 use crate::skeleton::Side;
 
 /// Returns the phase of every frame of a clip, in cycles, by the strikes of its feet: a whole
@@ -19,7 +20,7 @@ pub fn strike_phases(contacts: &Contacts, right_strike: f64) -> Option<Vec<f64>>
         stances.filter(|&at| at > 0).map(move |at| (at, phase))
     };
     let mut strikes: Vec<(usize, f64)> = Side::BOTH.into_iter().flat_map(strikes_of).collect();
-    strikes.sort_by_key(|&(at, _)| at);
+    sort_by_key(&mut strikes, |&(at, _)| at);
     strikes.dedup_by_key(|&mut (at, _)| at);
     for index in 1..strikes.len() {
         let (before, here) = (strikes[index - 1].1, strikes[index].1);

@@ -3,6 +3,7 @@
 use super::error::above;
 use super::{Candidates, FrameSet, GraphError, Place};
 use crate::math::Planar;
+use crate::math::sort::sort_by_key;
 use petgraph::Direction;
 use petgraph::algo::kosaraju_scc;
 use petgraph::graph::{DiGraph, EdgeIndex, NodeIndex};
@@ -406,7 +407,9 @@ impl MotionGraph {
         for nodes in &mut components {
             nodes.sort_unstable();
         }
-        components.sort_by_key(|nodes| (std::cmp::Reverse(frames(nodes)), nodes.first().copied()));
+        sort_by_key(&mut components, |nodes| {
+            (std::cmp::Reverse(frames(nodes)), nodes.first().copied())
+        });
         components
     }
 

@@ -77,6 +77,7 @@ mod monotone;
 mod planar;
 pub mod quat;
 mod response;
+pub mod sort;
 pub mod spring;
 pub mod stats;
 

@@ -1,6 +1,7 @@
 //! Artefacts of a motion compared with the clips that it was made from.
 
 use crate::clip::Clip;
+use crate::math::sort::sort_by_key;
 use crate::math::{stats, wrap_angle};
 use crate::skeleton::{Role, Roles, Side, WorldPose};
 use glam::{Vec2, Vec3};
@@ -152,7 +153,7 @@ impl MotionTrace {
         }
         frames.sort_unstable();
         frames.dedup();
-        new.sort_by_key(|flash| (flash.frame, flash.joint));
+        sort_by_key(&mut new, |flash| (flash.frame, flash.joint));
         (separate_events(frames, |frame| *frame), separate_events(new, |flash| flash.frame))
     }
 }

@@ -4,6 +4,7 @@ use super::points::checked_sum;
 use super::{Progress, REFERENCE_HEIGHT_M, RegistrationError, SearchOptions};
 use crate::clip::{Clip, jolts};
 use crate::math::Planar;
+use crate::math::sort::sort_by;
 use crate::skeleton::WorldPose;
 use glam::{Quat, Vec3};
 use std::ops::Range;
@@ -288,7 +289,7 @@ impl PoseSearch {
         }
         // Equal pairs are sorted by their frames, independent of the order in which they were
         // found.
-        pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+        sort_by(&mut pairs, |a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
         let lowest = pairs.first().map_or(f64::INFINITY, |pair| pair.0);
         let alike = pairs.iter().take_while(|pair| pair.0 <= lowest + lowest.min(MAX_CALM_COST));
         let jolt = |&&(_, i, j): &&(f64, usize, usize)| self.jolt(i, j);
@@ -368,7 +369,7 @@ impl PoseSearch {
                     .all(|(there, at)| there > here || (there == here && at >= (row, column)));
                 if lowest {
                     minima.push((here, row, column));
-                    minima.sort_by(|a, b| a.0.total_cmp(&b.0));
+                    sort_by(&mut minima, |a, b| a.0.total_cmp(&b.0));
                     minima.truncate(CANDIDATES);
                 }
             }

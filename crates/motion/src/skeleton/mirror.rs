@@ -3,6 +3,7 @@
 use super::roles::{Tokens, are_counterparts, read};
 use super::{Pose, Role, Roles, Side, Skeleton};
 use crate::math::quat;
+use crate::math::sort::{sort_by, sort_by_key};
 use glam::{Quat, Vec3};
 
 /// An axis of the rest pose this near to the skeleton's left-right axis is taken as that axis: cos
@@ -216,7 +217,7 @@ impl Mirror {
             .iter()
             .map(|&(joint, value)| self.translation(joint, value))
             .collect();
-        translations.sort_by_key(|&(joint, _)| joint);
+        sort_by_key(&mut translations, |&(joint, _)| joint);
         Pose {
             root_translation: pose.root_translation * Vec3::new(-1.0, 1.0, 1.0),
             rotations: rotations.collect(),
@@ -364,7 +365,7 @@ impl<'a> CounterpartSearch<'a> {
                     );
                 }
             }
-            candidates.sort_by(|x, y| x.0.cmp(&y.0).then(x.1.total_cmp(&y.1)));
+            sort_by(&mut candidates, |x, y| x.0.cmp(&y.0).then(x.1.total_cmp(&y.1)));
             for (_, _, a, b) in candidates {
                 if counterparts[a].is_none() && counterparts[b].is_none() {
                     counterparts[a] = Some(b);

@@ -7,6 +7,7 @@ use super::field::{Cone, Field};
 use super::shapes::{PlacedShape, Shape, limb_shapes};
 use super::weights::{Neighbours, WeightDiffusion, drawn_together, fair, normals, rates};
 use super::{SkinnedMesh, bind, sheets};
+use crate::math::sort::sort_by;
 use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose, canonical_stance};
 use glam::Vec3;
 use std::collections::BTreeMap;
@@ -101,7 +102,7 @@ impl SkinBuilder {
         let is_blended = shapes.len() <= MAX_BLENDED;
         if !is_blended {
             shapes.retain(|shape| !shape.soft);
-            shapes.sort_by(|x, y| y.weight(&rest).total_cmp(&x.weight(&rest)));
+            sort_by(&mut shapes, |x, y| y.weight(&rest).total_cmp(&x.weight(&rest)));
             shapes.truncate(MAX_SHAPES);
         }
         let shapes: Vec<Shape> =

@@ -2,6 +2,7 @@
 
 use super::{RigidTransform, SkinnedMesh};
 use crate::clip::{Clip, ClipError, stance_for_rest};
+use crate::math::sort::sort_by;
 use crate::math::stats;
 use crate::skeleton::{
     JointMap, Pose, Retargeting, Role, Roles, Side, Skeleton, WorldPose, local_pose,
@@ -279,7 +280,7 @@ impl Sole {
         // Joints have no rotation at rest, so the direction down is the same in all of their
         // frames; the lowest vertices at rest, over the whole foot.
         let rest = character.skeleton.rest_positions();
-        points.sort_by(|x, y| (rest[x.0] + x.1).y.total_cmp(&(rest[y.0] + y.1).y));
+        sort_by(&mut points, |x, y| (rest[x.0] + x.1).y.total_cmp(&(rest[y.0] + y.1).y));
         // Evenly spaced ones of the lower half: heel, ball and tips.
         points.truncate(points.len() / 2);
         let step = points.len().div_ceil(SOLE_VERTICES).max(1);

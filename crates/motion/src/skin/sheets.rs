@@ -6,6 +6,7 @@
 
 use super::contour::Contour;
 use super::weights::Neighbours;
+use crate::math::sort::sort_by;
 use glam::Vec3;
 use std::collections::HashMap;
 
@@ -90,7 +91,7 @@ fn order_around(contour: &Contour, around: &mut [HalfEdge]) {
         let sign = u.cross(v).dot(axis).signum();
         (sign * way.dot(v)).atan2(way.dot(u))
     };
-    around.sort_by(|x, y| angle(x).total_cmp(&angle(y)));
+    sort_by(around, |x, y| angle(x).total_cmp(&angle(y)));
 }
 
 /// Corners of triangles that are one vertex of a sheet: a forest of disjoint sets.

@@ -2,6 +2,7 @@
 
 use super::LoopError;
 use crate::clip::{Clip, Contacts, Motion};
+use crate::math::sort::sort_by;
 use crate::registration::{PairTerms, REFERENCE_HEIGHT_M, limb_weights};
 use crate::skeleton::Side;
 use std::ops::Range;
@@ -288,7 +289,7 @@ impl CycleFinder<'_> {
         if minima {
             let fewest = places.iter().map(|place| self.flaws(place)).min();
             places.retain(|place| Some(self.flaws(place)) == fewest);
-            places.sort_by(|a, b| a.rms_cm.total_cmp(&b.rms_cm));
+            sort_by(&mut places, |a, b| a.rms_cm.total_cmp(&b.rms_cm));
             places.truncate(CANDIDATES);
         }
         Ok(places)

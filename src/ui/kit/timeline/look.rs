@@ -11,6 +11,7 @@ use eframe::egui::{
     Align2, Id, Pos2, Rangef, Rect, Response, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2,
     vec2,
 };
+use segue_motion::math::sort::sort_by;
 use segue_text::msg;
 
 pub(super) fn paint_track(track: &Track<'_>, row: Rangef, axis: TimeAxis, duration: f64, ui: &Ui) {
@@ -33,7 +34,7 @@ pub(super) fn paint_track(track: &Track<'_>, row: Rangef, axis: TimeAxis, durati
     if fade_out > 0.0 {
         stops.push((1.0, faint));
     }
-    stops.sort_by(|one, other| one.0.total_cmp(&other.0));
+    sort_by(&mut stops, |one, other| one.0.total_cmp(&other.0));
     gradient_bar(bar, f32::from(radius::S), &stops, ui.painter());
 
     // The name is at the opaque end of the bar: the beginning, or the end if it fades in.

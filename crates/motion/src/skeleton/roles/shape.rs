@@ -1,6 +1,7 @@
 //! Roles by the shape of a skeleton at rest.
 
 use super::{RoleSource, Roles, is_below};
+use crate::math::sort::sort_by;
 use crate::skeleton::{Role, Side, Skeleton};
 use glam::Vec3;
 
@@ -118,7 +119,7 @@ impl<'a> Shape<'a> {
     /// Returns the joint at which the legs meet, and a leaf of either leg.
     fn legs(&self) -> Option<(usize, [usize; 2])> {
         let mut by_height = self.leaves.clone();
-        by_height.sort_by(|&a, &b| self.tip(a).y.total_cmp(&self.tip(b).y));
+        sort_by(&mut by_height, |&a, &b| self.tip(a).y.total_cmp(&self.tip(b).y));
         let &first = by_height.first()?;
         by_height
             .iter()

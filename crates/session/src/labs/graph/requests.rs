@@ -11,6 +11,7 @@ use segue_motion::graph::{
     WeightOptions,
 };
 use segue_motion::math::Decay;
+use segue_motion::math::sort::sort_by;
 use segue_motion::transition::{Inertialization, Method, Mistake};
 
 /// A request for a walk, besides the clips.
@@ -185,7 +186,7 @@ pub fn graph_of(ids: &[String]) -> Vec<(Key, Value)> {
 /// Returns the visits in order of time: when to set off, seconds, and the index of the clip.
 pub(crate) fn visits_of(params: &Params) -> Vec<(f64, usize)> {
     let mut visits = params.visits().to_vec();
-    visits.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sort_by(&mut visits, |a, b| a.0.total_cmp(&b.0));
     visits
 }
 
