@@ -10,7 +10,7 @@ pub(crate) mod strip;
 mod swipe;
 mod verdicts;
 
-use self::buttons::{buttons_width, camera_buttons_ui};
+use self::buttons::camera_buttons_ui;
 use self::camera::camera_input;
 use self::pane::pane_ui;
 use self::pick::pick_ui;
@@ -90,14 +90,23 @@ fn stage_ui(
     let mut free = stage.with_min_y(stage.top() + kit::pane_header_height(ui));
     if is_switched {
         pane_switch_ui(session, free, state, ui);
-        free.min.y += switch_height(ui);
+        free.max.y -= switch_height(ui);
     }
+    let mut buttons = Rect::NOTHING;
     if !state.presenter.is_on {
-        camera_buttons_ui(session, free, layout, state, out, ui);
+        buttons = camera_buttons_ui(session, free, layout, state, out, ui);
     }
-    on_stage::controls_ui(session, stage, layout, state, ui);
-    caption_ui(session, layout, &response, state, out, ui);
+    let controls = on_stage::controls_ui(session, free, layout, state, ui);
+    // Beside the controls of a lab, and below the buttons or beside them.
+    free.min.x = free.min.x.max(controls.right() + space::S);
+    if buttons.bottom() > free.bottom() - CAPTION_ROOM * theme_of(ui).scale() {
+        free = free.shrink2(vec2(free.right() - buttons.left(), 0.0));
+    }
+    caption_ui(session, layout, free, &response, state, out, ui);
 }
+
+/// The height in which a caption has two lines, points.
+const CAPTION_ROOM: f32 = 68.0;
 
 /// Returns the panes that are shown, and the column of `place` that each has. A phone, or a
 /// presenter, shows one pane at a time.
@@ -115,11 +124,12 @@ fn shown_panes(
     }
 }
 
-/// Draws the note on the last action, or on the character, or the hint of the lab, below the titles
-/// of the panes and clear of the buttons.
+/// Draws the note on the last action, or on the character, or the hint of the lab, at the bottom of
+/// `free`: feet stand well above it, while heads reach the titles.
 fn caption_ui(
     session: &Session,
     layout: Layout,
+    free: Rect,
     response: &Response,
     state: &mut UiState,
     out: &Out,
@@ -129,11 +139,8 @@ fn caption_ui(
     if is_used(response, out, ui) && !state.hints_used.contains(&lab) {
         state.hints_used.push(lab);
     }
-    let stage = state.stage;
-    let beside = buttons_width(ui) + space::S;
-    let top = stage.top() + kit::pane_header_height(ui) + space::S;
-    let free = stage.shrink2(vec2(beside, 0.0)).with_min_y(top);
-    let is_roomy = stage.height() > 240.0 * theme_of(ui).scale();
+    let free = free.shrink(space::S);
+    let is_roomy = state.stage.height() > 240.0 * theme_of(ui).scale();
     // A pane without a result needs no hint.
     let is_refused = session.panes().iter().any(|pane| pane.problem.is_some());
     if let Some(note) = on_stage::note(session, state) {

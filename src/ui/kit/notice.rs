@@ -209,7 +209,8 @@ fn notice_list_ui(notices: &[Notice<'_>], max_height: f32, ui: &mut Ui) -> Notic
     heard
 }
 
-/// Draws a sentence on a round ground, centred at the top of `free`. It wraps where that is narrow.
+/// Draws a sentence on a round ground, centred at the bottom of `free`. It wraps where that is
+/// narrow.
 pub(crate) fn caption_ui<'a>(text: impl Into<Text<'a>>, free: Rect, ui: &mut Ui) -> Rect {
     let text = text.into();
     let (theme, palette) = (theme_of(ui), palette_of(ui));
@@ -217,7 +218,8 @@ pub(crate) fn caption_ui<'a>(text: impl Into<Text<'a>>, free: Rect, ui: &mut Ui)
     let galley =
         paragraph(text, Type::Body, palette.text, (free.width() - 2.0 * padding.x).min(820.0), ui);
     let one_line = galley.rows.len() == 1;
-    let rect = Align2::CENTER_TOP.anchor_size(free.center_top(), galley.size() + 2.0 * padding);
+    let rect =
+        Align2::CENTER_BOTTOM.anchor_size(free.center_bottom(), galley.size() + 2.0 * padding);
     let corner = if one_line { rect.height() / 2.0 } else { f32::from(radius::L) };
     let shadow = Shadow { offset: [0, 4], blur: 16, spread: 0, color: palette.shadow };
     ui.painter().add(shadow.as_shape(rect, corner));

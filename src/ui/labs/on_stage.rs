@@ -69,15 +69,15 @@ pub(crate) fn handles_ui(
     }
 }
 
-/// Shows the controls that a lab has on the stage.
+/// Shows the controls that a lab has at the lower left of `free`. Returns their place.
 pub(crate) fn controls_ui(
     session: &Session,
-    stage: Rect,
+    free: Rect,
     layout: Layout,
     state: &mut UiState,
     ui: &mut Ui,
-) {
-    match_::stick_on_stage_ui(session, stage, layout, state, ui);
+) -> Rect {
+    match_::stick_on_stage_ui(session, free, layout, state, ui)
 }
 
 /// Returns a lab's note on the last action on the stage.

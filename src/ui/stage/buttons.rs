@@ -9,13 +9,9 @@ use crate::ui::theme::{space, theme_of};
 use eframe::egui::{Rect, Ui, UiBuilder, pos2, vec2};
 use segue_session::{Key, Session};
 
-/// Returns the width of the buttons at the right edge of the stage, with their margin.
-pub(super) fn buttons_width(ui: &Ui) -> f32 {
-    (30.0 * theme_of(ui).scale()).round() + space::S
-}
-
 /// Draws the buttons of the camera at the right of `free`, and below them those for pictures,
-/// reports and videos, which a phone has in its menu.
+/// reports and videos, which a phone has in its menu; on a low stage beside them. Returns their
+/// place.
 pub(super) fn camera_buttons_ui(
     session: &Session,
     free: Rect,
@@ -23,14 +19,13 @@ pub(super) fn camera_buttons_ui(
     state: &mut UiState,
     out: &mut Out,
     ui: &mut Ui,
-) {
+) -> Rect {
     let params = session.params();
     let theme = theme_of(ui);
     let side = (30.0 * theme.scale()).max(theme.row_height()).round();
-    let rect = Rect::from_min_size(
-        pos2(free.right() - side - space::S, free.top() + space::S),
-        vec2(side, 3.0 * side + 2.0 * space::XS),
-    );
+    let size = vec2(side, 3.0 * side + 2.0 * space::XS);
+    let rect =
+        Rect::from_min_size(pos2(free.right() - side - space::S, free.top() + space::S), size);
     ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
         ui.spacing_mut().item_spacing.y = space::XS;
         for command in
@@ -39,13 +34,14 @@ pub(super) fn camera_buttons_ui(
             command_icon_ui(command, session, state, out, ui);
         }
     });
-    if !params.is_on(Key::Embed) && layout != Layout::Phone {
-        let below = Rect::from_min_size(
-            rect.left_bottom() + vec2(0.0, space::M),
-            vec2(side, 3.0 * side + 2.0 * space::XS),
-        );
-        filming_ui(state.filming, below, out, ui);
+    if params.is_on(Key::Embed) || layout == Layout::Phone {
+        return rect;
     }
+    let below = rect.translate(vec2(0.0, size.y + space::M));
+    let is_low = below.bottom() > free.bottom();
+    let filming = if is_low { rect.translate(vec2(-side - space::XS, 0.0)) } else { below };
+    filming_ui(state.filming, filming, out, ui);
+    rect.union(filming)
 }
 
 /// Draws the buttons for a picture of the stage, a report, and a video of the page; beside a video

@@ -71,13 +71,13 @@ pub(super) fn switch_height(ui: &Ui) -> f32 {
     44.0 * theme_of(ui).scale()
 }
 
-/// Draws the row that tells which of several panes is shown, at the top of `place`: a dot for each,
-/// and a button to either side.
+/// Draws the row that tells which of several panes is shown, at the bottom of `place`, below the
+/// figure: a dot for each, and a button to either side.
 pub(super) fn pane_switch_ui(session: &Session, place: Rect, state: &mut UiState, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let panes = session.panes();
     let count = panes.len();
-    let row = Rect::from_min_size(place.min, vec2(place.width(), switch_height(ui)));
+    let row = place.with_min_y(place.bottom() - switch_height(ui));
     let side = theme.row_height().max(theme.hit());
     let ways = [
         (false, Icon::ChevronLeft, text::PREVIOUS_PANE, row.left() + space::XS),
@@ -99,16 +99,16 @@ pub(super) fn pane_switch_ui(session: &Session, place: Rect, state: &mut UiState
     let (gap, radius) = (14.0 * theme.scale(), 3.5 * theme.scale());
     let first = row.center().x - 0.5 * gap * count.saturating_sub(1) as f32;
     for index in 0..count {
-        let at = pos2(first + gap * index as f32, row.top() + 0.3 * row.height());
+        let at = pos2(first + gap * index as f32, row.center().y);
         let is_shown = index == state.shown_pane;
         let color = if is_shown { palette.accent } else { palette.line_strong };
         ui.painter().circle_filled(at, if is_shown { radius + 1.0 } else { radius }, color);
     }
-    // The title above shows the name; here it would cover the figure.
+    // The title of the pane shows the name.
     let name = panes.get(state.shown_pane).and_then(|pane| session.variant_name(pane));
     let words = text::pane_of(name.unwrap_or_default(), state.shown_pane + 1, count);
     let dots = vec2(gap * count as f32, 0.6 * row.height());
-    let rect = Rect::from_center_size(pos2(row.center().x, row.top() + 0.3 * row.height()), dots);
+    let rect = Rect::from_center_size(row.center(), dots);
     let response = ui.interact(rect, ui.make_persistent_id("pane_name"), Sense::hover());
     let said = say(Text::Message(&words), ui);
     kit::describe(&response, &WidgetInfo::labeled(Role::Label, true, said));

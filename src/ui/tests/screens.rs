@@ -169,6 +169,19 @@ fn swipe_that_begins_on_the_map_scrolls_and_a_held_finger_sets_a_pin() {
 }
 
 #[test]
+fn buttons_over_a_low_stage_are_whole() {
+    for (size, theme) in [(HALL_SIZE, HALL), (CLASSIC, DARK), (vec2(1280.0, 600.0), HALL)] {
+        let link = "lab=transition&compare=half_life:0.4,0.2,0.1&play=off";
+        let harness = harness(size, theme, page(link));
+        let stage = harness.state().stage;
+        for name in [text::COPY_REPORT] {
+            let at = harness.get_by_label(name.english()).rect();
+            assert!(stage.contains_rect(at), "{size}: {at:?} in {stage:?}");
+        }
+    }
+}
+
+#[test]
 fn lesson_has_what_it_speaks_of_beside_its_text() {
     let controls =
         |link: &str, size: Vec2, theme: Theme| harness(size, theme, super::lessons::lesson(link));

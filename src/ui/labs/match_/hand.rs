@@ -90,42 +90,45 @@ pub(crate) fn steer(session: &Session, state: &mut UiState, out: &mut Out, ctx: 
     }
 }
 
-/// Draws the stick over the lower left of the stage.
+/// Draws the stick at the lower left of `free`. Returns its place.
 pub(crate) fn stick_on_stage_ui(
     session: &Session,
-    stage: Rect,
+    free: Rect,
     layout: Layout,
     state: &mut UiState,
     ui: &mut Ui,
-) {
+) -> Rect {
     state.labs.match_.stick = None;
     if !session.is_driven() {
-        return;
+        return Rect::NOTHING;
     }
     let size = kit::stick_size(ui);
-    let bottom = stage.bottom() - space::M;
-    let center = pos2(stage.left() + space::L + 0.5 * size, bottom - 0.5 * size);
+    let bottom = free.bottom() - space::M;
+    let center = pos2(free.left() + space::L + 0.5 * size, bottom - 0.5 * size);
     // Without room for the stick, keys and gamepad remain.
-    if center.y - 0.5 * size < stage.top() + 40.0 {
-        return;
+    if center.y - 0.5 * size < free.top() {
+        return Rect::NOTHING;
     }
     let shown = state.labs.match_.pushed;
     state.labs.match_.stick = kit::stick_ui(text::STICK, center, shown, ui);
+    let stick = Rect::from_center_size(center, vec2(size, size));
+    if layout != Layout::Phone {
+        return stick;
+    }
     let height = theme_of(ui).row_height();
     let button = Rect::from_min_size(
-        pos2(center.x + 0.5 * size + space::S, bottom - height),
+        pos2(stick.right() + space::S, bottom - height),
         vec2(120.0 * theme_of(ui).scale(), height),
     );
-    if layout == Layout::Phone {
-        ui.scope_builder(UiBuilder::new().id_salt("run").max_rect(button), |ui| {
-            if kit::button_ui(
-                Button::new(text::RUN).hint(text::RUN_HELP).selected(state.labs.match_.runs),
-                ui,
-            )
-            .clicked()
-            {
-                state.labs.match_.runs = !state.labs.match_.runs;
-            }
-        });
-    }
+    ui.scope_builder(UiBuilder::new().id_salt("run").max_rect(button), |ui| {
+        if kit::button_ui(
+            Button::new(text::RUN).hint(text::RUN_HELP).selected(state.labs.match_.runs),
+            ui,
+        )
+        .clicked()
+        {
+            state.labs.match_.runs = !state.labs.match_.runs;
+        }
+    });
+    stick.union(button)
 }
