@@ -162,6 +162,7 @@ fn series_of<'a>(lines: &'a [Curve], palette: &Palette) -> Vec<Series<'a>> {
             color: part.fill(palette).0,
             ink: part.ink(palette),
             strong: false,
+            is_source: true,
             points,
         },
         CurveOf::Pane(index, _) => Series {
@@ -171,6 +172,7 @@ fn series_of<'a>(lines: &'a [Curve], palette: &Palette) -> Vec<Series<'a>> {
             color: [palette.accent, palette.text, palette.muted, palette.others[1]][index % 4],
             ink: [palette.accent_ink, palette.text, palette.muted, palette.others[1]][index % 4],
             strong: *index == 0,
+            is_source: false,
             points,
         },
     };

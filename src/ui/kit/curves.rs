@@ -21,6 +21,8 @@ pub(crate) struct Series<'a> {
     pub(crate) ink: Color32,
     /// Whether it is drawn thick, and last.
     pub(crate) strong: bool,
+    /// Whether it is a clip's that the others were made from: its name stands behind theirs.
+    pub(crate) is_source: bool,
     /// Times in seconds and values, in rising time. A value that is not finite makes a gap.
     pub(crate) points: &'a [[f64; 2]],
 }
@@ -147,21 +149,31 @@ fn key_parts(curves: &Curves<'_>, width: f32, now: f64, ui: &Ui) -> Vec<(Vec2, A
     let title = line_of(&[title], width, ui);
     let mut corner = vec2(0.0, space::XS + title.size().y);
     let mut parts = vec![(vec2(0.0, space::XS), title)];
-    // The result first: where room is scarce, the others are left out.
-    let of = |strong: bool| curves.series.iter().filter(move |series| series.strong == strong);
-    for series in of(true).chain(of(false)) {
-        let value = value_at(series.points, now).map(|value| curves.written(value));
-        let value = value.unwrap_or_default();
-        let runs = [
-            Run::new(series.name, Type::Small, series.ink),
-            Run::new(Text::Data(&value), Type::SmallStrong, palette.text).after(space::XS),
-        ];
-        // A number that is cut says nothing: a long name stands alone.
-        let fits = line_of(&runs, f32::INFINITY, ui).size().x <= width;
-        let entry = line_of(&runs[..if fits { 2 } else { 1 }], width, ui);
-        if corner.x > 0.0 && corner.x + entry.size().x > width {
+    // The results first: where room is scarce, the others are left out.
+    let mut sorted: Vec<_> = curves.series.iter().collect();
+    sorted.sort_by_key(|series| (!series.strong, series.is_source));
+    let entries: Vec<_> = (sorted.into_iter())
+        .map(|series| {
+            let value = value_at(series.points, now).map(|value| curves.written(value));
+            let value = value.unwrap_or_default();
+            let runs = [
+                Run::new(series.name, Type::Small, series.ink),
+                Run::new(Text::Data(&value), Type::SmallStrong, palette.text).after(space::XS),
+            ];
+            // A number that is cut says nothing: a long name stands alone.
+            let fits = line_of(&runs, f32::INFINITY, ui).size().x <= width;
+            line_of(&runs[..if fits { 2 } else { 1 }], width, ui)
+        })
+        .collect();
+    let mut left: f32 = entries.iter().map(|entry| entry.size().x + space::S).sum();
+    for entry in entries {
+        // Names that have a line of their own are not spread over two.
+        let rest = left - space::S;
+        let is_split = rest <= width && corner.x + rest > width;
+        if corner.x > 0.0 && (is_split || corner.x + entry.size().x > width) {
             corner = vec2(0.0, corner.y + entry.size().y);
         }
+        left -= entry.size().x + space::S;
         let right = corner.x + entry.size().x;
         parts.push((corner, entry));
         corner.x = right + space::S;
@@ -295,6 +307,32 @@ mod tests {
     }
 
     #[test]
+    fn names_of_results_stand_before_those_of_the_clips_which_share_a_line() {
+        let series = ["A", "B", "inertialize", "dissolve"].map(|name| Series {
+            name: Text::Data(name),
+            color: Color32::RED,
+            ink: Color32::RED,
+            strong: name == "inertialize",
+            is_source: name.len() == 1,
+            points: &[],
+        });
+        let curves = Curves { title: Word::new("speed"), series: &series, ..Curves::default() };
+        let mut placed = Vec::new();
+        let builder = egui_kittest::Harness::builder()
+            .with_context_setup(|ctx| crate::ui::theme::Theme::default().install(ctx));
+        let harness = builder.build_ui(|ui| {
+            let parts = key_parts(&curves, 80.0, 0.0, ui);
+            placed = parts.iter().map(|(at, part)| (part.text().to_owned(), *at)).collect();
+        });
+        drop(harness);
+        let names: Vec<_> = placed.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["speed", "inertialize", "dissolve", "A", "B"]);
+        let tops: Vec<_> = placed.iter().map(|(_, at)| at.y).collect();
+        assert!(tops[1] < tops[2] && tops[2] < tops[3], "{placed:?}");
+        assert_eq!(tops[3], tops[4], "{placed:?}");
+    }
+
+    #[test]
     fn bounds_hold_all_that_is_finite() {
         let points = [[0.0, 1.0], [1.0, f64::INFINITY], [2.0, 5.0]];
         let series = [Series {
@@ -302,6 +340,7 @@ mod tests {
             color: Color32::RED,
             ink: Color32::RED,
             strong: true,
+            is_source: false,
             points: &points,
         }];
         let curves = Curves { include: Some(0.0), series: &series, ..Curves::default() };

@@ -487,13 +487,28 @@ fn time_ui(mock: &mut Mock, phone: bool, ui: &mut Ui) {
     };
     let result: Vec<[f64; 2]> = wave(1.0, 0.0, 0.0..6.0).iter().map(blend).collect();
     let series = [
-        Series { name: Word::new("A").into(), color: p.a, ink: p.a_ink, strong: false, points: &a },
-        Series { name: Word::new("B").into(), color: p.b, ink: p.b_ink, strong: false, points: &b },
+        Series {
+            name: Word::new("A").into(),
+            color: p.a,
+            ink: p.a_ink,
+            strong: false,
+            is_source: true,
+            points: &a,
+        },
+        Series {
+            name: Word::new("B").into(),
+            color: p.b,
+            ink: p.b_ink,
+            strong: false,
+            is_source: true,
+            points: &b,
+        },
         Series {
             name: Word::new("result").into(),
             color: p.accent,
             ink: p.accent_ink,
             strong: true,
+            is_source: false,
             points: &result,
         },
     ];

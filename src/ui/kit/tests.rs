@@ -371,6 +371,7 @@ fn timeline() -> Harness<'static, Timed> {
             color: ink,
             ink,
             strong: true,
+            is_source: false,
             points: &points,
         }];
         let view = Timeline {

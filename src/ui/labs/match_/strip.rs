@@ -88,6 +88,7 @@ fn time_ui(
             color: palette.muted,
             ink: palette.muted,
             strong: false,
+            is_source: false,
             points: &current,
         },
         Series {
@@ -95,6 +96,7 @@ fn time_ui(
             color: palette.b,
             ink: palette.b_ink,
             strong: true,
+            is_source: false,
             points: &best,
         },
     ];
