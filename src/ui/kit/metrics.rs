@@ -191,8 +191,9 @@ pub(crate) fn metric_cell_ui(metric: &Metric<'_>, rect: Rect, id: Id, ui: &Ui) -
     let at = put(ui.painter(), pos2(rect.left(), name_top), Align2::LEFT_BOTTOM, number);
     if metric.rank != Rank::Middle {
         let word = run(metric.rank.word().into(), Type::Small, ink);
-        // Above the unit; beside a number without one.
-        let raised = if metric.unit.is_empty() { 0.0 } else { 0.94 * word.size().y };
+        // Above the unit, and at the same height behind a number without one: the words of a row
+        // stand on one line.
+        let raised = 0.94 * word.size().y;
         let bottom = pos2(rect.left() + digits + space::XS, at.bottom() - raised);
         put(ui.painter(), bottom, Align2::LEFT_BOTTOM, word);
     }
