@@ -169,6 +169,29 @@ fn swipe_that_begins_on_the_map_scrolls_and_a_held_finger_sets_a_pin() {
 }
 
 #[test]
+fn swipe_that_begins_on_a_slider_scrolls_and_one_along_it_sets_the_value() {
+    let mut harness = phone("lab=make&play=off");
+    let slider = |harness: &Harness<'_, Page>| {
+        harness.get_by_role_and_label(Role::Slider, "Turn rate").rect()
+    };
+    let rate = |harness: &Harness<'_, Page>| harness.state().session.params().number(Key::TurnRate);
+    harness.get_by_role_and_label(Role::Slider, "Turn rate").scroll_to_me();
+    harness.run_steps(60);
+    let (before, value) = (slider(&harness), rate(&harness));
+    let from = before.left_center() + vec2(40.0, 0.0);
+    swipe(from, vec2(4.0, -60.0), 8, &mut harness);
+    let after = slider(&harness);
+    assert!(after.top() < before.top() - 40.0, "{before:?} {after:?}");
+    assert_eq!(rate(&harness), value, "the finger scrolls");
+    // A finger along the track slides, and a tap sets the value under it.
+    swipe(after.left_center() + vec2(40.0, 0.0), vec2(60.0, 3.0), 8, &mut harness);
+    let slid = rate(&harness);
+    assert!(slid != value && slider(&harness) == after, "{value} {slid}");
+    swipe(after.right_center() - vec2(40.0, 0.0), Vec2::ZERO, 1, &mut harness);
+    assert!(rate(&harness) > slid, "{slid} {}", rate(&harness));
+}
+
+#[test]
 fn buttons_over_a_low_stage_are_whole() {
     for (size, theme) in [(HALL_SIZE, HALL), (CLASSIC, DARK), (vec2(1280.0, 600.0), HALL)] {
         let link = "lab=transition&compare=half_life:0.4,0.2,0.1&play=off";

@@ -1,56 +1,111 @@
 //! The track of a slider: pointer and keys on it, and its painting.
 
 use super::super::keys::keys_pressed;
-use super::super::paint::{faded, focus_ring};
+use super::super::paint::{PointerKind, faded, focus_ring, pointer_in_use};
 use super::row::{SliderResponse, SliderRow, Source};
 use crate::ui::theme::{palette_of, theme_of};
+use eframe::egui::style::ScrollAnimation;
 use eframe::egui::{EventFilter, Key, Pos2, Rect, Response, Stroke, Ui, Vec2, pos2, vec2};
 
-/// The place where the pointer holds the handle, kept between frames. It is not clamped, so that
-/// the way back from beyond an end is as long as the way there.
+/// A pointer on the track, kept between frames.
+#[derive(Clone, Copy, Debug)]
+enum Hold {
+    /// A finger that has not moved: it will set the value, or scroll the panel.
+    Undecided(Pos2),
+    /// A finger that moves up or down and scrolls the panel, at its last height.
+    Scrolls(f32),
+    /// The handle is held.
+    Held(Held),
+}
+
+/// The place where the pointer holds the handle. It is not clamped, so that the way back from
+/// beyond an end is as long as the way there.
 #[derive(Clone, Copy, Debug)]
 struct Held {
     position: f64,
     pointer_x: f32,
 }
 
+/// The way after which it is known whether a finger slides or scrolls, points.
+const DECIDED: f32 = 6.0;
+
 pub(super) fn drag(value: f64, row: &SliderRow<'_>, hit: Rect, out: &mut SliderResponse, ui: &Ui) {
-    let response = &out.response;
-    let held_id = response.id.with("held");
-    let held = ui.data(|data| data.get_temp::<Held>(held_id));
+    let response = out.response.clone();
+    let hold_id = response.id.with("held");
+    let hold = ui.data(|data| data.get_temp::<Hold>(hold_id));
+    let rail = rail(hit, ui);
     let pointer = response.interact_pointer_pos().filter(|_| response.is_pointer_button_down_on());
-    let Some(Pos2 { x, .. }) = pointer else {
-        if held.is_some() {
-            ui.data_mut(|data| data.remove::<Held>(held_id));
-            out.drag_ended = true;
+    let Some(pointer) = pointer else {
+        match hold {
+            None => return,
+            Some(Hold::Undecided(at)) => {
+                let held = taken(value, row, rail, at.x, ui);
+                out.changed = Some(row.value_at(held.position, row.step));
+                (out.drag_started, out.drag_ended) = (true, true);
+                response.request_focus();
+            }
+            Some(Hold::Scrolls(_)) => {}
+            Some(Hold::Held(_)) => out.drag_ended = true,
         }
+        ui.data_mut(|data| data.remove::<Hold>(hold_id));
         return;
     };
-    let rail = rail(hit, ui);
-    let width = f64::from(rail.width().max(1.0));
-    let held = if let Some(held) = held {
-        let speed = if ui.input(|input| input.modifiers.shift) { 0.1 } else { 1.0 };
-        Held {
-            position: held.position + speed * f64::from(x - held.pointer_x) / width,
-            pointer_x: x,
+    let hold = match hold {
+        None if pointer_in_use(ui) == PointerKind::Finger => Hold::Undecided(pointer),
+        None => {
+            out.drag_started = true;
+            Hold::Held(taken(value, row, rail, pointer.x, ui))
         }
-    } else {
-        response.request_focus();
-        out.drag_started = true;
-        let position = row.position(value);
-        let handle_x = f64::from(rail.left()) + position * width;
-        // A press on the handle keeps the value; a press elsewhere on the track moves it to the
-        // pointer.
-        let grabbed = (f64::from(x) - handle_x).abs() <= f64::from(theme_of(ui).hit()) / 2.0;
-        let position = if grabbed { position } else { (f64::from(x - rail.left())) / width };
-        Held { position, pointer_x: x }
+        Some(Hold::Undecided(from)) => {
+            let way = pointer - from;
+            if way.length() < DECIDED {
+                Hold::Undecided(from)
+            } else if way.y.abs() > way.x.abs() {
+                Hold::Scrolls(from.y)
+            } else {
+                out.drag_started = true;
+                Hold::Held(moved_on(taken(value, row, rail, from.x, ui), pointer.x, rail, ui))
+            }
+        }
+        Some(Hold::Held(held)) => Hold::Held(moved_on(held, pointer.x, rail, ui)),
+        Some(scrolls @ Hold::Scrolls(_)) => scrolls,
     };
-    ui.data_mut(|data| data.insert_temp(held_id, held));
+    let hold = match hold {
+        Hold::Scrolls(y) => {
+            let way = vec2(0.0, pointer.y - y);
+            ui.scroll_with_delta_animation(way, ScrollAnimation::none());
+            Hold::Scrolls(pointer.y)
+        }
+        other => other,
+    };
+    ui.data_mut(|data| data.insert_temp(hold_id, hold));
+    let Hold::Held(held) = hold else { return };
+    if out.drag_started {
+        response.request_focus();
+    }
     let fine = ui.input(|input| input.modifiers.shift);
     let moved = !out.drag_started || (held.position - row.position(value)).abs() > f64::EPSILON;
     if moved && ui.input(|input| out.drag_started || input.pointer.delta() != Vec2::ZERO) {
         out.changed = Some(row.value_at(held.position, if fine { row.fine } else { row.step }));
     }
+}
+
+/// Returns the handle taken by a press at `x`. A press on the handle keeps the value; a press
+/// elsewhere on the track moves it to the pointer.
+fn taken(value: f64, row: &SliderRow<'_>, rail: Rect, x: f32, ui: &Ui) -> Held {
+    let width = f64::from(rail.width().max(1.0));
+    let position = row.position(value);
+    let handle_x = f64::from(rail.left()) + position * width;
+    let grabbed = (f64::from(x) - handle_x).abs() <= f64::from(theme_of(ui).hit()) / 2.0;
+    let position = if grabbed { position } else { f64::from(x - rail.left()) / width };
+    Held { position, pointer_x: x }
+}
+
+/// Returns the handle after the pointer has moved to `x`.
+fn moved_on(held: Held, x: f32, rail: Rect, ui: &Ui) -> Held {
+    let speed = if ui.input(|input| input.modifiers.shift) { 0.1 } else { 1.0 };
+    let way = f64::from(x - held.pointer_x) / f64::from(rail.width().max(1.0));
+    Held { position: held.position + speed * way, pointer_x: x }
 }
 
 pub(super) fn keys(value: f64, row: &SliderRow<'_>, out: &mut SliderResponse, ui: &Ui) {
