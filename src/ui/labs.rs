@@ -130,7 +130,7 @@ pub(crate) fn lab_panel_ui(session: &Session, state: &mut UiState, out: &mut Out
 /// Draws the lab's name, with the switch of all help texts behind it, and the line about it.
 fn head_ui(lab: &LabUi, session: &Session, state: &mut UiState, ui: &mut Ui) {
     let name = lab_label(session);
-    let header = kit::section_header_ui(name, ui);
+    let header = kit::section_header_with_button_ui(name, ui);
     let builder = UiBuilder::new()
         .max_rect(header)
         .id_salt("help")

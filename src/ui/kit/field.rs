@@ -6,7 +6,7 @@ use super::icon::Icon;
 use super::paint::{Run, faded, full_width, line_of, put};
 use super::words;
 use crate::ui::language::{Text, Word, say};
-use crate::ui::theme::{HIT, Type, palette_of, space, theme_of};
+use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{
     Align2, Color32, Key, Margin, Response, Role, Sense, TextEdit, Ui, WidgetInfo, pos2, vec2,
 };
@@ -49,7 +49,7 @@ pub(crate) fn text_field_ui<'a>(
 pub(crate) fn search_field_ui(name: Word, text: &mut String, ui: &mut Ui) -> Response {
     let theme = theme_of(ui);
     let size = vec2(ui.available_width(), theme.row_height());
-    let room = HIT as i8;
+    let room = theme.hit() as i8;
     let edit = TextEdit::singleline(text)
         .hint_text(say(name, ui))
         .font(theme.font(Type::Body))
@@ -57,7 +57,7 @@ pub(crate) fn search_field_ui(name: Word, text: &mut String, ui: &mut Ui) -> Res
         .desired_width(size.x);
     let response = ui.add_sized(size, edit).accessible_name(say(name, ui));
     if !text.is_empty() {
-        let side = vec2(HIT, response.rect.height());
+        let side = vec2(theme.hit(), response.rect.height());
         let at = Align2::RIGHT_CENTER.anchor_size(response.rect.right_center(), side);
         let id = response.id.with("clear");
         let ground = Color32::TRANSPARENT;

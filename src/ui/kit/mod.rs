@@ -78,7 +78,8 @@ pub(crate) use places::{Chosen, PlaceBar, Places, StripPlace, places_ui};
 pub(crate) use pointer_label::pointer_label_ui;
 pub(crate) use profile::profile_ui;
 pub(crate) use section::{
-    folded_ui, folded_unless_ui, note_ui, section_header_ui, section_header_width, section_mark_ui,
+    folded_ui, folded_unless_ui, note_ui, section_header_ui, section_header_width,
+    section_header_with_button_ui, section_mark_ui,
 };
 pub(crate) use segmented::{labelled_segmented_ui, segmented_ui};
 pub(crate) use slider_row::{Mark, SliderResponse, SliderRow, Source, slider_row_ui};

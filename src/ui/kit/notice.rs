@@ -9,7 +9,7 @@ use super::paint::{
 };
 use super::words;
 use crate::ui::language::{Text, Word, say};
-use crate::ui::theme::{HIT, Type, palette_of, radius, space, theme_of};
+use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{
     Align, Align2, Color32, CursorIcon, Frame, Id, Layout, Margin, Popup, PopupCloseBehavior, Rect,
     RectAlign, Response, Role, ScrollArea, Sense, Shadow, Stroke, StrokeKind, Ui, UiBuilder,
@@ -40,7 +40,7 @@ pub(crate) enum NoticeEvent {
 /// Draws a notice as wide as its panel.
 pub(crate) fn notice_ui(notice: &Notice<'_>, ui: &mut Ui) -> Option<NoticeEvent> {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
-    let scale = theme.scale();
+    let (scale, hit) = (theme.scale(), theme.hit());
     let (ink, wash) = notice.mood.colors(palette);
     let mut event = None;
     let frame = Frame::new()
@@ -54,10 +54,10 @@ pub(crate) fn notice_ui(notice: &Notice<'_>, ui: &mut Ui) -> Option<NoticeEvent>
             notice.text,
             Type::Body,
             palette.text,
-            ui.available_width() - text_left - HIT - space::XS,
+            ui.available_width() - text_left - hit - space::XS,
             ui,
         );
-        let row = full_width(text.size().y.max(HIT - 4.0), ui);
+        let row = full_width(text.size().y.max(hit - 4.0), ui);
         let sign_rect =
             Align2::LEFT_TOP.anchor_size(row.left_top() + vec2(0.0, 1.0), vec2(sign, sign));
         paint_icon(notice.mood.icon(), sign_rect, ink, ui.painter());
@@ -66,9 +66,9 @@ pub(crate) fn notice_ui(notice: &Notice<'_>, ui: &mut Ui) -> Option<NoticeEvent>
         let label = ui.interact(at, ui.make_persistent_id(("notice", &english)), Sense::hover());
         describe(&label, &WidgetInfo::labeled(Role::Label, true, say(notice.text, ui)));
         let close =
-            Rect::from_min_size(pos2(row.right() - HIT + 4.0, row.top() - 4.0), vec2(HIT, HIT));
+            Rect::from_min_size(pos2(row.right() - hit + 4.0, row.top() - 4.0), vec2(hit, hit));
         let close_id = ui.make_persistent_id(("dismiss", &english));
-        let hit = super::clip_row::small_icon_ui(
+        let closer = super::clip_row::small_icon_ui(
             Icon::Close,
             words::DISMISS,
             close_id,
@@ -76,7 +76,7 @@ pub(crate) fn notice_ui(notice: &Notice<'_>, ui: &mut Ui) -> Option<NoticeEvent>
             Color32::TRANSPARENT,
             ui,
         );
-        if hit.clicked() {
+        if closer.clicked() {
             event = Some(NoticeEvent::Dismissed);
         }
         if !notice.action.is_empty() {

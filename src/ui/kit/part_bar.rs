@@ -42,7 +42,7 @@ pub(crate) struct PartBarResponse {
 pub(crate) fn part_bar_ui(bar: &PartBar<'_>, ui: &mut Ui) -> PartBarResponse {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let scale = theme.scale();
-    let row = full_width((HIT * scale).round(), ui);
+    let row = full_width((HIT * scale).max(theme.hit()).round(), ui);
     let gutter = if row.width() < 560.0 * scale { 0.0 } else { (112.0 * scale).round() };
     let axis =
         TimeAxis { x: Rangef::new(row.left() + gutter, row.right()), duration: bar.duration };
@@ -103,7 +103,8 @@ struct Handle {
 impl Handle {
     fn show_ui(self, end: usize, found: &mut PartBarResponse, ui: &Ui) -> Response {
         let x = self.axis.x_of(self.time);
-        let width = HIT * theme_of(ui).scale();
+        let theme = theme_of(ui);
+        let width = (HIT * theme.scale()).max(theme.hit());
         // The handles of a short part lie beside each other, not on each other.
         let (left, right) = if end == 0 { (0.75, 0.25) } else { (0.25, 0.75) };
         let hit = Rect::from_x_y_ranges(x - left * width..=x + right * width, self.row.y_range());

@@ -13,7 +13,16 @@ use eframe::egui::{
 /// Draws the heading of a section, in quiet capitals. Returns its line, for a mark at the right
 /// end.
 pub(crate) fn section_header_ui(title: Word, ui: &mut Ui) -> Rect {
-    let rect = full_width((24.0 * theme_of(ui).scale()).round(), ui);
+    heading_ui(title, 0.0, ui)
+}
+
+/// Draws a heading in whose line a button stands, as [`section_header_ui`] does.
+pub(crate) fn section_header_with_button_ui(title: Word, ui: &mut Ui) -> Rect {
+    heading_ui(title, theme_of(ui).row_height(), ui)
+}
+
+fn heading_ui(title: Word, least_height: f32, ui: &mut Ui) -> Rect {
+    let rect = full_width((24.0 * theme_of(ui).scale()).round().max(least_height), ui);
     let capitals = say(title, ui).to_uppercase();
     let run = Run::new(Text::Data(&capitals), Type::Caps, palette_of(ui).muted);
     let galley = line_of(&[run], rect.width(), ui);
