@@ -24,7 +24,7 @@ pub(crate) struct SlotLetter<'a> {
     pub(crate) part: Part,
     /// Whether the clip is in it.
     pub(crate) held: bool,
-    /// Its accessible name: `Use walk as A`.
+    /// Its accessible name: `Walk as A`.
     pub(crate) name: Text<'a>,
 }
 

@@ -48,7 +48,8 @@ pub(super) fn entry_ui(
     let warning = warnings.join("\n");
     let slots: Vec<Slot> =
         [Slot::A, Slot::B].into_iter().filter(|slot| session.uses(*slot)).collect();
-    let names: Vec<Message> = slots.iter().map(|slot| text::use_as(entry.title(), *slot)).collect();
+    let names = slots.iter().map(|slot| text::held_as(entry.title(), *slot));
+    let names: Vec<Message> = names.collect();
     let letters: Vec<SlotLetter<'_>> = slots
         .iter()
         .zip(&names)

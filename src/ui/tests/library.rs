@@ -65,18 +65,18 @@ fn letters_of_a_row_assign_and_swap() {
     let is_held = |name: &str, harness: &Harness<'_, Page>| {
         harness.get_by_label(name).accesskit_node().toggled() == Some(Toggled::True)
     };
-    assert!(is_held("Use Walk as A", &harness) && !is_held("Use Walk as B", &harness));
-    harness.get_by_label("Use Stand as B").click();
+    assert!(is_held("Walk as A", &harness) && !is_held("Walk as B", &harness));
+    harness.get_by_label("Stand as B").click();
     harness.run();
     assert_eq!(slots(&harness), ["walk", "idle"]);
     // The letter of the other slot swaps.
-    harness.get_by_label("Use Stand as A").click();
+    harness.get_by_label("Stand as A").click();
     harness.run();
     assert_eq!(slots(&harness), ["idle", "walk"]);
-    assert!(is_held("Use Walk as B", &harness) && is_held("Use Stand as A", &harness));
+    assert!(is_held("Walk as B", &harness) && is_held("Stand as A", &harness));
     // A letter that is held does nothing.
     let commands = harness.state().out.commands.len();
-    harness.get_by_label("Use Stand as A").click();
+    harness.get_by_label("Stand as A").click();
     harness.run();
     assert_eq!(harness.state().out.commands.len(), commands);
     picture("library-desk-dark", &mut harness);
@@ -106,11 +106,11 @@ fn click_on_a_row_assigns_a_and_never_b() {
 #[test]
 fn lab_without_a_slot_has_no_letter_for_it() {
     let view = harness(DESK, DARK, page("lab=view&a=walk&play=off"));
-    assert!(view.query_by_label("Use Walk as A").is_some());
-    assert!(view.query_by_label("Use Walk as B").is_none());
+    assert!(view.query_by_label("Walk as A").is_some());
+    assert!(view.query_by_label("Walk as B").is_none());
     assert!(view.query_by_label(text::SWAP_CLIPS.english()).is_none());
     let mut make = harness(DESK, DARK, page("lab=make&play=off"));
-    assert!(make.query_by_label("Use Walk as A").is_none());
+    assert!(make.query_by_label("Walk as A").is_none());
     click_row("Walk", Modifiers::NONE, &mut make);
     assert_eq!(make.state().state.details.as_deref(), Some("walk"), "its details open");
 }
@@ -330,7 +330,7 @@ fn library_of_a_phone_opens_at_its_top_and_scrolls_by_finger() {
 #[test]
 fn targets_for_a_finger_are_large() {
     let harness = phone_with_library();
-    for name in ["Use Walk as A", "Use Walk as B"] {
+    for name in ["Walk as A", "Walk as B"] {
         let size = harness.get_by_label(name).rect().size();
         assert!(size.x >= 44.0 && size.y >= 44.0, "{name}: {size}");
     }

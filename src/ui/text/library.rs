@@ -19,7 +19,13 @@ pub(crate) const USE_THESE: Word = Word::new("Use these");
 pub(crate) const CLEAR_SELECTION: Word = Word::new("Clear the selection");
 pub(crate) const USE_AS_CHARACTER: Word = Word::new("Use as character");
 
-/// Returns the name of the letter that puts a clip into a slot.
+/// Returns the name of the letter that puts a clip into a slot, and is pressed while the clip is
+/// there.
+pub(crate) fn held_as(clip: Message, slot: Slot) -> Message {
+    msg!("{clip} as {slot}", clip, slot = slot.label())
+}
+
+/// Returns what happens when a clip is dropped on a slot.
 pub(crate) fn use_as(clip: Message, slot: Slot) -> Message {
     msg!("Use {clip} as {slot}", clip, slot = slot.label())
 }
