@@ -35,6 +35,8 @@ pub(crate) struct Presenter {
     was_fullscreen: bool,
     /// Until when the bar is shown, seconds of egui's clock.
     shown_until: f64,
+    /// The steps that were asked for while a lesson was being loaded; back is negative.
+    steps_to_go: i32,
 }
 
 impl Presenter {
@@ -77,7 +79,8 @@ pub(crate) fn go(forward: bool, session: &Session, state: &mut UiState, out: &mu
                 out.commands.push(Command::Try(first.query));
             }
         }
-        Some(Lesson::Waiting | Lesson::Failed(_)) => {}
+        Some(Lesson::Waiting) => state.presenter.steps_to_go += if forward { 1 } else { -1 },
+        Some(Lesson::Failed(_)) => {}
         None if count > 1 => {
             // All panes, then each alone.
             let at = state.presenter.pane_alone(count).map_or(0, |pane| pane + 1);
@@ -93,6 +96,20 @@ pub(crate) fn go(forward: bool, session: &Session, state: &mut UiState, out: &mu
                 out.set_once(Key::Lab, Value::Choice(lab.key));
             }
         }
+    }
+}
+
+/// Goes one of the steps that were asked for while a lesson was being loaded.
+fn go_on(session: &Session, state: &mut UiState, out: &mut Out) {
+    let steps = state.presenter.steps_to_go;
+    match session.lesson() {
+        _ if steps == 0 => {}
+        Some(Lesson::Waiting) => {}
+        Some(Lesson::Page(_) | Lesson::Contents(_)) => {
+            state.presenter.steps_to_go -= steps.signum();
+            go(steps > 0, session, state, out);
+        }
+        Some(Lesson::Failed(_)) | None => state.presenter.steps_to_go = 0,
     }
 }
 
@@ -124,6 +141,7 @@ pub(crate) fn presenter_ui(
     paint: Paint<'_>,
     ui: &mut Ui,
 ) {
+    go_on(session, state, out);
     let is_shown = note_movement(state, ui);
     let opacity = ui.ctx().animate_bool(Id::unique("presenter bar"), is_shown);
     // The room for the bar stays empty without it: over the stage it would cover the numbers.

@@ -6,7 +6,7 @@ use segue_session::Lesson;
 use segue_session::lesson::Source;
 
 /// Hands over the requested texts, from the project's folder.
-fn deliver(session: &mut Session) {
+pub(super) fn deliver(session: &mut Session) {
     for request in session.take_requests() {
         if let segue_session::Request::Lesson(source) = request {
             let text = match &source {

@@ -205,6 +205,27 @@ fn buttons_over_a_low_stage_are_whole() {
 }
 
 #[test]
+fn page_key_pressed_while_a_lesson_loads_goes_on_behind_it() {
+    let mut harness = harness(HALL_SIZE, DARK, super::lessons::lesson("lesson=blend_window"));
+    harness.key_press(Keyboard::P);
+    harness.run_steps(4);
+    let title = |harness: &Harness<'_, Page>| match harness.state().session.lesson() {
+        Some(segue_session::Lesson::Page(page)) => page.number,
+        _ => 0,
+    };
+    assert_eq!(title(&harness), 3);
+    for _ in 0..2 {
+        harness.key_press(Keyboard::PageDown);
+        harness.run_steps(2);
+    }
+    for _ in 0..2 {
+        super::lessons::deliver(&mut harness.state_mut().session);
+        harness.run_steps(4);
+    }
+    assert_eq!(title(&harness), 5);
+}
+
+#[test]
 fn lesson_has_what_it_speaks_of_beside_its_text() {
     let controls =
         |link: &str, size: Vec2, theme: Theme| harness(size, theme, super::lessons::lesson(link));
