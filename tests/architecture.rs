@@ -7,11 +7,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The folders of `segue-motion`, each with the others that its code may use.
-const MOTION: [(&str, &str); 13] = [
+const MOTION: [(&str, &str); 14] = [
     ("math", ""),
     ("skeleton", "math"),
     ("clip", "math skeleton"),
     ("skin", "math skeleton clip"),
+    ("points", "math skeleton clip"),
     ("synth", "math skeleton clip"),
     ("registration", "math skeleton clip"),
     ("transition", "math skeleton clip registration blend"),

@@ -69,12 +69,13 @@
 //! 10. [`graph`]: motion graphs, and walks through them.
 //! 11. [`path`]: motion along an edited path.
 //! 12. [`matching`]: motion matching for a steered character.
-//! 13. [`skin`]: a smooth mesh around any skeleton; linear blend and dual quaternion skinning.
+//! 13. [`points`]: skeletons from points: joint centres, optical markers.
+//! 14. [`skin`]: a smooth mesh around any skeleton; linear blend and dual quaternion skinning.
 //!
 //! `tests/architecture.rs` in the workspace checks the dependencies between these modules:
 //!
 //! ```text
-//! math ← skeleton ← clip ← synth, registration, skin
+//! math ← skeleton ← clip ← synth, registration, points, skin
 //! registration ← blend ← transition ← gait
 //! blend ← metrics
 //! all of these ← graph, path, matching
@@ -109,6 +110,7 @@ pub mod matching;
 pub mod math;
 pub mod metrics;
 pub mod path;
+pub mod points;
 pub mod registration;
 pub mod skeleton;
 pub mod skin;

@@ -29,7 +29,7 @@ pub fn catmull_rom(p0: Vec3, p1: Vec3, p2: Vec3, p3: Vec3, t: f32) -> Vec3 {
 /// Evaluates the cubic Hermite curve from `p0` with slope `m0` (per unit of `t`) to `p1` with slope
 /// `m1`.
 #[must_use]
-fn hermite(p0: Vec3, m0: Vec3, p1: Vec3, m1: Vec3, t: f32) -> Vec3 {
+pub(crate) fn hermite(p0: Vec3, m0: Vec3, p1: Vec3, m1: Vec3, t: f32) -> Vec3 {
     let (t2, t3) = (t * t, t * t * t);
     p0 * (2.0 * t3 - 3.0 * t2 + 1.0)
         + m0 * (t3 - 2.0 * t2 + t)
