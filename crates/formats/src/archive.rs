@@ -14,7 +14,7 @@ use segue_text::{Message, ToMessage, msg};
 use std::io;
 
 /// The endings of files that hold motion, or a part of it.
-const MOTION_ENDINGS: [&str; 6] = ["bvh", "asf", "amc", "glb", "gltf", "bin"];
+const MOTION_ENDINGS: [&str; 9] = ["bvh", "asf", "amc", "glb", "gltf", "bin", "c3d", "trc", "csv"];
 
 /// The greatest number of motion files by default; see [`ArchiveLimits::default`].
 pub const MAX_FILES: usize = 2000;
@@ -67,7 +67,7 @@ pub(crate) fn is_zip(bytes: &[u8]) -> bool {
 }
 
 /// Unpacks the motion files of a zip archive: `.bvh`, `.asf`, `.amc`, `.glb`, `.gltf` with its
-/// `.bin`, each also compressed as `.gz`.
+/// `.bin`, `.c3d`, `.trc`, and tables that may be those of a robot, each also compressed as `.gz`.
 ///
 /// A file that is damaged, encrypted or compressed in an unusual way is left out with a warning, as
 /// long as there are others.
@@ -102,7 +102,7 @@ pub fn unpack(
         return Err(ImportError::whole_file(
             name,
             found,
-            "motion files (.bvh, .asf, .amc, .glb, .gltf)",
+            "motion files (.bvh, .asf, .amc, .glb, .gltf, .c3d, .trc)",
         ));
     }
     // The sort is stable: of two files with one path, the one that comes first in the archive stays

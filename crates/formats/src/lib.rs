@@ -24,6 +24,8 @@
 //! | [`bvh`] | yes | [`bvh::write`] |
 //! | [`acclaim`] (ASF, AMC) | yes, a motion with its skeleton | |
 //! | [`gltf`] (glTF, GLB) | yes, motion and skinned meshes | [`gltf::write_glb`] |
+//! | [`c3d`], [`trc`] | yes, a skeleton from labelled points, or points | |
+//! | [`robot_csv`] | yes, the hinges of a Unitree G1 | |
 //! | [`csv`] | | [`csv::write_csv`] |
 //! | [`archive`] (zip), gzip | file by file, [`unpack_gzip`] | |
 //!
@@ -74,14 +76,18 @@ pub mod acclaim;
 pub mod archive;
 mod assemble;
 pub mod bvh;
+pub mod c3d;
 pub mod csv;
 mod error;
 pub mod gltf;
 mod gzip;
+mod labelled;
 mod measure;
 mod raw;
+pub mod robot_csv;
 mod t_pose;
 mod text;
+pub mod trc;
 mod unlikely;
 mod warning;
 
@@ -204,8 +210,15 @@ pub fn import_with_progress(
             Err(error.with_hint("drop the .asf file as well, before it, with it or after it"))
         }
         FileKind::Gltf => gltf::read(name, bytes, &|_| None, options).map(Some),
+        FileKind::C3d => c3d::read(name, bytes, options).map(Some),
+        FileKind::Trc => trc::read(name, bytes, options).map(Some),
+        FileKind::RobotCsv => robot_csv::read(name, bytes, options).map(Some),
         FileKind::Zip | FileKind::Gzip => {
             Err(ImportError::whole_file(name, "an archive", "one of the files in it"))
+        }
+        // The reader says which tables are read.
+        FileKind::Unknown if has_extension(name, "csv") => {
+            robot_csv::read(name, bytes, options).map(Some)
         }
         FileKind::Unknown => {
             let found = match name.rsplit_once('.') {
@@ -217,7 +230,7 @@ pub fn import_with_progress(
             let error = ImportError::whole_file(
                 name,
                 found,
-                "a motion file (.bvh, .asf with .amc, .glb, .gltf, .zip)",
+                "a motion file (.bvh, .asf with .amc, .glb, .gltf, .c3d, .trc, .csv of a robot, .zip)",
             );
             Err(error.with_hint("convert it to BVH, or rename it if it is one"))
         }
@@ -235,6 +248,12 @@ pub enum FileKind {
     Amc,
     /// A scene with animations, [`gltf`].
     Gltf,
+    /// Labelled points and analogue channels, [`c3d`].
+    C3d,
+    /// A table of labelled points, [`trc`].
+    Trc,
+    /// A table of a robot's hinges, [`robot_csv`].
+    RobotCsv,
     /// Several files in one, [`archive`].
     Zip,
     /// One file, packed with gzip.
@@ -252,6 +271,9 @@ impl FileKind {
             Self::Asf => "asf",
             Self::Amc => "amc",
             Self::Gltf => "gltf",
+            Self::C3d => "c3d",
+            Self::Trc => "trc",
+            Self::RobotCsv => "csv",
             Self::Zip => "zip",
             Self::Gzip => "gz",
             Self::Unknown => "unknown",
@@ -274,6 +296,9 @@ pub fn kind_of(name: &str, bytes: &[u8]) -> FileKind {
     if gzip::is_gzip(bytes) {
         return FileKind::Gzip;
     }
+    if c3d::is_c3d(bytes) {
+        return FileKind::C3d;
+    }
     let head = text::decode(bytes.get(..HEAD).unwrap_or(bytes));
     if bvh::starts_like_bvh(&head) {
         FileKind::Bvh
@@ -281,6 +306,10 @@ pub fn kind_of(name: &str, bytes: &[u8]) -> FileKind {
         FileKind::Asf
     } else if acclaim::starts_like_amc(&head) {
         FileKind::Amc
+    } else if trc::starts_like_trc(&head) {
+        FileKind::Trc
+    } else if robot_csv::starts_like_robot_csv(&head) {
+        FileKind::RobotCsv
     } else {
         let endings = [
             ("bvh", FileKind::Bvh),
@@ -288,6 +317,8 @@ pub fn kind_of(name: &str, bytes: &[u8]) -> FileKind {
             ("amc", FileKind::Amc),
             ("glb", FileKind::Gltf),
             ("gltf", FileKind::Gltf),
+            ("c3d", FileKind::C3d),
+            ("trc", FileKind::Trc),
             ("zip", FileKind::Zip),
             ("gz", FileKind::Gzip),
         ];
@@ -342,7 +373,7 @@ mod tests {
         let error = import("walk.fbx", b"Kaydara", &options).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "walk.fbx:1:1: found a file that ends in .fbx, expected a motion file (.bvh, .asf with .amc, .glb, .gltf, .zip)"
+            "walk.fbx:1:1: found a file that ends in .fbx, expected a motion file (.bvh, .asf with .amc, .glb, .gltf, .c3d, .trc, .csv of a robot, .zip)"
         );
         assert!(error.hint.is_some());
         for (name, empty) in [("x.bvh", ""), ("x.amc", " \r\n\t"), ("x.glb", ""), ("", "")] {
@@ -364,6 +395,10 @@ mod tests {
             ("x.AMC", "", FileKind::Amc),
             ("x.asf", "?", FileKind::Asf),
             ("x.txt", "?", FileKind::Unknown),
+            ("x.txt", "PathFileType\t4", FileKind::Trc),
+            ("x.trc", "?", FileKind::Trc),
+            ("x.c3d", "?", FileKind::C3d),
+            ("x.csv", "time,value\n0,1", FileKind::Unknown),
         ];
         for (name, text, kind) in kinds {
             assert_eq!(kind_of(name, text.as_bytes()), kind, "{name} {text}");

@@ -174,6 +174,57 @@ pub enum WarningKind {
         /// The assumed axis.
         up: UpAxis,
     },
+    /// Joints that were computed from the labelled points of the file.
+    SkeletonFromPoints {
+        /// The number of points used.
+        markers: usize,
+        /// The number of points in the file.
+        of: usize,
+        /// The mean distance between joints and their points, millimetres.
+        error_mm: f64,
+    },
+    /// Points whose labels show no body: each is a joint without bone.
+    PointsOnly {
+        /// Their number.
+        points: usize,
+    },
+    /// Points that are missing in some frames.
+    FilledGaps {
+        /// The number of such points.
+        points: usize,
+        /// Positions in short gaps, put between their neighbours.
+        filled: usize,
+        /// Positions in long gaps, where the pose was interpolated or held.
+        held: usize,
+        /// The longest gap, frames.
+        longest: usize,
+    },
+    /// Cells of a table that are no numbers: gaps.
+    NotNumbers {
+        /// The first of them, quoted.
+        text: String,
+    },
+    /// Quaternions without names, in which the robot stands upright with the scalar first and last.
+    QuaternionOrder {
+        /// Whether they were read with the scalar first.
+        scalar_first: bool,
+    },
+    /// Hinges beyond their limits: kept.
+    BeyondLimits {
+        /// The one that goes furthest.
+        joint: String,
+        /// The number of frames in which it does.
+        frames: usize,
+        /// The first of them.
+        first: usize,
+        /// How far it goes, degrees.
+        degrees: f64,
+    },
+    /// Points that are missing in every frame: left out.
+    UnseenPoints {
+        /// The first of them.
+        name: String,
+    },
     /// Images of materials: ignored, the base colour is used.
     Textures,
     /// Meshes with morph targets: their shape stays the same.
@@ -421,6 +472,30 @@ impl ToMessage for ImportWarning {
             WarningKind::FarAway { metres } => {
                 msg!("the root goes {metres} away from the origin", metres = length(*metres))
             }
+            WarningKind::SkeletonFromPoints { markers, of, error_mm } => msg!(
+                "joints were computed from {markers} of {of} points; they lie {error_mm:.1} mm from them on average"
+            ),
+            WarningKind::PointsOnly { points } => msg!(
+                "{points, plural, one {# point} other {# points}} without a known body: the points are shown as they are"
+            ),
+            WarningKind::FilledGaps { points, filled, held, longest } => msg!(
+                "{points, plural, one {# point} other {# points}} with gaps of up to {longest, plural, one {# frame} other {# frames}}: {filled} positions were filled in, {held} held or interpolated"
+            ),
+            WarningKind::NotNumbers { text } => msg!(
+                "{count, plural, one {# cell} other {# cells}} without a number{place}, such as {text}; read as gaps"
+            ),
+            WarningKind::QuaternionOrder { scalar_first } => {
+                let order = if *scalar_first { "w x y z" } else { "x y z w" };
+                msg!(
+                    "the order of the quaternions is not certain; read as {order}, in the other order the robot faces backwards"
+                )
+            }
+            WarningKind::BeyondLimits { joint, frames, first, degrees } => msg!(
+                "{count, plural, one {# hinge} other {# hinges}} beyond the limits, the furthest `{joint}` by {degrees:.1}° in {frames, plural, one {# frame} other {# frames}} from frame {first} on; kept"
+            ),
+            WarningKind::UnseenPoints { name } => msg!(
+                "{count, plural, one {# point} other {# points}} in no frame, such as `{name}`; left out"
+            ),
             WarningKind::UnknownUnit => {
                 msg!("the size of the skeleton fits no unit of length; centimetres are assumed")
             }

@@ -210,7 +210,7 @@ mod tests {
         let reasons = received(&inbox);
         assert_eq!(
             reasons[0],
-            "empty has no motion files (.bvh, .asf, .amc, .glb, .gltf, .zip, .gz)."
+            "empty has no motion files (.bvh, .asf, .amc, .glb, .gltf, .c3d, .trc, .csv, .zip, .gz)."
         );
         assert!(reasons[1].starts_with("walk.bvh cannot be read: "), "{reasons:?}");
         std::fs::remove_dir_all(&folder).unwrap();
