@@ -14,6 +14,9 @@ use segue_motion::points::{
 };
 use segue_motion::skeleton::Joint;
 
+/// Larger magnitudes come from damage, not from measurement.
+const MAX_MAGNITUDE: f32 = 1e9;
+
 /// Frames per second of files that do not say.
 const DEFAULT_FPS: f64 = 100.0;
 
@@ -52,41 +55,48 @@ impl UnitWord {
 impl LabelledPoints {
     /// Returns the clip of a body with joints where labels tell one, otherwise of the points.
     pub(super) fn into_clips(
-        self,
+        mut self,
         name: &str,
         options: &ImportOptions,
         tally: &mut Tally,
     ) -> Result<Vec<ImportedClip>, Fault> {
+        for at in &mut self.positions {
+            if !at.is_finite() || at.abs().max_element() > MAX_MAGNITUDE {
+                *at = Vec3::NAN;
+            }
+        }
+        for (index, label) in self.labels.iter_mut().enumerate() {
+            if label.is_empty() {
+                *label = format!("Point {number}", number = index + 1);
+            }
+        }
         let given = options.fps.filter(|fps| fps.is_finite() && (0.1..=100_000.0).contains(fps));
         let fps = given.or(self.fps).unwrap_or_else(|| {
             tally.add(WarningKind::AssumedFrameRate { fps: DEFAULT_FPS }, None);
             DEFAULT_FPS
         });
-        let unit = options.metres_per_unit.or(self.unit).unwrap_or_else(|| self.likely_unit());
+        let set = options.metres_per_unit.filter(|unit| unit.is_finite() && *unit > 0.0);
+        let unit = set.or(self.unit).unwrap_or_else(|| self.likely_unit());
         let body = body_from_markers(&self.labels, &self.positions, unit);
         let fit = body.and_then(|body| self.fit(&body, fps, options));
         let mut own = *options;
-        let raw = match fit {
-            Some((fit, up, used)) => {
-                own.up = Some(up);
-                tell_gaps(&fit.gaps, tally);
-                let kind = WarningKind::SkeletonFromPoints {
-                    markers: used,
-                    of: self.labels.len(),
-                    error_mm: f64::from(fit.error.mean) * unit * 1000.0,
-                };
-                tally.add(kind, None);
-                RawMotion::from_points(fit)
-            }
-            None => {
-                own.up = options.up.or(self.up);
-                // Points have no height that would show their unit.
-                own.metres_per_unit = options.metres_per_unit.or(self.unit);
-                tally.add(WarningKind::PointsOnly { points: self.labels.len() }, None);
-                self.as_joints(tally).ok_or_else(|| {
-                    Fault::new(0, "points that no frame shows", "points over time")
-                })?
-            }
+        let raw = if let Some((fit, up, used)) = fit {
+            own.up = Some(up);
+            tell_gaps(&fit.gaps, tally);
+            let kind = WarningKind::SkeletonFromPoints {
+                markers: used,
+                of: self.labels.len(),
+                error_mm: f64::from(fit.error.mean) * unit * 1000.0,
+            };
+            tally.add(kind, None);
+            RawMotion::from_points(fit)
+        } else {
+            own.up = options.up.or(self.up);
+            // Points have no height that would show their unit.
+            own.metres_per_unit = set.or(self.unit);
+            tally.add(WarningKind::PointsOnly { points: self.labels.len() }, None);
+            self.as_joints(tally)
+                .ok_or_else(|| Fault::new(0, "points that no frame shows", "points over time"))?
         };
         assemble(name, vec![raw], fps, &own, self.unit, tally, 0)
     }

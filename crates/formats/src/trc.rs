@@ -3,7 +3,7 @@
 //! Two lines name and give the rate, the numbers of frames and markers, and the unit; the next one
 //! names the markers, each above three columns, and one more numbers the columns. Rows hold a frame
 //! number, a time, and three numbers for each marker; a gap is an empty cell, or not a number.
-//! Cells are separated by tabs, in some files by spaces, which leave no room for gaps.
+//! Cells are separated by tabs, in some files by commas, or by spaces, which leave no room for gaps.
 //!
 //! The numbers in the header are not relied upon: the names and the rows count.
 //!
@@ -13,6 +13,7 @@
 #[cfg(test)]
 mod tests;
 
+use super::bvh::{MEMORY_FLOOR, MEMORY_PER_BYTE};
 use super::error::Fault;
 use super::labelled::{LabelledPoints, UnitWord};
 use super::text::{decode, is_space, name as text_of, quoted};
@@ -44,6 +45,9 @@ pub fn read(
         .map_err(|fault| fault.locate(name, &text))?;
     Ok(ImportedFile { clips, warnings: tally.into_warnings(&text) })
 }
+
+/// The memory that a point in a frame takes, bytes: its position, and a joint's rotation and track.
+const BYTES_PER_POINT: u64 = 48;
 
 /// A line, and its offset in the file.
 #[derive(Clone, Copy)]
@@ -79,8 +83,13 @@ fn number(cell: &[u8]) -> Option<f64> {
     fast_float2::parse::<f64, _>(&*copy).ok()
 }
 
+/// Returns the first cell of a row, whatever separates them.
+fn first_cell(line: &[u8]) -> Option<&[u8]> {
+    words(line).next().and_then(|word| word.split(|b| *b == b',').next())
+}
+
 /// The values of the header by their names.
-#[derive(Default)]
+#[derive(Clone, Copy, Default)]
 struct Header {
     rate: Option<f64>,
     frames: Option<f64>,
@@ -90,7 +99,15 @@ struct Header {
 impl Header {
     fn of(names: &[u8], values: &[u8]) -> Self {
         let mut header = Self::default();
-        for (name, value) in words(names).zip(words(values)) {
+        // Where commas separate cells, they are no decimal signs.
+        let commas = names.contains(&b',');
+        let cells = |line| -> Vec<&[u8]> {
+            words(line)
+                .flat_map(|word| word.split(move |b| commas && *b == b','))
+                .filter(|cell| !cell.is_empty())
+                .collect()
+        };
+        for (name, value) in cells(names).into_iter().zip(cells(values)) {
             let value_of = || number(value).filter(|value| value.is_finite());
             match name.to_ascii_lowercase().as_slice() {
                 b"datarate" => header.rate = value_of(),
@@ -107,7 +124,8 @@ fn table(text: &[u8], tally: &mut Tally) -> Result<LabelledPoints, Fault> {
     let starts_with = |line: &Line<'_>, word: &[u8]| {
         trimmed(line.text).get(..word.len()).is_some_and(|head| head.eq_ignore_ascii_case(word))
     };
-    let mut lines = lines(text).filter(|line| !trimmed(line.text).is_empty()).peekable();
+    let is_blank = |line: &Line<'_>| line.text.iter().all(|b| is_space(*b) || *b == b',');
+    let mut lines = lines(text).filter(|line| !is_blank(line)).peekable();
     let mut header = Header::default();
     let names = loop {
         let Some(line) = lines.next() else {
@@ -122,9 +140,9 @@ fn table(text: &[u8], tally: &mut Tally) -> Result<LabelledPoints, Fault> {
             break line;
         }
     };
-    let tabs = names.text.contains(&b'\t');
-    let labels: Vec<String> = if tabs {
-        let cells = names.text.split(|b| *b == b'\t').skip(2);
+    let separator = [b'\t', b','].into_iter().find(|sign| names.text.contains(sign));
+    let labels: Vec<String> = if let Some(sign) = separator {
+        let cells = names.text.split(|b| *b == sign).skip(2);
         let mut cells: Vec<&[u8]> = cells.map(trimmed).collect();
         // Names stand above the first of three columns; some files leave no room for the others.
         if cells.iter().skip(1).step_by(3).all(|cell| cell.is_empty()) {
@@ -138,14 +156,24 @@ fn table(text: &[u8], tally: &mut Tally) -> Result<LabelledPoints, Fault> {
         words(names.text).skip(2).map(|word| text_of(word).0).collect()
     };
     let mut rows = Rows { labels, positions: Vec::new(), frames: 0, times: Vec::new() };
+    // Rows may be short: names times rows is no measure of the file.
+    let limit = MEMORY_FLOOR.saturating_add(MEMORY_PER_BYTE.saturating_mul(text.len() as u64));
     let mut first = true;
     for line in lines {
-        let begins_row = words(line.text).next().and_then(number).is_some();
+        let begins_row = first_cell(line.text).and_then(number).is_some();
         // The line that numbers the columns: X1 Y1 Z1.
         if std::mem::take(&mut first) && !begins_row {
             continue;
         }
-        rows.push(line, tabs, tally)?;
+        rows.push(line, separator, tally)?;
+        if rows.positions.len() as u64 * BYTES_PER_POINT > limit {
+            let found = msg!(
+                "a motion of more than {mb} MB, most of it in bones without values",
+                mb = limit >> 20
+            );
+            return Err(Fault::new(line.at, found, "a motion that fits into memory")
+                .with_hint("cut the motion into parts"));
+        }
     }
     rows.finish(text, header, tally)
 }
@@ -159,34 +187,31 @@ struct Rows {
 }
 
 impl Rows {
-    fn push(&mut self, line: Line<'_>, tabs: bool, tally: &mut Tally) -> Result<(), Fault> {
-        let cells: Vec<&[u8]> = if tabs && line.text.contains(&b'\t') {
-            line.text.split(|b| *b == b'\t').map(trimmed).collect()
-        } else {
-            words(line.text).collect()
+    fn push(
+        &mut self,
+        line: Line<'_>,
+        separator: Option<u8>,
+        tally: &mut Tally,
+    ) -> Result<(), Fault> {
+        let cells: Vec<&[u8]> = match separator.filter(|sign| line.text.contains(sign)) {
+            Some(sign) => line.text.split(|b| *b == sign).map(trimmed).collect(),
+            None => words(line.text).collect(),
         };
         let Some(frame) = cells.first().copied() else { return Ok(()) };
         if number(frame).is_none() {
             return Err(Fault::at_token(line.at, frame, "the number of a frame"));
         }
-        // A file whose names are missing has its columns counted by the first row.
-        if self.frames == 0 && self.labels.is_empty() {
-            self.labels =
-                (1..=cells.len().saturating_sub(2) / 3).map(|n| format!("M{n}")).collect();
+        // Columns without a name are counted by the first row.
+        if self.frames == 0 {
+            let filled = cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1);
+            let named = self.labels.len();
+            let columns = filled.saturating_sub(2).div_ceil(3);
+            self.labels.extend((named + 1..=columns).map(|number| format!("M{number}")));
         }
         if self.times.len() < 64
             && let Some(time) = cells.get(1).and_then(|cell| number(cell))
         {
             self.times.push(time);
-        }
-        let surplus = cells.iter().skip(2 + 3 * self.labels.len()).any(|cell| !cell.is_empty());
-        if surplus && self.frames == 0 {
-            return Err(Fault::at_token(
-                line.at,
-                frame,
-                msg!("a row of {count} markers", count = self.labels.len()),
-            )
-            .with_hint("the row has more columns than the header has names for"));
         }
         for marker in 0..self.labels.len() {
             let mut value = |axis: usize| {

@@ -8,7 +8,6 @@ use crate::warning::{Tally, WarningKind};
 use crate::{ImportError, ImportOptions, ImportedFile, check_size};
 use glam::Vec3;
 use segue_motion::clip::UpAxis;
-use segue_text::msg;
 
 /// The parameters that name points which are no places: results of models.
 const RESULTS: [&str; 5] =
@@ -63,12 +62,11 @@ pub(super) fn points(
     let layout = Layout::of(bytes, processor, &parameters, tally);
     if layout.points == 0 || layout.frames == 0 {
         let found = if layout.points == 0 {
-            msg!("a C3D file without points")
+            "a C3D file without points"
         } else {
-            msg!("a C3D file without frames")
+            "a C3D file without frames"
         };
-        let error = ImportError::whole_file(name, found, "points over time");
-        return Err(error.with_hint("export the trajectories of the markers as well"));
+        return Err(without_points(name, found));
     }
     let mut labels = parameters.texts("POINT:LABELS");
     labels.resize_with(layout.points, String::new);
@@ -79,6 +77,9 @@ pub(super) fn points(
             && !RESULT_WORDS.iter().any(|word| lower.contains(word))
     };
     let kept: Vec<usize> = (0..layout.points).filter(|&point| is_place(&labels[point])).collect();
+    if kept.is_empty() {
+        return Err(without_points(name, "a C3D file without points"));
+    }
     let rate = parameters
         .number("POINT:RATE")
         .or_else(|| processor.f32_at(bytes, 20).map(f64::from))
@@ -96,6 +97,11 @@ pub(super) fn points(
     })
 }
 
+fn without_points(name: &str, found: &'static str) -> ImportError {
+    ImportError::whole_file(name, found, "points over time")
+        .with_hint("export the trajectories of the markers as well")
+}
+
 impl Layout {
     fn of(
         bytes: &[u8],
@@ -108,12 +114,14 @@ impl Layout {
             value.filter(|value| value.is_finite() && *value >= 0.0).map(|value| value as usize)
         };
         let points = whole(parameters.count("POINT:USED")).unwrap_or_else(|| header(2));
-        let scale = parameters
-            .number("POINT:SCALE")
-            .map(|scale| scale as f32)
-            .or_else(|| processor.f32_at(bytes, 12))
-            .filter(|scale| scale.is_finite() && *scale != 0.0)
-            .unwrap_or(-1.0);
+        let valid = |scale: &f32| scale.is_finite() && *scale != 0.0;
+        let by_parameter = parameters.number("POINT:SCALE").map(|scale| scale as f32).filter(valid);
+        let in_header = processor.f32_at(bytes, 12).filter(valid);
+        // Of two scales of integers, a file of Motion Analysis has its bodies' size by the header's.
+        let scale = match (by_parameter, in_header) {
+            (Some(own), Some(header)) if own > 0.0 && header > 0.0 => header,
+            (own, header) => own.or(header).unwrap_or(-1.0),
+        };
         let is_float = scale < 0.0;
         let (point_bytes, value_bytes) = if is_float { (16, 4) } else { (8, 2) };
         let block = whole(parameters.count("POINT:DATA_START"))

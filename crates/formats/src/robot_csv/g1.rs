@@ -1,6 +1,6 @@
 //! The Unitree G1 with 29 hinges.
 //!
-//! Names, parents, offsets, axes and limits are those of the manufacturer's public MuJoCo model
+//! Names, parents, offsets, axes and limits are those of the manufacturer's public `MuJoCo` model
 //! (`unitree_robots/g1/g1_29dof.xml` of `unitree_mujoco`), metres and radians, Z up, X ahead.
 
 /// The axis of a hinge in the frame of its body.
@@ -39,6 +39,7 @@ const ALONG: [f64; 4] = [1.0, 0.0, 0.0, 0.0];
 
 /// The hinges in the order of the model, which is that of the columns of files.
 #[rustfmt::skip]
+#[expect(clippy::unreadable_literal, clippy::approx_constant, reason = "as the model has them")]
 pub(super) const HINGES: [Hinge; 29] = [
     Hinge { name: "left_hip_pitch", parent: 0, offset: [0.0, 0.064452, -0.1027], turn: ALONG, axis: Axis::Y, limits: [-2.5307, 2.8798] },
     Hinge { name: "left_hip_roll", parent: 1, offset: [0.0, 0.052, -0.030465], turn: [0.996179, 0.0, -0.0873386, 0.0], axis: Axis::X, limits: [-0.5236, 2.9671] },

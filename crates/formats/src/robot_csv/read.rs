@@ -4,6 +4,7 @@ use super::COLUMNS;
 use super::g1::HINGES;
 use super::robot::{Robot, RobotPose};
 use crate::assemble::assemble;
+use crate::bvh::{MEMORY_FLOOR, MEMORY_PER_BYTE};
 use crate::error::Fault;
 use crate::text::{decode, is_space, name as text_of, quoted};
 use crate::warning::{Tally, WarningKind};
@@ -21,6 +22,8 @@ const TOLERANCE: f64 = 1e-3;
 const CLEARLY_UPRIGHT: f64 = 0.05;
 /// A robot that travels less than this shows no direction, metres.
 const LEAST_TRAVEL: f64 = 0.5;
+/// The memory that a row becomes, bytes: a pose, and the rotations of all joints.
+const BYTES_PER_ROW: u64 = 800;
 /// Larger magnitudes come from overflow, not from measurement.
 const MAX_MAGNITUDE: f64 = 1e6;
 
@@ -45,8 +48,12 @@ pub fn read(
             assumed
         });
         let raw = Robot::new().motion(&poses);
-        // The model of the robot is metric: neither unit nor axis is in question.
-        let own = ImportOptions { metres_per_unit: Some(1.0), up: Some(UpAxis::Z), ..*options };
+        // The model of the robot is metric: neither unit nor axis is in question, unless set by hand.
+        let own = ImportOptions {
+            metres_per_unit: options.metres_per_unit.or(Some(1.0)),
+            up: options.up.or(Some(UpAxis::Z)),
+            ..*options
+        };
         assemble(name, vec![raw], fps, &own, None, tally, 0)
     };
     let clips = read(&mut tally).map_err(|fault| fault.locate(name, &text))?;
@@ -119,6 +126,18 @@ impl Table {
                 }
             }
             table.values.extend_from_slice(&row);
+            let rows = (table.values.len() / columns) as u64;
+            // A table with the columns of a few hinges becomes one of all.
+            let limit =
+                MEMORY_FLOOR.saturating_add(MEMORY_PER_BYTE.saturating_mul(text.len() as u64));
+            if rows * BYTES_PER_ROW > limit {
+                let found = msg!(
+                    "a motion of more than {mb} MB, most of it in bones without values",
+                    mb = limit >> 20
+                );
+                return Err(Fault::new(start, found, "a motion that fits into memory")
+                    .with_hint("cut the motion into parts"));
+            }
         }
         Ok(table)
     }
@@ -150,9 +169,10 @@ fn poses(text: &[u8], tally: &mut Tally) -> Result<(Vec<RobotPose>, f64), Fault>
         let table = Table::read(text, start, COLUMNS, tally)?;
         (plain(&table, tally), PLAIN_FPS)
     } else {
-        let found = match line.contains(&b',') {
-            true => msg!("a table of {count} columns", count = cells(line).count()),
-            false => quoted(line).into(),
+        let found = if line.contains(&b',') {
+            msg!("a table of {count} columns", count = cells(line).count())
+        } else {
+            quoted(line).into()
         };
         let expected = msg!(
             "{columns} columns of numbers of a Unitree G1, or a header with `root_translateX` and `left_knee_joint_dof`",

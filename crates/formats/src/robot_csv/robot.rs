@@ -51,7 +51,9 @@ impl Robot {
             joints[hinge + 1].end_site = Some((turns[hinge + 1] * DVec3::from(point)).as_vec3());
         };
         end(TORSO, HEAD_IN_TORSO);
-        FEET.into_iter().for_each(|foot| end(foot, TOE_IN_FOOT));
+        for foot in FEET {
+            end(foot, TOE_IN_FOOT);
+        }
         Self { joints, axes }
     }
 

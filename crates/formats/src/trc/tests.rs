@@ -43,6 +43,12 @@ fn trc_with_spaces_or_without_names_is_read() {
     assert_eq!(points(&spaced).labels, ["Ball", "B"]);
     let nameless = format!("{HEAD}Frame#\tTime\t\n\t\t\n\n1\t0.0\t1\t2\t3\t4\t5\t6\n");
     assert_eq!(points(&nameless).labels, ["M1", "M2"]);
+    let wide = format!("{HEAD}{NAMES}1\t0\t1\t2\t3\t4\t5\t6\t7\t8\t9\n");
+    assert_eq!(points(&wide).labels, ["Ball One", "B", "M3"]);
+    let commas = format!("{HEAD}{NAMES}{ROWS}").replace('\t', ",");
+    assert_eq!(points(&commas).labels, ["Ball One", "B"]);
+    assert_eq!((points(&commas).fps, points(&commas).unit), (Some(100.0), Some(0.001)));
+    assert_eq!(points(&commas).positions[0], Vec3::new(1000.0, 2000.0, 500.0));
     // Without a rate the times of the rows show it.
     let no_rate = format!("{HEAD}{NAMES}{ROWS}").replace("100.00\t100.00", "x\ty");
     assert!((points(&no_rate).fps.unwrap() - 100.0).abs() < 1e-6);
@@ -64,10 +70,17 @@ fn trc_that_is_broken_is_refused_with_its_place() {
         "{}",
         error(&typing_error)
     );
-    let wide = format!("{HEAD}{NAMES}1\t0\t1\t2\t3\t4\t5\t6\t7\t8\t9\n");
-    assert!(error(&wide).contains("a row of 2 markers"));
     let empty = format!("{HEAD}{NAMES}1\t0\n2\t0.01\n");
     assert!(error(&empty).contains("points that no frame shows"), "{}", error(&empty));
+}
+
+#[test]
+fn trc_of_many_names_and_empty_rows_is_refused_before_it_fills_the_memory() {
+    let names = "name\t\t\t".repeat(4000);
+    let rows = "1\t0\n".repeat(4000);
+    let text = format!("{HEAD}Frame#\tTime\t{names}\n\tX1\n{rows}");
+    let error = read("m.trc", text.as_bytes(), &ImportOptions::default()).unwrap_err();
+    assert!(error.to_string().contains("without values"), "{error}");
 }
 
 #[test]

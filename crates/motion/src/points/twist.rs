@@ -71,7 +71,8 @@ pub(super) fn settle(twists: &[Twist], fps: f64) -> Vec<f32> {
         last = Some(*angle);
     }
     super::gaps::fill_between(&known, &mut angles, |a, b, t| a + (b - a) * t);
-    let sigma = SMOOTH_SECS * fps;
+    // No rate, or one of nothing, leaves every angle as it is.
+    let sigma = (SMOOTH_SECS * fps).max(1e-3);
     let radius = ((3.0 * sigma).round() as usize).min(MAX_RADIUS);
     let kernel: Vec<f32> =
         (0..=radius).map(|step| (-0.5 * (step as f64 / sigma).powi(2)).exp() as f32).collect();
