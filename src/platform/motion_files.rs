@@ -8,8 +8,8 @@ pub(super) const MAX_FILE_BYTES: u64 = 512 * 1024 * 1024;
 
 /// The endings of motion files. Of a folder, only these are read; a file that is dropped by itself
 /// is examined whatever its name.
-pub(super) const MOTION_ENDINGS: [&str; 10] =
-    ["bvh", "asf", "amc", "glb", "gltf", "c3d", "trc", "csv", "zip", "gz"];
+pub(super) const MOTION_ENDINGS: [&str; 12] =
+    ["bvh", "asf", "amc", "glb", "gltf", "npz", "npy", "c3d", "trc", "csv", "zip", "gz"];
 
 /// The greatest number of files that are read from a folder, the same as from an archive.
 pub(super) const MAX_FILES_OF_FOLDER: usize = segue_formats::archive::MAX_FILES;

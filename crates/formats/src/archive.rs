@@ -14,7 +14,8 @@ use segue_text::{Message, ToMessage, msg};
 use std::io;
 
 /// The endings of files that hold motion, or a part of it.
-const MOTION_ENDINGS: [&str; 9] = ["bvh", "asf", "amc", "glb", "gltf", "bin", "c3d", "trc", "csv"];
+const MOTION_ENDINGS: [&str; 11] =
+    ["bvh", "asf", "amc", "glb", "gltf", "bin", "npy", "npz", "c3d", "trc", "csv"];
 
 /// The greatest number of motion files by default; see [`ArchiveLimits::default`].
 pub const MAX_FILES: usize = 2000;
@@ -67,7 +68,8 @@ pub(crate) fn is_zip(bytes: &[u8]) -> bool {
 }
 
 /// Unpacks the motion files of a zip archive: `.bvh`, `.asf`, `.amc`, `.glb`, `.gltf` with its
-/// `.bin`, `.c3d`, `.trc`, and tables that may be those of a robot, each also compressed as `.gz`.
+/// `.bin`, `.npy`, `.npz`, `.c3d`, `.trc`, and tables that may be those of a robot, each also
+/// compressed as `.gz`.
 ///
 /// A file that is damaged, encrypted or compressed in an unusual way is left out with a warning, as
 /// long as there are others.
@@ -102,7 +104,7 @@ pub fn unpack(
         return Err(ImportError::whole_file(
             name,
             found,
-            "motion files (.bvh, .asf, .amc, .glb, .gltf, .c3d, .trc)",
+            "motion files (.bvh, .asf, .amc, .glb, .gltf, .npz, .npy, .c3d, .trc)",
         ));
     }
     // The sort is stable: of two files with one path, the one that comes first in the archive stays
@@ -111,7 +113,8 @@ pub fn unpack(
     Ok(UnpackedArchive { files, warnings })
 }
 
-fn open(bytes: &[u8]) -> Result<ZipSliceArchive<&[u8]>, Message> {
+/// Returns the list of an archive's files.
+pub(super) fn open(bytes: &[u8]) -> Result<ZipSliceArchive<&[u8]>, Message> {
     let cut_off = || Message::word("a zip archive without an end: it was cut off");
     let archive = ZipArchive::from_slice(bytes).map_err(|error| match error.kind() {
         ErrorKind::MissingEndOfCentralDirectory if is_zip(bytes) => cut_off(),
@@ -136,7 +139,7 @@ struct Unpacker<'a> {
 }
 
 /// The reason why a file was not unpacked.
-enum UnpackFailure {
+pub(super) enum UnpackFailure {
     /// It cannot be read, and is left out.
     Unreadable(Message),
     /// It exceeds the size limit; the archive is refused.
@@ -213,7 +216,7 @@ impl Unpacker<'_> {
             self.unreadable(&path, "an archive inside an archive inside this one".into());
             return Ok(());
         }
-        let mut bytes = match self.read(archive, entry) {
+        let mut bytes = match unpack_entry(archive, entry, self.left) {
             Ok(bytes) => bytes,
             Err(failure) => return self.handle_failure(&path, failure),
         };
@@ -236,38 +239,6 @@ impl Unpacker<'_> {
         let path = kept.to_owned();
         self.files.push(ArchivedFile { path, bytes });
         Ok(())
-    }
-
-    fn read(
-        &self,
-        archive: &ZipSliceArchive<&[u8]>,
-        entry: &ZipFileHeaderRecord<'_>,
-    ) -> Result<Vec<u8>, UnpackFailure> {
-        if entry.flags().is_encrypted() {
-            return Err(UnpackFailure::Unreadable("it is encrypted".into()));
-        }
-        let packed = archive.get_entry(entry.wayfinder());
-        let packed = packed.map_err(|error| {
-            UnpackFailure::Unreadable(msg!("it is damaged ({error})", error = error.to_string()))
-        })?;
-        let bytes = match entry.compression_method() {
-            CompressionMethod::STORE => {
-                read_at_most(packed.verifying_reader(packed.data()), self.left)
-            }
-            CompressionMethod::DEFLATE => {
-                read_at_most(packed.verifying_reader(DeflateDecoder::new(packed.data())), self.left)
-            }
-            other => {
-                let name = other.name().map_or_else(
-                    || msg!("method {number}", number = other.as_u16()),
-                    Message::word,
-                );
-                return Err(UnpackFailure::Unreadable(msg!(
-                    "it is packed with {name}, which is not read here"
-                )));
-            }
-        };
-        bytes?.ok_or(UnpackFailure::TooMuch)
     }
 
     /// Leaves a file out, or refuses the archive.
@@ -296,6 +267,36 @@ impl Unpacker<'_> {
         )
         .with_hint("unpack the archive and open a part of its files")
     }
+}
+
+/// Unpacks a file of an archive, up to `most` bytes.
+pub(super) fn unpack_entry(
+    archive: &ZipSliceArchive<&[u8]>,
+    entry: &ZipFileHeaderRecord<'_>,
+    most: usize,
+) -> Result<Vec<u8>, UnpackFailure> {
+    if entry.flags().is_encrypted() {
+        return Err(UnpackFailure::Unreadable("it is encrypted".into()));
+    }
+    let packed = archive.get_entry(entry.wayfinder());
+    let packed = packed.map_err(|error| {
+        UnpackFailure::Unreadable(msg!("it is damaged ({error})", error = error.to_string()))
+    })?;
+    let bytes = match entry.compression_method() {
+        CompressionMethod::STORE => read_at_most(packed.verifying_reader(packed.data()), most),
+        CompressionMethod::DEFLATE => {
+            read_at_most(packed.verifying_reader(DeflateDecoder::new(packed.data())), most)
+        }
+        other => {
+            let name = other
+                .name()
+                .map_or_else(|| msg!("method {number}", number = other.as_u16()), Message::word);
+            return Err(UnpackFailure::Unreadable(msg!(
+                "it is packed with {name}, which is not read here"
+            )));
+        }
+    };
+    bytes?.ok_or(UnpackFailure::TooMuch)
 }
 
 fn is_motion(path: &str) -> bool {

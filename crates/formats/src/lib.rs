@@ -26,6 +26,7 @@
 //! | [`gltf`] (glTF, GLB) | yes, motion and skinned meshes | [`gltf::write_glb`] |
 //! | [`c3d`], [`trc`] | yes, a skeleton from labelled points, or points | |
 //! | [`robot_csv`] | yes, the hinges of a Unitree G1 | |
+//! | [`numpy`] (NPY, NPZ) | motions of AMASS, SMPL, Kimodo, `HumanML3D` and others | [`numpy::write_npz`] |
 //! | [`csv`] | | [`csv::write_csv`] |
 //! | [`archive`] (zip), gzip | file by file, [`unpack_gzip`] | |
 //!
@@ -83,6 +84,7 @@ pub mod gltf;
 mod gzip;
 mod labelled;
 mod measure;
+pub mod numpy;
 mod raw;
 pub mod robot_csv;
 mod t_pose;
@@ -213,6 +215,10 @@ pub fn import_with_progress(
         FileKind::C3d => c3d::read(name, bytes, options).map(Some),
         FileKind::Trc => trc::read(name, bytes, options).map(Some),
         FileKind::RobotCsv => robot_csv::read(name, bytes, options).map(Some),
+        FileKind::Numpy => numpy::read(name, bytes, options).map(Some),
+        FileKind::SmplModel => {
+            numpy::model_clip(&numpy::read_model(name, bytes, options)?, options).map(Some)
+        }
         FileKind::Zip | FileKind::Gzip => {
             Err(ImportError::whole_file(name, "an archive", "one of the files in it"))
         }
@@ -230,7 +236,7 @@ pub fn import_with_progress(
             let error = ImportError::whole_file(
                 name,
                 found,
-                "a motion file (.bvh, .asf with .amc, .glb, .gltf, .c3d, .trc, .csv of a robot, .zip)",
+                "a motion file (.bvh, .asf with .amc, .glb, .gltf, .npz, .npy, .c3d, .trc, .csv of a robot, .zip)",
             );
             Err(error.with_hint("convert it to BVH, or rename it if it is one"))
         }
@@ -254,6 +260,10 @@ pub enum FileKind {
     Trc,
     /// A table of a robot's hinges, [`robot_csv`].
     RobotCsv,
+    /// Arrays, [`numpy`].
+    Numpy,
+    /// A body whose motions are in files of arrays, [`numpy::SmplModel`].
+    SmplModel,
     /// Several files in one, [`archive`].
     Zip,
     /// One file, packed with gzip.
@@ -263,6 +273,19 @@ pub enum FileKind {
 }
 
 impl FileKind {
+    /// Returns whether it is a skeleton for the motions of other files.
+    #[must_use]
+    pub const fn is_skeleton(self) -> bool {
+        matches!(self, Self::Asf | Self::SmplModel)
+    }
+
+    /// Returns whether a motion of this format takes its skeleton from another file, if there is
+    /// one.
+    #[must_use]
+    pub const fn takes_skeleton(self) -> bool {
+        matches!(self, Self::Amc | Self::Numpy)
+    }
+
     /// Returns the name on screen.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -274,6 +297,8 @@ impl FileKind {
             Self::C3d => "c3d",
             Self::Trc => "trc",
             Self::RobotCsv => "csv",
+            Self::Numpy => "npz",
+            Self::SmplModel => "smpl",
             Self::Zip => "zip",
             Self::Gzip => "gz",
             Self::Unknown => "unknown",
@@ -288,7 +313,14 @@ pub fn kind_of(name: &str, bytes: &[u8]) -> FileKind {
     /// Comments may come first; UTF-16 has two bytes for each character.
     const HEAD: usize = 16 << 10;
     if archive::is_zip(bytes) {
-        return FileKind::Zip;
+        return match numpy::content_of_zip(name, bytes) {
+            Some(numpy::Content::Motion) => FileKind::Numpy,
+            Some(numpy::Content::Model) => FileKind::SmplModel,
+            None => FileKind::Zip,
+        };
+    }
+    if numpy::is_npy(bytes) || numpy::is_pickle(name) {
+        return FileKind::Numpy;
     }
     if gltf::is_gltf(bytes) {
         return FileKind::Gltf;
@@ -319,6 +351,8 @@ pub fn kind_of(name: &str, bytes: &[u8]) -> FileKind {
             ("gltf", FileKind::Gltf),
             ("c3d", FileKind::C3d),
             ("trc", FileKind::Trc),
+            ("npy", FileKind::Numpy),
+            ("npz", FileKind::Numpy),
             ("zip", FileKind::Zip),
             ("gz", FileKind::Gzip),
         ];
@@ -373,7 +407,7 @@ mod tests {
         let error = import("walk.fbx", b"Kaydara", &options).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "walk.fbx:1:1: found a file that ends in .fbx, expected a motion file (.bvh, .asf with .amc, .glb, .gltf, .c3d, .trc, .csv of a robot, .zip)"
+            "walk.fbx:1:1: found a file that ends in .fbx, expected a motion file (.bvh, .asf with .amc, .glb, .gltf, .npz, .npy, .c3d, .trc, .csv of a robot, .zip)"
         );
         assert!(error.hint.is_some());
         for (name, empty) in [("x.bvh", ""), ("x.amc", " \r\n\t"), ("x.glb", ""), ("", "")] {

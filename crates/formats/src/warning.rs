@@ -225,6 +225,12 @@ pub enum WarningKind {
         /// The first of them.
         name: String,
     },
+    /// A motion without a body: bones of a generic length are used.
+    GenericBody,
+    /// A motion without a path: the body stays in its place.
+    NoPath,
+    /// Quaternions whose order the values do not show: the scalar is taken as the first component.
+    AssumedScalarFirst,
     /// Images of materials: ignored, the base colour is used.
     Textures,
     /// Meshes with morph targets: their shape stays the same.
@@ -428,6 +434,15 @@ impl ToMessage for ImportWarning {
                 cm = metres.abs() * 100.0,
                 side = if *metres > 0.0 { "above" } else { "below" }
             ),
+            WarningKind::GenericBody => msg!(
+                "the file has no body: the angles are true, the bones are those of a generic one; open the SMPL model (.npz) as well for the true ones"
+            ),
+            WarningKind::NoPath => {
+                msg!("the file has no path of the body; it stays in its place")
+            }
+            WarningKind::AssumedScalarFirst => {
+                msg!("the values do not show the order of the quaternions; w x y z is assumed")
+            }
             WarningKind::Textures => {
                 msg!(
                     "imported without {count, plural, one {# texture} other {# textures}}: the plain colour is used"

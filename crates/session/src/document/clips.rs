@@ -6,7 +6,6 @@ use crate::labs::{lab_of, recipe_name, recipe_params};
 use crate::library::{Entry, Origin};
 use crate::params::{Kind, Value};
 use crate::samples;
-use segue_formats::FileKind;
 
 impl Document {
     /// Returns the clips that are compared with each other.
@@ -82,7 +81,8 @@ impl Document {
     /// Returns whether a clip of the library is a motion without its skeleton, or a skeleton
     /// without a motion.
     pub(crate) fn is_unpaired(&self, id: &str) -> bool {
-        let is_skeleton = |entry: &Entry| matches!(&entry.origin, Origin::File(file) if file.kind == FileKind::Asf);
+        let is_skeleton =
+            |entry: &Entry| matches!(&entry.origin, Origin::File(file) if file.kind.is_skeleton());
         self.library.get(id).is_some_and(|entry| entry.awaits_skeleton() || is_skeleton(entry))
     }
 }

@@ -12,7 +12,7 @@ use crate::notice::{AddedClips, Level, Notices, in_the_library};
 use crate::outside;
 use crate::params::{Key, Value};
 use crate::reading::{Content, ReadFile, ReadReport, ReadSetup};
-use segue_formats::{FileKind, ImportError, ImportOptions};
+use segue_formats::{ImportError, ImportOptions};
 use segue_text::{Message, ToMessage, msg};
 use std::sync::Arc;
 
@@ -40,7 +40,7 @@ impl FileIntake {
         let mut loaded = LoadedFile::default();
         let (mut names, mut t_poses, mut failures) = (Vec::new(), 0, Vec::new());
         let brings_skeleton = |file: &ReadFile| {
-            file.kind == FileKind::Asf
+            file.kind.is_skeleton()
                 || file.result.as_ref().is_ok_and(|read| read.companion.is_some())
         };
         let skeleton_arrived = report.files.iter().any(brings_skeleton)

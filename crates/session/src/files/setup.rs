@@ -14,7 +14,7 @@ pub(super) fn setup_of(library: &Library, file: &SourceFile) -> ReadSetup {
         roles: roles_by_hand(library, file),
         companions: match &file.companion {
             Some(companion) => vec![companion.clone()],
-            None if file.kind == FileKind::Amc => companions(library),
+            None if file.kind.takes_skeleton() => companions(library),
             None => Vec::new(),
         },
         sha256: Some(file.sha256.clone()),
@@ -38,7 +38,7 @@ fn roles_by_hand(library: &Library, file: &SourceFile) -> BTreeMap<usize, Roles>
 }
 
 /// Returns the known skeleton files: those in the library, and those that its motions were read
-/// with.
+/// with. A body model is its own companion, in a small form.
 pub(super) fn companions(library: &Library) -> Vec<Companion> {
     let mut all: Vec<Companion> = Vec::new();
     for entry in library.entries() {
@@ -63,6 +63,6 @@ pub(super) fn companions(library: &Library) -> Vec<Companion> {
 
 /// Returns whether a motion needs a skeleton file, and one has arrived since it was read.
 pub(super) fn lacks_skeleton(library: &Library, report: &ReadReport, setup: &ReadSetup) -> bool {
-    let needs_skeleton = |file: &ReadFile| file.kind == FileKind::Amc;
-    report.files.iter().any(needs_skeleton) && companions(library) != setup.companions
+    let takes_skeleton = |file: &ReadFile| file.kind.takes_skeleton();
+    report.files.iter().any(takes_skeleton) && companions(library) != setup.companions
 }

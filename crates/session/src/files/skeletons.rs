@@ -1,4 +1,5 @@
-//! Motions without their skeleton, and skeletons without a motion (ASF and AMC).
+//! Motions without their skeleton, and skeletons without a motion (ASF and AMC, body models and
+//! NumPy).
 
 use super::intake::FileIntake;
 use super::messages::notify_unread;
@@ -29,10 +30,16 @@ impl FileIntake {
             };
             let awaits = entry.awaits_skeleton();
             // A motion that was read with another subject's skeleton has its own now.
-            let has_other = (file.companion.as_ref()).is_some_and(|had| {
-                !is_named(file, had) && skeletons.iter().any(|skeleton| is_named(file, skeleton))
-            });
-            if !(awaits || has_other) {
+            let has_other = file.kind == FileKind::Amc
+                && (file.companion.as_ref()).is_some_and(|had| {
+                    !is_named(file, had)
+                        && skeletons.iter().any(|skeleton| is_named(file, skeleton))
+                });
+            // A motion on a generic body has its own now.
+            let has_body = file.kind == FileKind::Numpy
+                && file.companion.is_none()
+                && skeletons.iter().any(Companion::is_model);
+            if !(awaits || has_other || has_body) {
                 continue;
             }
             let file = SourceFile { companion: None, ..file.clone() };
@@ -68,14 +75,15 @@ pub(super) fn drop_used_skeletons(library: &mut Library) {
     let entries = library.entries().to_vec();
     let used = |sha256: &str| {
         entries.iter().any(|entry| match &entry.origin {
-            Origin::File(file) => {
+            // A body model is its own companion.
+            Origin::File(file) if !file.kind.is_skeleton() => {
                 file.companion.as_ref().is_some_and(|companion| companion.sha256 == sha256)
             }
             _ => false,
         })
     };
     for entry in &entries {
-        if matches!(&entry.origin, Origin::File(file) if file.kind == FileKind::Asf && used(&file.sha256))
+        if matches!(&entry.origin, Origin::File(file) if file.kind.is_skeleton() && used(&file.sha256))
         {
             library.remove(&entry.id);
         }

@@ -8,6 +8,7 @@ pub use wire::{Parcel, Unpacker, WireError};
 use super::outside;
 use segue_formats::acclaim::{self, AcclaimSkeleton};
 use segue_formats::archive::{self, ArchiveLimits};
+use segue_formats::numpy::{self, SmplModel};
 use segue_formats::{
     FileKind, ImportError, ImportOptions, ImportedClip, ImportedFile, gltf, import_with_progress,
     kind_of, unpack_gzip,
@@ -68,9 +69,9 @@ pub struct ReadSetup {
 pub struct Companion {
     /// The file's name.
     pub name: String,
-    /// SHA-256 of its bytes, lower-case hexadecimal.
+    /// SHA-256 of the file's bytes, lower-case hexadecimal.
     pub sha256: String,
-    /// Its bytes.
+    /// Its bytes; for a body model those that its joints need.
     pub bytes: Arc<[u8]>,
 }
 
@@ -180,8 +181,8 @@ pub fn read(
             .map(|bytes| (vec![(without_gz(name).to_owned(), bytes)], Vec::new())),
         kind => {
             // Only motions depend on them.
-            let companions = if kind == FileKind::Amc { setup.companions.as_slice() } else { &[] };
-            let skeletons = skeletons_of(companions, &setup.options);
+            let companions = if kind.takes_skeleton() { setup.companions.as_slice() } else { &[] };
+            let skeletons = Skeletons::of(companions, &setup.options);
             let sha256 = setup.sha256.as_deref();
             let file = SingleFile { name, bytes, kind, sha256 };
             return Some(ReadReport {
@@ -215,11 +216,16 @@ fn read_several(
     progress: &mut dyn FnMut(usize) -> bool,
 ) -> Option<ReadReport> {
     let kinds: Vec<FileKind> = files.iter().map(|(name, bytes)| kind_of(name, bytes)).collect();
-    let own = files.iter().zip(&kinds).filter(|(_, kind)| **kind == FileKind::Asf);
-    let mut companions: Vec<Companion> =
-        own.map(|((name, bytes), _)| Companion::new(name, bytes)).collect();
+    let own = files.iter().zip(&kinds).filter(|(_, kind)| kind.is_skeleton());
+    let mut companions: Vec<Companion> = own
+        .map(|((name, bytes), kind)| match kind {
+            FileKind::SmplModel => Companion::of_model(name, bytes, &setup.options)
+                .unwrap_or_else(|_| Companion::new(name, &[])),
+            _ => Companion::new(name, bytes),
+        })
+        .collect();
     companions.extend(setup.companions.iter().cloned());
-    let skeletons = skeletons_of(&companions, &setup.options);
+    let skeletons = Skeletons::of(&companions, &setup.options);
     let beside = |path: &str| {
         let found = files.iter().find(|(name, _)| name.ends_with(path));
         found.map(|(_, bytes)| Arc::from(bytes.as_slice()))
@@ -245,6 +251,7 @@ fn read_several(
     }
     // A skeleton that a motion uses is not imported by itself.
     let used: Vec<String> = (read.iter())
+        .filter(|(_, file)| !file.kind.is_skeleton())
         .filter_map(|(_, file)| Some(file.result.as_ref().ok()?.companion.as_ref()?.sha256.clone()))
         .collect();
     read.retain(|(_, file)| !used.contains(&file.sha256));
@@ -254,16 +261,29 @@ fn read_several(
     Some(ReadReport { files: read.into_iter().map(|(_, file)| file).collect(), notes })
 }
 
-/// Returns the skeleton files that can be read.
-fn skeletons_of<'a>(
-    companions: &'a [Companion],
-    options: &ImportOptions,
-) -> Vec<(&'a Companion, AcclaimSkeleton)> {
-    let read = |companion: &'a Companion| {
-        let skeleton = acclaim::read_skeleton(&companion.name, &companion.bytes, options).ok()?;
-        Some((companion, skeleton))
-    };
-    companions.iter().filter_map(read).collect()
+/// The skeleton files that can be read.
+struct Skeletons<'a> {
+    /// Those of AMC files.
+    acclaim: Vec<(&'a Companion, AcclaimSkeleton)>,
+    /// Those of NumPy files.
+    models: Vec<(&'a Companion, SmplModel)>,
+}
+
+impl<'a> Skeletons<'a> {
+    fn of(companions: &'a [Companion], options: &ImportOptions) -> Self {
+        let (models, others): (Vec<_>, Vec<_>) =
+            companions.iter().partition(|companion| companion.is_model());
+        let acclaim = |own: &'a Companion| {
+            Some((own, acclaim::read_skeleton(&own.name, &own.bytes, options).ok()?))
+        };
+        let model = |own: &'a Companion| {
+            Some((own, numpy::read_model(&own.name, &own.bytes, options).ok()?))
+        };
+        Self {
+            acclaim: others.into_iter().filter_map(acclaim).collect(),
+            models: models.into_iter().filter_map(model).collect(),
+        }
+    }
 }
 
 /// A file that is not an archive.
@@ -278,7 +298,7 @@ impl SingleFile<'_> {
     fn read(
         &self,
         setup: &ReadSetup,
-        skeletons: &[(&Companion, AcclaimSkeleton)],
+        skeletons: &Skeletons<'_>,
         beside: &dyn Fn(&str) -> Option<Arc<[u8]>>,
         progress: &mut dyn FnMut(usize) -> bool,
     ) -> Option<ReadFile> {
@@ -286,6 +306,7 @@ impl SingleFile<'_> {
         let (mut companion, mut warnings) = (None, Vec::new());
         let imported = match kind {
             FileKind::Amc => {
+                let skeletons = skeletons.acclaim.as_slice();
                 let named: Vec<(&str, &AcclaimSkeleton)> =
                     skeletons.iter().map(|(own, read)| (own.name.as_str(), read)).collect();
                 let best = acclaim::best_skeleton(name, bytes, &named)
@@ -316,6 +337,25 @@ impl SingleFile<'_> {
                 }
             }
             FileKind::Gltf => gltf::read(name, bytes, beside, &setup.options).map(Some),
+            FileKind::Numpy => {
+                let models: Vec<&SmplModel> =
+                    skeletons.models.iter().map(|(_, model)| model).collect();
+                let read = numpy::read_with_models(name, bytes, &models, &setup.options);
+                read.map(|(file, used)| {
+                    if let Some((own, _)) = used.and_then(|index| skeletons.models.get(index)) {
+                        companion = Some((*own).clone());
+                        warnings.push(msg!("its bones are those of {file}", file = own.name));
+                    }
+                    Some(file)
+                })
+            }
+            FileKind::SmplModel => {
+                numpy::read_model(name, bytes, &setup.options).and_then(|model| {
+                    let sha256 = self.sha256.map_or_else(|| sha256_hex(bytes), str::to_owned);
+                    companion = Some(Companion::of_joints(name, sha256, &model));
+                    numpy::model_clip(&model, &setup.options).map(Some)
+                })
+            }
             _ => match import_with_progress(name, bytes, &setup.options, progress) {
                 Ok(None) => return None,
                 other => other,
@@ -371,6 +411,29 @@ impl Companion {
     #[must_use]
     pub fn new(name: &str, bytes: &[u8]) -> Self {
         Self { name: name.to_owned(), sha256: sha256_hex(bytes), bytes: Arc::from(bytes) }
+    }
+
+    /// Returns a body model without its mesh: a few KB of 100 MB.
+    ///
+    /// # Errors
+    /// [`ImportError`] when it cannot be read.
+    pub fn of_model(
+        name: &str,
+        bytes: &[u8],
+        options: &ImportOptions,
+    ) -> Result<Self, ImportError> {
+        let model = numpy::read_model(name, bytes, options)?;
+        Ok(Self::of_joints(name, sha256_hex(bytes), &model))
+    }
+
+    fn of_joints(name: &str, sha256: String, model: &SmplModel) -> Self {
+        Self { name: name.to_owned(), sha256, bytes: Arc::from(model.to_bytes()) }
+    }
+
+    /// Returns whether it is a body model.
+    #[must_use]
+    pub fn is_model(&self) -> bool {
+        kind_of(&self.name, &self.bytes) == FileKind::SmplModel
     }
 }
 
