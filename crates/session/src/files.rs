@@ -20,6 +20,8 @@ pub use tasks::Job;
 #[cfg(test)]
 mod archive_tests;
 #[cfg(test)]
+mod body_tests;
+#[cfg(test)]
 mod character_tests;
 #[cfg(test)]
 mod correction_tests;
