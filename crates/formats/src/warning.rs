@@ -230,7 +230,7 @@ pub enum WarningKind {
     /// A motion without a path: the body stays in its place.
     NoPath,
     /// Quaternions whose order the values do not show: the scalar is taken as the first component.
-    AssumedScalarFirst,
+    UnclearQuaternions,
     /// Images of materials: ignored, the base colour is used.
     Textures,
     /// Meshes with morph targets: their shape stays the same.
@@ -440,7 +440,7 @@ impl ToMessage for ImportWarning {
             WarningKind::NoPath => {
                 msg!("the file has no path of the body; it stays in its place")
             }
-            WarningKind::AssumedScalarFirst => {
+            WarningKind::UnclearQuaternions => {
                 msg!("the values do not show the order of the quaternions; w x y z is assumed")
             }
             WarningKind::Textures => {

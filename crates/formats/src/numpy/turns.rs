@@ -102,7 +102,7 @@ fn scalar_is_first(values: &[f32], tally: &mut Tally) -> bool {
         |i: usize| values.chunks_exact(4).map(|q| f64::from(q[i].abs())).sum::<f64>() / count;
     let (first, last) = (mean(0), mean(3));
     if (first - last).abs() < CLEAR_DIFFERENCE {
-        tally.add(WarningKind::AssumedScalarFirst, None);
+        tally.add(WarningKind::UnclearQuaternions, None);
         return true;
     }
     first > last
@@ -164,7 +164,7 @@ mod tests {
         // Half a turn about X: nothing says which one is the scalar.
         let mut tally = Tally::default();
         from_numbers(&[0.6, 0.5, 0.2, 0.6], Form::Quaternion, &mut tally).unwrap();
-        assert_eq!(tally.into_warnings(b"")[0].kind, WarningKind::AssumedScalarFirst);
+        assert_eq!(tally.into_warnings(b"")[0].kind, WarningKind::UnclearQuaternions);
     }
 
     #[test]
