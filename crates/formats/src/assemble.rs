@@ -64,6 +64,7 @@ pub(super) fn assemble(
             measure,
             mendable,
             mesh: None,
+            roles: None,
         });
     }
     Ok(clips)

@@ -27,6 +27,7 @@
 //! | [`c3d`], [`trc`] | yes, a skeleton from labelled points, or points | |
 //! | [`robot_csv`] | yes, the hinges of a Unitree G1 | |
 //! | [`numpy`] (NPY, NPZ) | motions of AMASS, SMPL, Kimodo, `HumanML3D` and others | [`numpy::write_npz`] |
+//! | [`gltf`] (VRM, VRMA) | yes, with their bone map | |
 //! | [`csv`] | | [`csv::write_csv`] |
 //! | [`archive`] (zip), gzip | file by file, [`unpack_gzip`] | |
 //!
@@ -100,6 +101,7 @@ pub use unlikely::Mendable;
 pub use warning::{ImportWarning, WarningKind};
 
 use segue_motion::clip::{Clip, UpAxis};
+use segue_motion::skeleton::Roles;
 use segue_motion::skin::SkinnedMesh;
 use segue_text::msg;
 use std::sync::Arc;
@@ -154,6 +156,9 @@ pub struct ImportedClip {
     pub mendable: Mendable,
     /// The character's own mesh, bound to the clip's skeleton; all clips of one character share it.
     pub mesh: Option<Arc<SkinnedMesh>>,
+    /// The roles of the clip's joints, where the file states them; otherwise they are to be found
+    /// ([`Roles::detect`]).
+    pub roles: Option<Roles>,
 }
 
 impl ImportedClip {
@@ -211,7 +216,9 @@ pub fn import_with_progress(
             );
             Err(error.with_hint("drop the .asf file as well, before it, with it or after it"))
         }
-        FileKind::Gltf => gltf::read(name, bytes, &|_| None, options).map(Some),
+        FileKind::Gltf | FileKind::Vrm | FileKind::Vrma => {
+            gltf::read(name, bytes, &|_| None, options).map(Some)
+        }
         FileKind::C3d => c3d::read(name, bytes, options).map(Some),
         FileKind::Trc => trc::read(name, bytes, options).map(Some),
         FileKind::RobotCsv => robot_csv::read(name, bytes, options).map(Some),
@@ -236,7 +243,7 @@ pub fn import_with_progress(
             let error = ImportError::whole_file(
                 name,
                 found,
-                "a motion file (.bvh, .asf with .amc, .glb, .gltf, .npz, .npy, .c3d, .trc, .csv of a robot, .zip)",
+                "a motion file (.bvh, .asf with .amc, .glb, .gltf, .vrm, .vrma, .npz, .npy, .c3d, .trc, .csv of a robot, .zip)",
             );
             Err(error.with_hint("convert it to BVH, or rename it if it is one"))
         }
@@ -264,6 +271,10 @@ pub enum FileKind {
     Numpy,
     /// A body whose motions are in files of arrays, [`numpy::SmplModel`].
     SmplModel,
+    /// A humanoid character, a [`gltf`] file.
+    Vrm,
+    /// An animation of humanoid characters, a [`gltf`] file.
+    Vrma,
     /// Several files in one, [`archive`].
     Zip,
     /// One file, packed with gzip.
@@ -299,6 +310,8 @@ impl FileKind {
             Self::RobotCsv => "csv",
             Self::Numpy => "npz",
             Self::SmplModel => "smpl",
+            Self::Vrm => "vrm",
+            Self::Vrma => "vrma",
             Self::Zip => "zip",
             Self::Gzip => "gz",
             Self::Unknown => "unknown",
@@ -323,7 +336,7 @@ pub fn kind_of(name: &str, bytes: &[u8]) -> FileKind {
         return FileKind::Numpy;
     }
     if gltf::is_gltf(bytes) {
-        return FileKind::Gltf;
+        return gltf_kind(name).unwrap_or(FileKind::Gltf);
     }
     if gzip::is_gzip(bytes) {
         return FileKind::Gzip;
@@ -347,8 +360,6 @@ pub fn kind_of(name: &str, bytes: &[u8]) -> FileKind {
             ("bvh", FileKind::Bvh),
             ("asf", FileKind::Asf),
             ("amc", FileKind::Amc),
-            ("glb", FileKind::Gltf),
-            ("gltf", FileKind::Gltf),
             ("c3d", FileKind::C3d),
             ("trc", FileKind::Trc),
             ("npy", FileKind::Numpy),
@@ -357,8 +368,20 @@ pub fn kind_of(name: &str, bytes: &[u8]) -> FileKind {
             ("gz", FileKind::Gzip),
         ];
         let known = endings.into_iter().find(|(ending, _)| has_extension(name, ending));
-        known.map_or(FileKind::Unknown, |(_, kind)| kind)
+        known.map(|(_, kind)| kind).or_else(|| gltf_kind(name)).unwrap_or(FileKind::Unknown)
     }
+}
+
+/// Returns the kind of glTF that the ending of a name says. All are read alike: the extensions in
+/// the file count.
+fn gltf_kind(name: &str) -> Option<FileKind> {
+    let endings = [
+        ("glb", FileKind::Gltf),
+        ("gltf", FileKind::Gltf),
+        ("vrm", FileKind::Vrm),
+        ("vrma", FileKind::Vrma),
+    ];
+    endings.into_iter().find(|(ending, _)| has_extension(name, ending)).map(|(_, kind)| kind)
 }
 
 fn has_extension(name: &str, extension: &str) -> bool {
@@ -407,7 +430,7 @@ mod tests {
         let error = import("walk.fbx", b"Kaydara", &options).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "walk.fbx:1:1: found a file that ends in .fbx, expected a motion file (.bvh, .asf with .amc, .glb, .gltf, .npz, .npy, .c3d, .trc, .csv of a robot, .zip)"
+            "walk.fbx:1:1: found a file that ends in .fbx, expected a motion file (.bvh, .asf with .amc, .glb, .gltf, .vrm, .vrma, .npz, .npy, .c3d, .trc, .csv of a robot, .zip)"
         );
         assert!(error.hint.is_some());
         for (name, empty) in [("x.bvh", ""), ("x.amc", " \r\n\t"), ("x.glb", ""), ("", "")] {

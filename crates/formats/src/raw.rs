@@ -4,7 +4,9 @@
 use super::error::Fault;
 use glam::{Quat, Vec3};
 use segue_motion::clip::{Clip, ClipError, JointTranslations, Provenance, UpAxis};
-use segue_motion::skeleton::{Joint, Skeleton, SkeletonError, WorldPose, world_pose_into};
+use segue_motion::skeleton::{
+    Joint, Role, Roles, Skeleton, SkeletonError, WorldPose, world_pose_into,
+};
 use segue_text::msg;
 use std::sync::Arc;
 
@@ -116,6 +118,35 @@ impl RawMotion {
     /// Converts the motion to a clip in metres with Y up, whose first joint is the one that carries
     /// the body ([`Clip::folded`]).
     pub(super) fn into_clip(
+        self,
+        name: String,
+        fps: f64,
+        provenance: Provenance,
+    ) -> Result<Clip, RawError> {
+        Ok(self.into_unfolded(name, fps, provenance)?.folded()?)
+    }
+
+    /// Converts the motion as [`into_clip`](Self::into_clip) does, where the file states the roles
+    /// of some joints; the roles returned are those of the clip's joints
+    /// ([`Roles::detect_beside`]).
+    pub(super) fn into_clip_with_roles(
+        self,
+        name: String,
+        fps: f64,
+        provenance: Provenance,
+        stated: &[(Role, usize)],
+    ) -> Result<(Clip, Roles), RawError> {
+        let clip = self.into_unfolded(name, fps, provenance)?;
+        let roles = Roles::detect_beside(clip.skeleton(), stated);
+        let clip = clip.folded_by(&roles)?;
+        let roles = match clip.skeleton().folded_chain() {
+            Some(above) => roles.renumbered(&above.from_file()),
+            None => roles,
+        };
+        Ok((clip, roles))
+    }
+
+    fn into_unfolded(
         mut self,
         name: String,
         fps: f64,
@@ -152,7 +183,7 @@ impl RawMotion {
             .collect();
         let skeleton = Arc::new(Skeleton::new(self.joints)?);
         let clip = Clip::new(name, skeleton, fps, self.rotations, self.root_translations)?;
-        Ok(clip.with_translations(tracks)?.with_provenance(provenance).folded()?)
+        Ok(clip.with_translations(tracks)?.with_provenance(provenance))
     }
 }
 

@@ -235,6 +235,13 @@ pub enum WarningKind {
     Textures,
     /// Meshes with morph targets: their shape stays the same.
     MorphTargets,
+    /// Animated expressions and directions of the eyes: left out.
+    FaceAnimation,
+    /// A bone map of a humanoid that is not as specified: the joints are found by their names.
+    BrokenBoneMap {
+        /// The reason.
+        why: String,
+    },
     /// Meshes whose skin cannot be read: left out.
     BrokenMesh {
         /// The reason for the first of them.
@@ -453,6 +460,12 @@ impl ToMessage for ImportWarning {
                     "imported without the morph targets of {count, plural, one {# mesh} other {# meshes}}"
                 )
             }
+            WarningKind::FaceAnimation => msg!(
+                "imported without {count, plural, one {# animation} other {# animations}} of expressions or of the eyes"
+            ),
+            WarningKind::BrokenBoneMap { why } => msg!(
+                "the bone map of the file cannot be read ({why}); body parts were found by names and shape"
+            ),
             WarningKind::BrokenMesh { why } => {
                 msg!(
                     "imported without {count, plural, one {# mesh} other {# meshes}}; the first has {why}"

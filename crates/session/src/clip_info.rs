@@ -9,7 +9,7 @@ pub struct ClipInfo {
     pub id: String,
     /// Its name on screen.
     pub name: String,
-    /// `bvh`, `amc`, `asf`, `gltf` or `synth`.
+    /// `bvh`, `amc`, `asf`, `gltf`, `vrm`, `vrma` or `synth`.
     pub format: &'static str,
     /// Number of joints; 0 while it is not loaded.
     pub joints: usize,

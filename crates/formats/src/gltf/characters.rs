@@ -27,7 +27,8 @@ pub(super) struct Character {
 ///
 /// With skins, a character is a tree of skins: skins of which one is below the other, or that share
 /// joints. Its joints are those of the skins and the nodes between them, up to the last node above
-/// them that moves. Without skins, each tree of nodes is a character, made of the nodes that move,
+/// them that moves. The skins of a humanoid are one character, together with the nodes of its bone
+/// map; a humanoid animation has these nodes alone. Without both, each tree of nodes is a character, made of the nodes that move,
 /// the nodes between them, and the nodes below them that show nothing.
 pub(super) fn characters(
     document: &Document<'_>,
@@ -45,8 +46,15 @@ pub(super) fn characters(
         }
         search.add(&joints);
     }
-    search.has_skins = !search.tops.is_empty();
-    if !search.has_skins {
+    if let Some(humanoid) = &document.humanoid {
+        let is_there = |node: &usize| *node < nodes.all.len();
+        let mut joints: Vec<usize> = humanoid.nodes.iter().copied().filter(is_there).collect();
+        joints.extend((0..nodes.all.len()).filter(|&node| search.is_joint[node]));
+        search.tops.clear();
+        search.add(&joints);
+    }
+    search.has_joints = !search.tops.is_empty();
+    if !search.has_joints {
         let moving: Vec<usize> = nodes.order.iter().copied().filter(|&node| moves[node]).collect();
         search.add(&moving);
     }
@@ -69,9 +77,10 @@ struct Search<'a> {
     below: Vec<Range<usize>>,
     /// For every node, the root of its tree.
     roots: Vec<usize>,
-    /// Whether a node is a joint of a skin, or moves where there are no skins.
+    /// Whether a node is a joint of a skin or of a bone map, or moves where the file has neither.
     is_joint: Vec<bool>,
-    has_skins: bool,
+    /// Whether the file has a skin or a bone map.
+    has_joints: bool,
     /// The top node of each set of joints.
     tops: Vec<usize>,
     /// The nodes of the character that is being built.
@@ -104,7 +113,7 @@ impl<'a> Search<'a> {
             below,
             roots,
             is_joint: vec![false; count],
-            has_skins: false,
+            has_joints: false,
             tops: Vec::new(),
             taken: vec![false; count],
             indices: vec![0; count],
@@ -135,7 +144,7 @@ impl<'a> Search<'a> {
         self.taken[top] = true;
         for &node in &nodes.order[self.below[top].clone()] {
             let this = &nodes.all[node];
-            let hangs_on = !self.has_skins
+            let hangs_on = !self.has_joints
                 && this.is_bare
                 && this.parent.is_some_and(|parent| self.taken[parent]);
             if self.is_joint[node] || hangs_on || (self.moves[node] && this.is_bare) {
@@ -158,8 +167,7 @@ impl<'a> Search<'a> {
         for &node in below {
             self.take_as_end(node);
         }
-        let above =
-            nodes.all[root].parent.map_or(World::IDENTITY, |parent| nodes.all[parent].world);
+        let above = nodes.all[root].parent.map_or(nodes.base, |parent| nodes.all[parent].world);
         let joint_nodes: Vec<usize> =
             below.iter().copied().filter(|&node| self.taken[node]).collect();
         let joints = joint_nodes

@@ -1,5 +1,6 @@
 //! The JSON of a file and the binary buffers that it refers to.
 
+use super::humanoid::Humanoid;
 use crate::ImportError;
 use crate::text::{decode, short};
 use base64::Engine as _;
@@ -19,6 +20,10 @@ pub(super) struct Document<'a> {
     name: &'a str,
     pub(super) root: Root,
     buffers: Vec<Buffer<'a>>,
+    /// The bone map, where the file has one.
+    pub(super) humanoid: Option<Humanoid>,
+    /// The reason why its bone map cannot be read.
+    pub(super) broken_humanoid: Option<String>,
     /// The number of bytes that may still be allocated for this file.
     left: Cell<usize>,
 }
@@ -46,7 +51,12 @@ impl<'a> Document<'a> {
         } else {
             (bytes, None)
         };
-        let root = parse(name, &decode(json))?;
+        let json = decode(json);
+        let root = parse(name, &json)?;
+        let (humanoid, broken_humanoid) = match Humanoid::read(&json) {
+            Ok(humanoid) => (humanoid, None),
+            Err(why) => (None, Some(why)),
+        };
         let buffers = root.buffers.iter().enumerate();
         let buffers = buffers.map(|(index, buffer)| match (&buffer.uri, binary) {
             (None, Some(binary)) if index == 0 => Buffer::Slice(binary),
@@ -67,7 +77,14 @@ impl<'a> Document<'a> {
                 ),
             },
         });
-        Ok(Self { name, buffers: buffers.collect(), root, left: Cell::new(most) })
+        Ok(Self {
+            name,
+            buffers: buffers.collect(),
+            root,
+            humanoid,
+            broken_humanoid,
+            left: Cell::new(most),
+        })
     }
 
     pub(super) fn name(&self) -> &str {

@@ -16,6 +16,7 @@ mod bones;
 mod characters;
 mod curve;
 mod document;
+mod humanoid;
 mod node;
 mod rate;
 mod read;

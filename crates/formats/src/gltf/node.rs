@@ -46,6 +46,8 @@ impl World {
 pub(super) struct Nodes {
     pub(super) all: Vec<Node>,
     pub(super) order: Vec<usize>,
+    /// The transform above all nodes: from the file's axes to those in which a humanoid faces +Z.
+    pub(super) base: World,
 }
 
 impl Nodes {
@@ -74,13 +76,20 @@ impl Nodes {
                 }
             }
         }
+        let base = match &document.humanoid {
+            None => World::IDENTITY,
+            Some(humanoid) => {
+                let (rotation, linear) = humanoid.turn();
+                World { position: DVec3::ZERO, rotation, linear }
+            }
+        };
         let mut order = Vec::with_capacity(all.len());
         let mut open: Vec<usize> =
             (0..all.len()).rev().filter(|&node| all[node].parent.is_none()).collect();
         while let Some(index) = open.pop() {
             order.push(index);
             open.extend(all[index].children.iter().rev());
-            let parent = all[index].parent.map_or(World::IDENTITY, |parent| all[parent].world);
+            let parent = all[index].parent.map_or(base, |parent| all[parent].world);
             let node = &mut all[index];
             node.world = World {
                 position: parent.point(node.translation),
@@ -101,7 +110,7 @@ impl Nodes {
         if order.len() < all.len() {
             return Err(document.error("nodes that are below themselves", "a tree of nodes"));
         }
-        Ok(Self { all, order })
+        Ok(Self { all, order, base })
     }
 
     /// Returns the nodes from one up to the root of its tree, itself first.

@@ -3,6 +3,7 @@
 use super::characters::{Character, characters};
 use super::curve::{Curve, Kind, SAME_FRAME, rotation};
 use super::document::Document;
+use super::humanoid::Humanoid;
 use super::node::Nodes;
 use super::rate::{Rate, rate};
 use super::skin::mesh;
@@ -19,6 +20,7 @@ use gltf::json::animation::{Animation, Property, Sampler};
 use gltf::json::validation::Checked;
 use segue_motion::clip::UpAxis;
 use segue_motion::math::quat;
+use segue_motion::skeleton::Role;
 use segue_motion::skin::SkinnedMesh;
 use segue_text::{ToMessage, msg};
 use std::collections::BTreeMap;
@@ -48,6 +50,9 @@ pub fn read(
     let document = Document::open(name, bytes, resolve, options.max_bytes)?;
     let nodes = Nodes::of(&document)?;
     let mut tally = Tally::default();
+    if let Some(why) = &document.broken_humanoid {
+        tally.add(WarningKind::BrokenBoneMap { why: why.clone() }, None);
+    }
     let mut motions = Vec::with_capacity(document.root.animations.len());
     let mut moves = vec![false; nodes.all.len()];
     for (index, animation) in document.root.animations.iter().enumerate() {
@@ -106,6 +111,10 @@ impl Motion {
             else {
                 continue;
             };
+            if document.humanoid.as_ref().is_some_and(|humanoid| humanoid.is_face(node)) {
+                tally.add(WarningKind::FaceAnimation, None);
+                continue;
+            }
             let Some(moved) = nodes.all.get(node) else {
                 return Err(document.error(
                     msg!("an animation of node {node}, which is not there"),
@@ -171,6 +180,14 @@ fn key_times(document: &Document<'_>, input: Index<Accessor>) -> Result<Arc<[f32
     }
 }
 
+/// The way in which a clip is made of a motion.
+struct How<'a> {
+    fps: f64,
+    metres_per_unit: f64,
+    /// The roles of joints that the file states.
+    stated: &'a [(Role, usize)],
+}
+
 struct Context<'a> {
     document: &'a Document<'a>,
     nodes: &'a Nodes,
@@ -187,8 +204,13 @@ impl Context<'_> {
         clips: &mut Vec<ImportedClip>,
         tally: &mut Tally,
     ) -> Result<(), ImportError> {
-        let mut skin =
-            if self.is_own() { None } else { mesh(self.document, self.nodes, character, tally) };
+        // The nodes of a humanoid animation may carry a body to look at; it is no character.
+        let is_animation = self.document.humanoid.as_ref().is_some_and(Humanoid::is_animation);
+        let mut skin = if self.is_own() || is_animation {
+            None
+        } else {
+            mesh(self.document, self.nodes, character, tally)
+        };
         for _ in 0..character.uneven {
             tally.add(WarningKind::UnevenScale, None);
         }
@@ -210,7 +232,8 @@ impl Context<'_> {
                 mesh.turn(Y_UP_FROM_Z_UP);
             }
         }
-        let skin = skin.map(|mesh| Arc::new(Self::folded(mesh, &rest)));
+        let stated = self.stated_roles(character);
+        let skin = skin.map(|mesh| Arc::new(Self::folded(mesh, &rest, &stated)));
         let is_moved = |motion: &&Motion| {
             let moves =
                 |node: &usize| motion.turns.contains_key(node) || motion.places.contains_key(node);
@@ -219,27 +242,33 @@ impl Context<'_> {
         let before = clips.len();
         for motion in motions.iter().filter(is_moved) {
             let raw = self.sampled(character, motion)?;
-            clips.push(
-                self.clip(raw, &motion.name, motion.rate.fps, metres_per_unit, tally)?
-                    .with_mesh(skin.as_ref()),
-            );
+            let how = How { fps: motion.rate.fps, metres_per_unit, stated: &stated };
+            clips.push(self.clip(raw, &motion.name, &how, tally)?.with_mesh(skin.as_ref()));
         }
         if clips.len() == before {
             tally.add(WarningKind::NoFrames, None);
             let Rate { fps, .. } = rate(Vec::new(), given_fps(self.options));
-            clips.push(
-                self.clip(rest, stem(self.document.name()), fps, metres_per_unit, tally)?
-                    .with_mesh(skin.as_ref()),
-            );
+            let how = How { fps, metres_per_unit, stated: &stated };
+            let name = stem(self.document.name());
+            clips.push(self.clip(rest, name, &how, tally)?.with_mesh(skin.as_ref()));
         }
         Ok(())
     }
 
+    /// Returns the roles of a character's joints by the file's bone map.
+    fn stated_roles(&self, character: &Character) -> Vec<(Role, usize)> {
+        let bones = self.document.humanoid.iter().flat_map(|humanoid| &humanoid.roles);
+        let joint = |wanted: usize| character.nodes.iter().position(|&node| node == wanted);
+        bones.filter_map(|&(role, node)| Some((role, joint(node)?))).collect()
+    }
+
     /// Moves the mesh to the joints of its clips ([`segue_motion::clip::Clip::folded`]): vertices
     /// of a joint above the carrier follow the carrier.
-    fn folded(mut mesh: SkinnedMesh, rest: &RawMotion) -> SkinnedMesh {
+    fn folded(mut mesh: SkinnedMesh, rest: &RawMotion, stated: &[(Role, usize)]) -> SkinnedMesh {
         let measure = measure(rest, Some(1.0), Some(UpAxis::Y));
-        if let Ok(clip) = rest.clone().into_clip(String::new(), 1.0, measure.provenance)
+        let clip =
+            rest.clone().into_clip_with_roles(String::new(), 1.0, measure.provenance, stated);
+        if let Ok((clip, _)) = clip
             && let Some(above) = clip.skeleton().folded_chain()
         {
             let bind = above
@@ -348,8 +377,7 @@ impl Context<'_> {
         &self,
         mut raw: RawMotion,
         name: &str,
-        fps: f64,
-        metres_per_unit: f64,
+        how: &How<'_>,
         tally: &mut Tally,
     ) -> Result<ImportedClip, ImportError> {
         let t_pose_first_row = first_frame_is_t_pose(&raw);
@@ -361,15 +389,23 @@ impl Context<'_> {
             raw.drop_first_frame();
         }
         let measure =
-            measure(&raw, Some(metres_per_unit), Some(self.options.up.unwrap_or_default()));
+            measure(&raw, Some(how.metres_per_unit), Some(self.options.up.unwrap_or_default()));
         let mendable = raw.warn_of_unlikely(&measure, self.options, tally);
         let name = match raw.joints.first() {
             Some(root) if self.several => format!("{name} ({})", root.name),
             _ => name.to_owned(),
         };
-        let clip = raw
-            .into_clip(name, fps, measure.provenance)
+        let (clip, roles) = raw
+            .into_clip_with_roles(name, how.fps, measure.provenance, how.stated)
             .map_err(|error| self.document.error(error.to_message(), "a skeleton with a motion"))?;
-        Ok(ImportedClip { clip, t_pose_first_row, t_pose_dropped, measure, mendable, mesh: None })
+        Ok(ImportedClip {
+            clip,
+            t_pose_first_row,
+            t_pose_dropped,
+            measure,
+            mendable,
+            mesh: None,
+            roles: (!how.stated.is_empty()).then_some(roles),
+        })
     }
 }

@@ -38,10 +38,14 @@ pub(super) fn mesh(
     }
     let mut mesh = SkinnedMesh::default();
     let mut is_colored = false;
-    for node in &document.root.nodes {
+    for (index, node) in document.root.nodes.iter().enumerate() {
         let (Some(shape), Some(skin)) = (node.mesh, node.skin) else {
             continue;
         };
+        let humanoid = document.humanoid.as_ref();
+        if humanoid.is_some_and(|humanoid| humanoid.is_first_person(index, shape.value())) {
+            continue;
+        }
         let Some(skin) = document.root.get(skin) else {
             continue;
         };

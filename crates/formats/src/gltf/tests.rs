@@ -12,6 +12,7 @@ use segue_motion::math::quat;
 use segue_motion::skeleton::fixtures;
 use serde_json::{Value, json};
 
+mod humanoid;
 mod oddities;
 mod properties;
 mod skin;

@@ -35,8 +35,18 @@ impl Clip {
     /// [`ClipError`] does not occur for a valid clip; it is passed on from the reassembly of the
     /// parts.
     pub fn folded(self) -> Result<Self, ClipError> {
+        let roles = Roles::detect(self.skeleton());
+        self.folded_by(&roles)
+    }
+
+    /// Returns the same motion with the carrier at the root, as [`folded`](Self::folded) does, for
+    /// joints whose roles are known.
+    ///
+    /// # Errors
+    /// The same as for [`folded`](Self::folded).
+    pub fn folded_by(self, roles: &Roles) -> Result<Self, ClipError> {
         let skeleton = self.skeleton();
-        let root = carrier(skeleton, &Roles::detect(skeleton));
+        let root = carrier(skeleton, roles);
         if root == 0 || skeleton.folded_chain().is_some() {
             return Ok(self);
         }

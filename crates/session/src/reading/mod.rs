@@ -336,7 +336,9 @@ impl SingleFile<'_> {
                     }
                 }
             }
-            FileKind::Gltf => gltf::read(name, bytes, beside, &setup.options).map(Some),
+            FileKind::Gltf | FileKind::Vrm | FileKind::Vrma => {
+                gltf::read(name, bytes, beside, &setup.options).map(Some)
+            }
             FileKind::Numpy => {
                 let models: Vec<&SmplModel> =
                     skeletons.models.iter().map(|(_, model)| model).collect();
@@ -459,7 +461,8 @@ impl From<&ImportedClip> for About {
 impl ReadClip {
     fn new(imported: ImportedClip, roles: Option<Roles>) -> Self {
         let about = About::from(&imported);
-        let roles = roles.unwrap_or_else(|| Roles::detect(imported.clip.skeleton()));
+        let roles =
+            roles.or(imported.roles).unwrap_or_else(|| Roles::detect(imported.clip.skeleton()));
         Self { mesh: imported.mesh, motion: Motion::with_roles(imported.clip, &roles), about }
     }
 }

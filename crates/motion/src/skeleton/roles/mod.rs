@@ -16,6 +16,8 @@ pub(crate) use tokens::{Tokens, are_counterparts, is_control, read};
 pub enum RoleSource {
     /// Chosen by the user.
     ByHand,
+    /// Stated by the file, as the bone map of a VRM.
+    ByFile,
     /// By the joint's name.
     ByName,
     /// By the skeleton's shape at rest.
@@ -99,6 +101,41 @@ impl Roles {
     #[must_use]
     pub fn by_name(skeleton: &Skeleton) -> Self {
         names::detect(skeleton)
+    }
+
+    /// Returns the roles that a file states, and where it states none, those that [`Self::detect`]
+    /// finds and that fit the stated ones.
+    ///
+    /// A stated joint that the skeleton does not have is ignored; of several joints for one role,
+    /// or roles for one joint, the first counts.
+    #[must_use]
+    pub fn detect_beside(skeleton: &Skeleton, stated: &[(Role, usize)]) -> Self {
+        let mut roles = Self::default();
+        for &(role, joint) in stated {
+            if joint < skeleton.len() && roles.get(role).is_none() && roles.role_of(joint).is_none()
+            {
+                roles.assign(role, Some(joint), RoleSource::ByFile);
+            }
+        }
+        roles.fill(skeleton, &Self::detect(skeleton));
+        roles
+    }
+
+    /// Returns the roles in a skeleton that has the same joints in another order: `joint_from_own`
+    /// is the new index of each joint. Roles of joints beyond its end are lost.
+    #[must_use]
+    pub fn renumbered(&self, joint_from_own: &[usize]) -> Self {
+        let mut roles = Self::default();
+        for role in Role::ALL {
+            let Some(assigned) = self.assigned[role.index()] else {
+                continue;
+            };
+            let joint = joint_from_own.get(assigned.joint).copied();
+            if joint.is_some_and(|joint| roles.role_of(joint).is_none()) {
+                roles.assign(role, joint, assigned.found);
+            }
+        }
+        roles
     }
 
     /// Adds the missing roles of `other` that do not contradict the present ones.

@@ -231,3 +231,43 @@ fn spider_has_no_limbs_of_a_person() {
         assert_eq!(limbs.collect::<Vec<_>>(), [], "{}", skeleton.joints()[2].name);
     }
 }
+
+#[test]
+fn stated_roles_come_before_names_and_the_rest_is_found() {
+    let skeleton = fixtures::mixamo();
+    let found = Roles::detect(&skeleton);
+    let joint = |role| found.get(role).unwrap();
+    let hand = joint(Role::LeftHand);
+    let parent = skeleton.parent(hand).unwrap();
+    let stated = [
+        // Contradicts the names: its forearm is called a hand.
+        (Role::LeftHand, parent),
+        (Role::LeftHand, hand),
+        (Role::Spine, parent),
+        (Role::Head, skeleton.len()),
+        (Role::Hips, joint(Role::Hips)),
+    ];
+    let roles = Roles::detect_beside(&skeleton, &stated);
+    assert_eq!(roles.get(Role::LeftHand), Some(parent));
+    assert_eq!(roles.source(Role::LeftHand), Some(RoleSource::ByFile));
+    assert_eq!(roles.get(Role::LeftForearm), None, "the hand cannot be the forearm, too");
+    for role in [Role::Spine, Role::Head, Role::RightToe] {
+        assert_eq!(roles.get(role), found.get(role), "{role:?}");
+        assert_eq!(roles.source(role), Some(RoleSource::ByName));
+    }
+    assert_eq!(Roles::detect_beside(&skeleton, &[]), found);
+}
+
+#[test]
+fn renumbered_roles_keep_their_joints() {
+    let skeleton = fixtures::lafan();
+    let roles = fixtures::roles(&skeleton);
+    let (other, order) = fixtures::shuffled(&skeleton, 4);
+    let mut joint_from_own = vec![0; order.len()];
+    for (new, &own) in order.iter().enumerate() {
+        joint_from_own[own] = new;
+    }
+    let moved = roles.renumbered(&joint_from_own);
+    assert_eq!(names(&other, &moved), names(&skeleton, &roles));
+    assert_eq!(roles.renumbered(&[]).count(), 0);
+}
