@@ -233,8 +233,10 @@ pub enum WarningKind {
     UnclearQuaternions,
     /// Images of materials: ignored, the base colour is used.
     Textures,
-    /// Meshes with morph targets: their shape stays the same.
+    /// Meshes with morph targets: they keep the shape that the file's weights give them.
     MorphTargets,
+    /// Meshes that are compressed by Draco: left out.
+    PackedMesh,
     /// Animated expressions and directions of the eyes: left out.
     FaceAnimation,
     /// A bone map of a humanoid that is not as specified: the joints are found by their names.
@@ -457,9 +459,12 @@ impl ToMessage for ImportWarning {
             }
             WarningKind::MorphTargets => {
                 msg!(
-                    "imported without the morph targets of {count, plural, one {# mesh} other {# meshes}}"
+                    "{count, plural, one {# mesh keeps} other {# meshes keep}} one shape: morph targets stay at the weights of the file"
                 )
             }
+            WarningKind::PackedMesh => msg!(
+                "imported without {count, plural, one {# mesh} other {# meshes}} that Draco compressed: save the file without compression"
+            ),
             WarningKind::FaceAnimation => msg!(
                 "imported without {count, plural, one {# animation} other {# animations}} of expressions or of the eyes"
             ),

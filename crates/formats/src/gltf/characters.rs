@@ -28,8 +28,9 @@ pub(super) struct Character {
 /// With skins, a character is a tree of skins: skins of which one is below the other, or that share
 /// joints. Its joints are those of the skins and the nodes between them, up to the last node above
 /// them that moves. The skins of a humanoid are one character, together with the nodes of its bone
-/// map; a humanoid animation has these nodes alone. Without both, each tree of nodes is a character, made of the nodes that move,
-/// the nodes between them, and the nodes below them that show nothing.
+/// map; a humanoid animation has these nodes alone. In other files, each tree of nodes is a
+/// character, made of the nodes that move, the nodes between them, and the nodes below them that
+/// show nothing.
 pub(super) fn characters(
     document: &Document<'_>,
     nodes: &Nodes,

@@ -15,6 +15,9 @@ use std::sync::Arc;
 /// there is no such file.
 pub(super) type Resolve<'a> = &'a dyn Fn(&str) -> Option<Arc<[u8]>>;
 
+/// The extensions whose buffers have no data but in a packed form.
+const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
+
 /// A file, split into JSON and buffers. Nothing in `root` has been checked.
 pub(super) struct Document<'a> {
     name: &'a str,
@@ -104,6 +107,9 @@ impl<'a> Document<'a> {
         match self.buffers.get(index) {
             Some(Buffer::Slice(bytes)) => Ok(bytes),
             Some(Buffer::Shared(bytes)) => Ok(bytes),
+            Some(Buffer::Missing(_)) if MESHOPT.iter().any(|name| self.requires(name)) => Err(self
+                .error("data that was packed by meshopt", "plain data")
+                .with_hint("save the file without compression (gltfpack: without -c and -cc)")),
             Some(Buffer::Missing(why)) => Err(self
                 .error(why.clone(), "the binary data of the animation")
                 .with_hint("open it together with its .bin file")),
@@ -112,6 +118,11 @@ impl<'a> Document<'a> {
                 "a valid glTF 2.0 file",
             )),
         }
+    }
+
+    /// Returns whether the file says that it cannot be read without an extension.
+    pub(super) fn requires(&self, extension: &str) -> bool {
+        self.root.extensions_required.iter().any(|name| name == extension)
     }
 
     /// Returns the number of bytes of all buffers.

@@ -3,6 +3,7 @@
 
 use super::characters::Character;
 use super::document::Document;
+use super::morph;
 use super::node::Nodes;
 use crate::ImportError;
 use crate::warning::{Tally, WarningKind};
@@ -61,12 +62,17 @@ pub(super) fn mesh(
             continue;
         };
         let skin = Binding::read(document, nodes, skin, joints);
+        let weights = morph::weights(node, shape);
         for primitive in &shape.primitives {
+            if is_packed(document, primitive) {
+                tally.add(WarningKind::PackedMesh, None);
+                continue;
+            }
             let before = mesh.positions.len() as u64;
             let read = skin
                 .as_ref()
                 .map_err(Clone::clone)
-                .and_then(|skin| Part::read(document, primitive, skin, before));
+                .and_then(|skin| Part::read(document, primitive, weights, skin, before));
             match read {
                 Ok(Some(part)) => {
                     is_colored |= part.color != WHITE;
@@ -100,6 +106,15 @@ pub(super) fn mesh(
         })
         .collect();
     Some(mesh)
+}
+
+/// Returns whether the vertices of a primitive are in a form of Draco alone
+/// (`KHR_draco_mesh_compression`), which is not read: their accessors have no data.
+fn is_packed(document: &Document<'_>, primitive: &Primitive) -> bool {
+    let positions = primitive.attributes.get(&Checked::Valid(Semantic::Positions));
+    let accessor = positions.and_then(|&positions| document.root.get(positions));
+    document.requires("KHR_draco_mesh_compression")
+        && accessor.is_some_and(|own| own.buffer_view.is_none() && own.sparse.is_none())
 }
 
 const WHITE: [f32; 4] = [1.0; 4];
@@ -172,6 +187,7 @@ impl Part {
     fn read(
         document: &Document<'_>,
         primitive: &Primitive,
+        weights: &[f32],
         binding: &Binding,
         before: u64,
     ) -> Result<Option<Self>, ImportError> {
@@ -191,12 +207,13 @@ impl Part {
         {
             return Err(document.error(msg!("{claimed} vertices"), "at most two million"));
         }
-        let positions = vectors(&document.lengths(positions, Type::Vec3)?);
+        let mut positions = vectors(&document.lengths(positions, Type::Vec3)?);
         let count = positions.len();
-        let normals = match attribute(Semantic::Normals) {
+        let mut normals = match attribute(Semantic::Normals) {
             Some(normals) => vectors(&document.floats(normals, Type::Vec3)?),
             None => Vec::new(),
         };
+        morph::apply(document, primitive, weights, &mut positions, &mut normals)?;
         let mut influences: Vec<Vec<(usize, f32)>> = vec![Vec::new(); count];
         for set in 0..SETS {
             let (Some(joints), Some(weights)) =
@@ -337,7 +354,7 @@ fn cofactors(m: DMat3) -> DMat3 {
     DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * sign
 }
 
-fn vectors(values: &[f32]) -> Vec<Vec3> {
+pub(super) fn vectors(values: &[f32]) -> Vec<Vec3> {
     values.as_chunks::<3>().0.iter().copied().map(Vec3::from_array).collect()
 }
 

@@ -89,6 +89,15 @@ fn buffers_are_found_beside_the_file_or_refused_by_name() {
         read("a.gltf", text.as_bytes(), &|_| Some(Arc::clone(&short)), &ImportOptions::default())
             .unwrap_err();
     assert!(error.to_string().contains("expected all bytes of the animation"), "{error}");
+    // Buffers without data are usual where all data is packed.
+    let mut packed = root.clone();
+    packed["buffers"] = json!([{ "byteLength": builder.bytes.len() }]);
+    packed["extensionsRequired"] = json!(["EXT_meshopt_compression"]);
+    let packed = packed.to_string();
+    let error =
+        read("a.gltf", packed.as_bytes(), &|_| None, &ImportOptions::default()).unwrap_err();
+    assert!(error.to_string().contains("found data that was packed by meshopt"), "{error}");
+    assert!(error.hint.is_some_and(|hint| hint.to_string().contains("without compression")));
     // A missing buffer of images alone is no error.
     root["buffers"] = json!([
         { "byteLength": builder.bytes.len(), "uri": "walk.bin" },

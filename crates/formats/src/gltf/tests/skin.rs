@@ -173,10 +173,78 @@ fn mesh_parts_that_are_ignored_give_warnings() {
     assert_eq!(
         sentences(&builder.read()),
         [
-            "imported without the morph targets of 1 mesh",
+            "1 mesh keeps one shape: morph targets stay at the weights of the file",
             "imported without 1 texture: the plain colour is used",
             "the file has a skeleton but no animation"
         ]
+    );
+}
+
+/// Adds two morph targets: one moves the second vertex, written sparsely, and one all normals.
+fn add_targets(builder: &mut GltfBuilder) {
+    let places = builder.view(&[1, 0]);
+    let moves = builder.view(&[0.5_f32, 0.0, 1.0].map(f32::to_le_bytes).concat());
+    let sparse = builder.accessor(json!({
+        "componentType": 5126, "count": 4, "type": "VEC3", "sparse": {
+            "count": 1, "indices": { "bufferView": places, "componentType": 5123 },
+            "values": { "bufferView": moves }
+        }
+    }));
+    let still = builder.floats("VEC3", 3, &[0.0; 12]);
+    let turns = builder.floats("VEC3", 3, &[2.0, 0.0, 0.0].repeat(4));
+    let normals = builder.floats("VEC3", 3, &[0.0, 0.0, 1.0].repeat(4));
+    let primitive = &mut builder.root["meshes"][0]["primitives"][0];
+    primitive["attributes"]["NORMAL"] = json!(normals);
+    primitive["targets"] = json!([{ "POSITION": sparse }, { "POSITION": still, "NORMAL": turns }]);
+}
+
+#[test]
+fn mesh_has_the_shape_of_its_morph_weights() {
+    let with = |mesh: Value, node: Value| {
+        let mut builder = square();
+        add_targets(&mut builder);
+        builder.root["meshes"][0]["weights"] = mesh;
+        builder.root["nodes"][3]["weights"] = node;
+        let imported = builder.read();
+        let mesh = mesh_of(&imported);
+        (mesh.positions[1], mesh.positions[0], mesh.normals[0])
+    };
+    let (first, other) = (Vec3::new(0.1, 1.0, 0.0), Vec3::new(-0.1, 1.0, 0.0));
+    let moved = first + Vec3::new(0.25, 0.0, 0.5);
+    let turned = Vec3::new(1.0, 0.0, 1.0).normalize_or_zero();
+    let null = Value::Null;
+    assert_eq!(with(null.clone(), null.clone()), (first, other, Vec3::Z));
+    assert_eq!(with(json!([0.5, 0.0]), null.clone()), (moved, other, Vec3::Z));
+    // The weights of the node come before those of its mesh.
+    assert_eq!(with(json!([1.0]), json!([0.5])), (moved, other, Vec3::Z));
+    let (.., normal) = with(null, json!([0.0, 0.5]));
+    assert!(normal.distance(turned) < 1e-6, "{normal}");
+}
+
+#[test]
+fn morph_target_of_another_size_leaves_its_mesh_out() {
+    let mut builder = square();
+    let short = builder.floats("VEC3", 3, &[0.0; 9]);
+    builder.root["meshes"][0]["primitives"][0]["targets"] = json!([{ "POSITION": short }]);
+    builder.root["meshes"][0]["weights"] = json!([1.0]);
+    let imported = builder.read();
+    assert_eq!(imported.clips[0].mesh, None);
+    let told = sentences(&imported);
+    assert!(told[0].contains("a morph target that is not one value for each vertex"), "{told:?}");
+}
+
+#[test]
+fn compressed_meshes_are_left_out_and_said_to_be() {
+    let mut builder = square();
+    let at = builder.root["meshes"][0]["primitives"][0]["attributes"]["POSITION"].as_u64();
+    let accessor = &mut builder.root["accessors"][at.unwrap() as usize];
+    accessor.as_object_mut().unwrap().remove("bufferView");
+    builder.root["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
+    let imported = builder.read();
+    assert_eq!(imported.clips[0].mesh, None);
+    assert_eq!(
+        sentences(&imported)[0],
+        "imported without 1 mesh that Draco compressed: save the file without compression"
     );
 }
 
