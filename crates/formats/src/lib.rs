@@ -80,6 +80,7 @@ mod assemble;
 pub mod bvh;
 pub mod c3d;
 pub mod csv;
+mod encoding;
 mod error;
 pub mod gltf;
 mod gzip;

@@ -231,8 +231,10 @@ pub enum WarningKind {
     NoPath,
     /// Quaternions whose order the values do not show: the scalar is taken as the first component.
     UnclearQuaternions,
-    /// Images of materials: ignored, the base colour is used.
+    /// Images of materials that cannot be read: ignored, the base colour is used.
     Textures,
+    /// Images of materials of which each vertex has the colour at its place.
+    TextureAtVertices,
     /// Meshes with morph targets: they keep the shape that the file's weights give them.
     MorphTargets,
     /// Meshes that are compressed by Draco: left out.
@@ -457,6 +459,9 @@ impl ToMessage for ImportWarning {
                     "imported without {count, plural, one {# texture} other {# textures}}: the plain colour is used"
                 )
             }
+            WarningKind::TextureAtVertices => msg!(
+                "{count, plural, one {# texture is} other {# textures are}} shown by the colour at each vertex"
+            ),
             WarningKind::MorphTargets => {
                 msg!(
                     "{count, plural, one {# mesh keeps} other {# meshes keep}} one shape: morph targets stay at the weights of the file"

@@ -8,6 +8,7 @@ use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use gltf::json::{Root, Value};
 use segue_text::{Message, msg};
+use std::borrow::Cow;
 use std::cell::Cell;
 use std::sync::Arc;
 
@@ -27,6 +28,7 @@ pub(super) struct Document<'a> {
     pub(super) humanoid: Option<Humanoid>,
     /// The reason why its bone map cannot be read.
     pub(super) broken_humanoid: Option<String>,
+    resolve: Resolve<'a>,
     /// The number of bytes that may still be allocated for this file.
     left: Cell<usize>,
 }
@@ -44,7 +46,7 @@ impl<'a> Document<'a> {
     pub(super) fn open(
         name: &'a str,
         bytes: &'a [u8],
-        resolve: Resolve<'_>,
+        resolve: Resolve<'a>,
         most: usize,
     ) -> Result<Self, ImportError> {
         let (json, binary) = if bytes.starts_with(b"glTF") {
@@ -86,6 +88,7 @@ impl<'a> Document<'a> {
             root,
             humanoid,
             broken_humanoid,
+            resolve,
             left: Cell::new(most),
         })
     }
@@ -120,6 +123,24 @@ impl<'a> Document<'a> {
         }
     }
 
+    /// Returns the bytes of an image, in whatever format: in a buffer, in the JSON, or in a file
+    /// beside this one.
+    pub(super) fn image(&self, index: usize) -> Option<Cow<'_, [u8]>> {
+        let image = self.root.images.get(index)?;
+        if let Some(view) = image.buffer_view {
+            let view = self.root.get(view)?;
+            let start = usize::try_from(view.byte_offset.unwrap_or_default().0).ok()?;
+            let length = usize::try_from(view.byte_length.0).ok()?;
+            let buffer = self.buffer(view.buffer.value()).ok()?;
+            return Some(buffer.get(start..)?.get(..length)?.into());
+        }
+        let uri = image.uri.as_deref()?;
+        match uri.strip_prefix("data:") {
+            Some(data) => embedded(data).map(Cow::Owned),
+            None => external(uri, self.resolve).map(|bytes| Cow::Owned(bytes.to_vec())),
+        }
+    }
+
     /// Returns whether the file says that it cannot be read without an extension.
     pub(super) fn requires(&self, extension: &str) -> bool {
         self.root.extensions_required.iter().any(|name| name == extension)
@@ -130,6 +151,11 @@ impl<'a> Document<'a> {
         (0..self.buffers.len())
             .filter_map(|index| self.buffer(index).ok())
             .fold(0, |sum, bytes| sum.saturating_add(bytes.len()))
+    }
+
+    /// Returns whether there is room for bytes that are needed for a moment only.
+    pub(super) fn has_room(&self, bytes: usize) -> bool {
+        bytes <= self.left.get()
     }
 
     /// Checks and counts memory before it is allocated.

@@ -8,9 +8,9 @@
 //! The reader takes motion and skinned meshes. The joints are the nodes that skins name, or that
 //! animations move where there is no skin. Joints get new axes, so that in the rest pose every
 //! rotation is the identity and offsets are those of the rest pose, as everywhere in Segue; scales
-//! of nodes go into offsets. World positions do not change. A skinned mesh keeps its base colour,
-//! and the shape that the weights of its morph targets give it at rest; other meshes and images are
-//! ignored.
+//! of nodes go into offsets. World positions do not change. A skinned mesh keeps its base colour
+//! (of a texture in PNG or JPEG the colour at each vertex), and the shape that the weights of its
+//! morph targets give it at rest; other meshes and other images are ignored.
 //!
 //! VRM 0.x, VRM 1.0 and VRM animations (VRMA) are glTF files with a bone map, which gives the roles
 //! of the joints. Bones without a role (chest, neck, shoulders, eyes, jaw, fingers) are joints with
@@ -22,11 +22,13 @@ mod characters;
 mod curve;
 mod document;
 mod humanoid;
+mod image;
 mod morph;
 mod node;
 mod rate;
 mod read;
 mod skin;
+mod texture;
 mod write;
 
 pub use read::read;

@@ -5,13 +5,13 @@ use super::characters::Character;
 use super::document::Document;
 use super::morph;
 use super::node::Nodes;
+use super::texture::{Images, TextureUse, colors};
 use crate::ImportError;
 use crate::warning::{Tally, WarningKind};
 use glam::{DMat3, DMat4, DVec3, Quat, Vec3};
 use gltf::json::accessor::Type;
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
-use gltf::json::{Index, Material};
 use segue_motion::skin::{RigidTransform, SkinnedMesh};
 use segue_text::{Message, msg};
 
@@ -39,6 +39,7 @@ pub(super) fn mesh(
     }
     let mut mesh = SkinnedMesh::default();
     let mut is_colored = false;
+    let mut images = Images::default();
     for (index, node) in document.root.nodes.iter().enumerate() {
         let (Some(shape), Some(skin)) = (node.mesh, node.skin) else {
             continue;
@@ -69,13 +70,17 @@ pub(super) fn mesh(
                 continue;
             }
             let before = mesh.positions.len() as u64;
-            let read = skin
-                .as_ref()
-                .map_err(Clone::clone)
-                .and_then(|skin| Part::read(document, primitive, weights, skin, before));
+            let read = skin.as_ref().map_err(Clone::clone).and_then(|skin| {
+                Part::read(document, primitive, weights, skin, before, &mut images)
+            });
             match read {
                 Ok(Some(part)) => {
-                    is_colored |= part.color != WHITE;
+                    is_colored |= part.colors.iter().any(|color| *color != WHITE);
+                    match part.texture {
+                        TextureUse::None => {}
+                        TextureUse::AtVertices => tally.add(WarningKind::TextureAtVertices, None),
+                        TextureUse::Missing => tally.add(WarningKind::Textures, None),
+                    }
                     part.join(&mut mesh);
                 }
                 Ok(None) => {}
@@ -83,11 +88,6 @@ pub(super) fn mesh(
             }
             if primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty()) {
                 tally.add(WarningKind::MorphTargets, None);
-            }
-            if material(document, primitive.material).is_some_and(|material| {
-                material.pbr_metallic_roughness.base_color_texture.is_some()
-            }) {
-                tally.add(WarningKind::Textures, None);
             }
         }
     }
@@ -118,13 +118,6 @@ fn is_packed(document: &Document<'_>, primitive: &Primitive) -> bool {
 }
 
 const WHITE: [f32; 4] = [1.0; 4];
-
-fn material<'a>(
-    document: &'a Document<'_>,
-    index: Option<Index<Material>>,
-) -> Option<&'a Material> {
-    document.root.get(index?)
-}
 
 /// The rest transforms by which a skin deforms its vertices.
 struct Binding {
@@ -178,7 +171,9 @@ struct Part {
     joints: Vec<[u16; 4]>,
     weights: Vec<[f32; 4]>,
     triangles: Vec<[u32; 3]>,
-    color: [f32; 4],
+    /// One for each vertex.
+    colors: Vec<[f32; 4]>,
+    texture: TextureUse,
 }
 
 impl Part {
@@ -190,6 +185,7 @@ impl Part {
         weights: &[f32],
         binding: &Binding,
         before: u64,
+        images: &mut Images,
     ) -> Result<Option<Self>, ImportError> {
         let Checked::Valid(mode) = primitive.mode else {
             return Ok(None);
@@ -252,17 +248,11 @@ impl Part {
                 "a vertex that is there",
             ));
         }
+        let colors = colors(document, primitive, count, images);
         let mut part = Self {
             triangles: triangles(&indices, mode),
-            color: material(document, primitive.material).map_or(WHITE, |material| {
-                let [r, g, b, a] = material.pbr_metallic_roughness.base_color_factor.0;
-                [
-                    encoded(r),
-                    encoded(g),
-                    encoded(b),
-                    if a.is_finite() { a.clamp(0.0, 1.0) } else { 1.0 },
-                ]
-            }),
+            colors: colors.of_vertices,
+            texture: colors.texture,
             positions,
             normals,
             joints: Vec::with_capacity(count),
@@ -336,7 +326,7 @@ impl Part {
 
     fn join(self, mesh: &mut SkinnedMesh) {
         let before = mesh.positions.len() as u32;
-        mesh.colors.extend(std::iter::repeat_n(self.color, self.positions.len()));
+        mesh.colors.extend(self.colors);
         mesh.positions.extend(self.positions);
         mesh.normals.extend(self.normals);
         mesh.joints.extend(self.joints);
@@ -373,17 +363,5 @@ fn triangles(indices: &[u32], mode: Mode) -> Vec<[u32; 3]> {
             .filter_map(|w| own([indices[0], w[0], w[1]]))
             .collect(),
         _ => indices.as_chunks::<3>().0.iter().copied().filter_map(own).collect(),
-    }
-}
-
-/// Converts a channel of a linear colour to `sRGB` (IEC 61966-2-1).
-fn encoded(linear: f32) -> f32 {
-    if !linear.is_finite() || linear >= 1.0 {
-        1.0
-    } else if linear <= 0.003_130_8 {
-        let linear = linear.max(0.0);
-        linear * 12.92
-    } else {
-        1.055 * linear.powf(1.0 / 2.4) - 0.055
     }
 }

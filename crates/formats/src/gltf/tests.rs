@@ -11,11 +11,13 @@ use segue_motion::clip::{Clip, JointTranslations};
 use segue_motion::math::quat;
 use segue_motion::skeleton::fixtures;
 use serde_json::{Value, json};
+use std::sync::Arc;
 
 mod humanoid;
 mod oddities;
 mod properties;
 mod skin;
+mod texture;
 
 /// Changes the name of the generator in a file of Segue's.
 fn by_another_program(mut bytes: Vec<u8>) -> Vec<u8> {

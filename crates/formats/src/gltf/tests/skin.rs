@@ -30,7 +30,7 @@ pub(super) fn check(mesh: &SkinnedMesh, joints: usize) {
 
 /// Returns a square of two triangles on two bones, `Hips` at 1 m and `Chest` 0.5 m above: its lower
 /// edge follows the hips, its upper one both.
-fn square() -> GltfBuilder {
+pub(super) fn square() -> GltfBuilder {
     let mut builder = GltfBuilder::new(&two_bones(), &[0, 1]);
     let positions =
         builder.floats("VEC3", 3, &[-0.1, 1.0, 0.0, 0.1, 1.0, 0.0, 0.1, 1.5, 0.0, -0.1, 1.5, 0.0]);
@@ -70,7 +70,7 @@ fn square() -> GltfBuilder {
     builder
 }
 
-fn mesh_of(imported: &ImportedFile) -> &SkinnedMesh {
+pub(super) fn mesh_of(imported: &ImportedFile) -> &SkinnedMesh {
     let found = &imported.clips[0];
     let mesh = found.mesh.as_ref().unwrap();
     check(mesh, found.clip.skeleton().len());
@@ -173,8 +173,8 @@ fn mesh_parts_that_are_ignored_give_warnings() {
     assert_eq!(
         sentences(&builder.read()),
         [
-            "1 mesh keeps one shape: morph targets stay at the weights of the file",
             "imported without 1 texture: the plain colour is used",
+            "1 mesh keeps one shape: morph targets stay at the weights of the file",
             "the file has a skeleton but no animation"
         ]
     );
