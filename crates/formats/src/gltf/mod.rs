@@ -10,7 +10,8 @@
 //! rotation is the identity and offsets are those of the rest pose, as everywhere in Segue; scales
 //! of nodes go into offsets. World positions do not change. A skinned mesh keeps its base colour
 //! (of a texture in PNG or JPEG the colour at each vertex), and the shape that the weights of its
-//! morph targets give it at rest; other meshes and other images are ignored.
+//! morph targets give it at rest. A mesh without a skin follows the joint that it hangs from; all
+//! others are ignored, and so are other images.
 //!
 //! VRM 0.x, VRM 1.0 and VRM animations (VRMA) are glTF files with a bone map, which gives the roles
 //! of the joints. Bones without a role (chest, neck, shoulders, eyes, jaw, fingers) are joints with

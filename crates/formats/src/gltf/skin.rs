@@ -1,5 +1,5 @@
-//! The mesh of a character: all primitives with a skin on its joints, bound to the rest pose of the
-//! file.
+//! The mesh of a character: all primitives with a skin on its joints, and the rigid ones that hang
+//! from them, bound to the rest pose of the file.
 
 use super::characters::Character;
 use super::document::Document;
@@ -12,6 +12,7 @@ use glam::{DMat3, DMat4, DVec3, Quat, Vec3};
 use gltf::json::accessor::Type;
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
+use gltf::json::{Index, Skin};
 use segue_motion::skin::{RigidTransform, SkinnedMesh};
 use segue_text::{Message, msg};
 
@@ -26,7 +27,8 @@ const SETS: u32 = 2;
 ///
 /// The inverse bind matrices may scale, and may describe any pose: vertices are moved to where the
 /// skin puts them at rest (section 3.7.3.3 of the specification), and bound there again, so that
-/// rigid motions of the joints move them from then on.
+/// rigid motions of the joints move them from then on. A mesh without a skin follows the joint that
+/// its node is, or hangs from.
 pub(super) fn mesh(
     document: &Document<'_>,
     nodes: &Nodes,
@@ -41,28 +43,19 @@ pub(super) fn mesh(
     let mut is_colored = false;
     let mut images = Images::default();
     for (index, node) in document.root.nodes.iter().enumerate() {
-        let (Some(shape), Some(skin)) = (node.mesh, node.skin) else {
+        let Some(shape) = node.mesh else {
             continue;
         };
         let humanoid = document.humanoid.as_ref();
         if humanoid.is_some_and(|humanoid| humanoid.is_first_person(index, shape.value())) {
             continue;
         }
-        let Some(skin) = document.root.get(skin) else {
+        let (Some(shape), Some(skin)) = (
+            document.root.get(shape),
+            Binding::of_node(document, nodes, &joint_of, index, node.skin),
+        ) else {
             continue;
         };
-        let joints: Vec<Option<u16>> = skin
-            .joints
-            .iter()
-            .map(|joint| joint_of.get(joint.value()).copied().flatten())
-            .collect();
-        if joints.iter().all(Option::is_none) {
-            continue;
-        }
-        let Some(shape) = document.root.get(shape) else {
-            continue;
-        };
-        let skin = Binding::read(document, nodes, skin, joints);
         let weights = morph::weights(node, shape);
         for primitive in &shape.primitives {
             if is_packed(document, primitive) {
@@ -125,13 +118,36 @@ struct Binding {
     joints: Vec<Option<u16>>,
     /// For each joint of the skin, the transform from the mesh to the joint at rest.
     rest: Vec<DMat4>,
+    /// Whether it is a mesh without a skin, of which all vertices follow one joint.
+    is_rigid: bool,
 }
 
 impl Binding {
+    /// Returns the binding of a node's mesh; `None` where it has nothing to do with the character.
+    fn of_node(
+        document: &Document<'_>,
+        nodes: &Nodes,
+        joint_of: &[Option<u16>],
+        node: usize,
+        skin: Option<Index<Skin>>,
+    ) -> Option<Result<Self, ImportError>> {
+        let joint = |node: usize| joint_of.get(node).copied().flatten();
+        if let Some(skin) = skin {
+            let skin = document.root.get(skin)?;
+            let joints: Vec<_> = skin.joints.iter().map(|own| joint(own.value())).collect();
+            let is_own = joints.iter().any(Option::is_some);
+            return is_own.then(|| Self::read(document, nodes, skin, joints));
+        }
+        let above = nodes.upwards(node).find_map(joint)?;
+        let world = nodes.all.get(node)?.world;
+        let rest = vec![DMat4::from_mat3_translation(world.linear, world.position)];
+        Some(Ok(Self { joints: vec![Some(above)], rest, is_rigid: true }))
+    }
+
     fn read(
         document: &Document<'_>,
         nodes: &Nodes,
-        skin: &gltf::json::Skin,
+        skin: &Skin,
         joints: Vec<Option<u16>>,
     ) -> Result<Self, ImportError> {
         let inverse_bind = match skin.inverse_bind_matrices {
@@ -160,7 +176,7 @@ impl Binding {
                     DMat4::from_cols_array(&matrix.map(f64::from))
                 })
         });
-        Ok(Self { rest: rest.collect(), joints })
+        Ok(Self { rest: rest.collect(), joints, is_rigid: false })
     }
 }
 
@@ -177,7 +193,8 @@ struct Part {
 }
 
 impl Part {
-    /// Reads a primitive; `None` if it is not a surface or has no skin. `before` is the number of
+    /// Reads a primitive; `None` if it is not a surface or has neither a skin
+    /// nor a joint to hang from. `before` is the number of
     /// vertices that have been read.
     fn read(
         document: &Document<'_>,
@@ -211,7 +228,7 @@ impl Part {
         };
         morph::apply(document, primitive, weights, &mut positions, &mut normals)?;
         let mut influences: Vec<Vec<(usize, f32)>> = vec![Vec::new(); count];
-        for set in 0..SETS {
+        for set in 0..if binding.is_rigid { 0 } else { SETS } {
             let (Some(joints), Some(weights)) =
                 (attribute(Semantic::Joints(set)), attribute(Semantic::Weights(set)))
             else {
@@ -235,7 +252,7 @@ impl Part {
                 }
             }
         }
-        if influences.iter().all(Vec::is_empty) {
+        if !binding.is_rigid && influences.iter().all(Vec::is_empty) {
             return Ok(None);
         }
         let indices = match primitive.indices {

@@ -180,6 +180,45 @@ fn mesh_parts_that_are_ignored_give_warnings() {
     );
 }
 
+#[test]
+fn mesh_without_a_skin_follows_the_joint_above() {
+    let mut builder = square();
+    let corners = builder.floats("VEC3", 3, &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+    builder
+        .list("meshes")
+        .push(json!({ "primitives": [{ "attributes": { "POSITION": corners } }] }));
+    // A quarter turn about Z and half the size, 0.2 m in front of the chest.
+    let quarter = std::f32::consts::FRAC_PI_2;
+    let nodes = builder.list("nodes");
+    nodes[1]["children"].as_array_mut().unwrap().push(json!(4));
+    nodes.push(json!({
+        "name": "Badge", "mesh": 1, "translation": [0.0, 0.0, 0.2],
+        "rotation": about_z(quarter), "scale": [0.5, 0.5, 0.5]
+    }));
+    // One that hangs from no joint.
+    nodes.push(json!({ "name": "Floor", "mesh": 1 }));
+    builder.channel(
+        1,
+        "rotation",
+        "LINEAR",
+        &[0.0, 1.0],
+        &[about_z(0.0), about_z(quarter)].concat(),
+    );
+    let imported = builder.read();
+    let (mesh, clip) = (mesh_of(&imported), &imported.clips[0].clip);
+    assert_eq!(mesh.positions.len(), 4 + 3);
+    let chest = clip.skeleton().find("Chest").unwrap() as u16;
+    assert_eq!((mesh.joints[5][0], mesh.weights[5][0]), (chest, 1.0));
+    let (mut transforms, mut positions, mut normals) = (vec![], vec![], vec![]);
+    let badge = Vec3::new(0.0, 1.5, 0.2);
+    for (frame, tip) in [(0, Vec3::Y), (30, Vec3::NEG_X)] {
+        mesh.joint_transforms(&clip.world_pose(frame), &mut transforms);
+        linear_blend(mesh, &transforms, &mut positions, &mut normals);
+        assert!(positions[4].distance(badge) < 1e-6, "{}", positions[4]);
+        assert!(positions[5].distance(badge + tip * 0.5) < 1e-6, "{}", positions[5]);
+    }
+}
+
 /// Adds two morph targets: one moves the second vertex, written sparsely, and one all normals.
 fn add_targets(builder: &mut GltfBuilder) {
     let places = builder.view(&[1, 0]);
