@@ -1,55 +1,46 @@
 //! Selection of the nodes that are joints of a character.
 
-use super::document::Document;
 use super::node::{Nodes, World};
-use crate::ImportError;
 use glam::DVec3;
 use segue_motion::skeleton::Joint;
-use segue_text::msg;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// A character: some nodes of the file as joints, parents first.
-pub(super) struct Character {
+pub(crate) struct Character {
     /// The node of each joint.
-    pub(super) nodes: Vec<usize>,
+    pub(crate) nodes: Vec<usize>,
     /// The joints in the file's unit, with axes that have no rotation at rest.
-    pub(super) joints: Vec<Joint>,
+    pub(crate) joints: Vec<Joint>,
     /// The node above the root; it never moves.
-    pub(super) above: World,
+    pub(crate) above: World,
     /// The number of nodes whose scale differs by axis: they shear their descendants when they
     /// rotate.
-    pub(super) uneven: usize,
+    pub(crate) uneven: usize,
 }
 
-/// Returns the characters of a file, in the order of its nodes. `moves` says which nodes an
-/// animation moves or rotates.
+/// Returns the characters of a file, in the order of its nodes. Each of `skins` is a set of joints
+/// that belong together, and `moves` says which nodes an animation moves or rotates.
 ///
 /// With skins, a character is a tree of skins: skins of which one is below the other, or that share
 /// joints. Its joints are those of the skins and the nodes between them, up to the last node above
 /// them that moves. The skins of a humanoid are one character, together with the nodes of its bone
-/// map; a humanoid animation has these nodes alone. In other files, each tree of nodes is a
-/// character, made of the nodes that move, the nodes between them, and the nodes below them that
-/// show nothing.
-pub(super) fn characters(
-    document: &Document<'_>,
+/// map (`humanoid`); a humanoid animation has these nodes alone. In other files, each tree of nodes
+/// is a character, made of the nodes that move, the nodes between them, and the nodes below them
+/// that show nothing.
+pub(crate) fn characters(
     nodes: &Nodes,
+    skins: &[Vec<usize>],
+    humanoid: Option<&[usize]>,
     moves: &[bool],
-) -> Result<Vec<Character>, ImportError> {
+) -> Vec<Character> {
     let mut search = Search::new(nodes, moves);
-    for skin in &document.root.skins {
-        let joints: Vec<usize> = skin.joints.iter().map(gltf::json::Index::value).collect();
-        if let Some(missing) = joints.iter().find(|&&joint| joint >= nodes.all.len()) {
-            return Err(document.error(
-                msg!("node {missing} in a skin, which is not there"),
-                "a valid glTF 2.0 file",
-            ));
-        }
-        search.add(&joints);
+    for joints in skins {
+        search.add(joints);
     }
-    if let Some(humanoid) = &document.humanoid {
+    if let Some(humanoid) = humanoid {
         let is_there = |node: &usize| *node < nodes.all.len();
-        let mut joints: Vec<usize> = humanoid.nodes.iter().copied().filter(is_there).collect();
+        let mut joints: Vec<usize> = humanoid.iter().copied().filter(is_there).collect();
         joints.extend((0..nodes.all.len()).filter(|&node| search.is_joint[node]));
         search.tops.clear();
         search.add(&joints);
@@ -68,7 +59,7 @@ pub(super) fn characters(
         end = end.max(search.below[top].end);
         is_first
     });
-    Ok(tops.into_iter().map(|top| search.character(top)).collect())
+    tops.into_iter().map(|top| search.character(top)).collect()
 }
 
 struct Search<'a> {

@@ -19,16 +19,16 @@
 
 mod accessor;
 mod bones;
-mod characters;
+pub(crate) mod characters;
 mod curve;
 mod document;
 mod humanoid;
 mod image;
 mod morph;
-mod node;
-mod rate;
-mod read;
-mod skin;
+pub(crate) mod node;
+pub(crate) mod rate;
+pub(crate) mod read;
+pub(crate) mod skin;
 mod texture;
 mod write;
 

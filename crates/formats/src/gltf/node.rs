@@ -3,62 +3,83 @@
 use super::document::Document;
 use crate::ImportError;
 use glam::{DMat3, DMat4, DQuat, DVec3};
-use segue_text::msg;
+use segue_text::{Message, msg};
 
 /// Sizes and distances beyond this lose their meaning in single precision.
 const MAX_MAGNITUDE: f64 = 1e18;
 
 /// A node of the file: its place in the tree, and its transform at rest.
-pub(super) struct Node {
-    pub(super) name: String,
-    pub(super) parent: Option<usize>,
-    pub(super) children: Vec<usize>,
-    pub(super) translation: DVec3,
-    pub(super) rotation: DQuat,
-    pub(super) scale: DVec3,
+pub(crate) struct Node {
+    pub(crate) name: String,
+    pub(crate) parent: Option<usize>,
+    pub(crate) children: Vec<usize>,
+    pub(crate) translation: DVec3,
+    pub(crate) rotation: DQuat,
+    pub(crate) scale: DVec3,
     /// Whether it has neither a mesh nor a camera.
-    pub(super) is_bare: bool,
+    pub(crate) is_bare: bool,
     /// The node's transform in the world, with its own scale and those above it.
-    pub(super) world: World,
+    pub(crate) world: World,
 }
 
 /// The transform of a node in the world at rest.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct World {
-    pub(super) position: DVec3,
+pub(crate) struct World {
+    pub(crate) position: DVec3,
     /// The product of the rotations alone.
-    pub(super) rotation: DQuat,
+    pub(crate) rotation: DQuat,
     /// The product of rotations and scales, from the node's axes to the world's.
-    pub(super) linear: DMat3,
+    pub(crate) linear: DMat3,
 }
 
 impl World {
-    pub(super) const IDENTITY: Self =
+    pub(crate) const IDENTITY: Self =
         Self { position: DVec3::ZERO, rotation: DQuat::IDENTITY, linear: DMat3::IDENTITY };
 
+    /// Returns the transform of a node below this one.
+    pub(crate) fn then(&self, translation: DVec3, rotation: DQuat, scale: DVec3) -> Self {
+        Self {
+            position: self.point(translation),
+            rotation: (self.rotation * rotation).normalize(),
+            linear: self.linear * DMat3::from_quat(rotation) * DMat3::from_diagonal(scale),
+        }
+    }
+
+    /// Returns whether all its numbers have a meaning in single precision.
+    pub(crate) fn is_plausible(&self) -> bool {
+        self.position.abs().max_element() < MAX_MAGNITUDE
+            && self.linear.to_cols_array().iter().all(|entry| entry.abs() < MAX_MAGNITUDE)
+    }
+
     /// Returns the world position of a translation in the node's axes.
-    pub(super) fn point(&self, translation: DVec3) -> DVec3 {
+    pub(crate) fn point(&self, translation: DVec3) -> DVec3 {
         self.position + self.linear * translation
     }
 }
 
 /// All nodes, and an order in which each is followed by its descendants.
-pub(super) struct Nodes {
-    pub(super) all: Vec<Node>,
-    pub(super) order: Vec<usize>,
+pub(crate) struct Nodes {
+    pub(crate) all: Vec<Node>,
+    pub(crate) order: Vec<usize>,
     /// The transform above all nodes: from the file's axes to those in which a humanoid faces +Z.
-    pub(super) base: World,
+    pub(crate) base: World,
 }
 
 impl Nodes {
     pub(super) fn of(document: &Document<'_>) -> Result<Self, ImportError> {
-        let mut all: Vec<Node> = document
-            .root
-            .nodes
-            .iter()
-            .enumerate()
-            .map(|(index, node)| at_rest(index, node))
-            .collect();
+        let all = document.root.nodes.iter().enumerate().map(|(index, node)| at_rest(index, node));
+        let base = document.humanoid.as_ref().map_or(World::IDENTITY, |humanoid| {
+            let (rotation, linear) = humanoid.turn();
+            World { position: DVec3::ZERO, rotation, linear }
+        });
+        Self::linked(all.collect(), base)
+            .map_err(|(found, expected)| document.error(found, expected))
+    }
+
+    /// Links nodes, whose children are given, to trees, and places them in the world, below `base`.
+    /// The error is the fault that was found, and what was expected.
+    pub(crate) fn linked(mut all: Vec<Node>, base: World) -> Result<Self, (Message, &'static str)> {
+        const TREE: &str = "a tree of nodes";
         for parent in 0..all.len() {
             for index in 0..all[parent].children.len() {
                 let child = all[parent].children[index];
@@ -67,22 +88,12 @@ impl Nodes {
                     Some(node) => {
                         let found =
                             msg!("node {child} (`{name}`) with two parents", name = node.name);
-                        return Err(document.error(found, "a tree of nodes"));
+                        return Err((found, TREE));
                     }
-                    None => {
-                        return Err(document
-                            .error(msg!("node {child}, which is not there"), "a tree of nodes"));
-                    }
+                    None => return Err((msg!("node {child}, which is not there"), TREE)),
                 }
             }
         }
-        let base = match &document.humanoid {
-            None => World::IDENTITY,
-            Some(humanoid) => {
-                let (rotation, linear) = humanoid.turn();
-                World { position: DVec3::ZERO, rotation, linear }
-            }
-        };
         let mut order = Vec::with_capacity(all.len());
         let mut open: Vec<usize> =
             (0..all.len()).rev().filter(|&node| all[node].parent.is_none()).collect();
@@ -91,30 +102,21 @@ impl Nodes {
             open.extend(all[index].children.iter().rev());
             let parent = all[index].parent.map_or(base, |parent| all[parent].world);
             let node = &mut all[index];
-            node.world = World {
-                position: parent.point(node.translation),
-                rotation: (parent.rotation * node.rotation).normalize(),
-                linear: parent.linear
-                    * DMat3::from_quat(node.rotation)
-                    * DMat3::from_diagonal(node.scale),
-            };
-            let World { position, linear, .. } = node.world;
-            if !(position.abs().max_element() < MAX_MAGNITUDE
-                && linear.to_cols_array().iter().all(|entry| entry.abs() < MAX_MAGNITUDE))
-            {
+            node.world = parent.then(node.translation, node.rotation, node.scale);
+            if !node.world.is_plausible() {
                 let found =
                     msg!("node {index} (`{name}`) too far from the origin", name = node.name);
-                return Err(document.error(found, "a scene of some size"));
+                return Err((found, "a scene of some size"));
             }
         }
         if order.len() < all.len() {
-            return Err(document.error("nodes that are below themselves", "a tree of nodes"));
+            return Err((Message::word("nodes that are below themselves"), TREE));
         }
         Ok(Self { all, order, base })
     }
 
     /// Returns the nodes from one up to the root of its tree, itself first.
-    pub(super) fn upwards(&self, node: usize) -> impl Iterator<Item = usize> + '_ {
+    pub(crate) fn upwards(&self, node: usize) -> impl Iterator<Item = usize> + '_ {
         std::iter::successors(Some(node), |&node| self.all[node].parent)
     }
 }

@@ -17,20 +17,20 @@ const MAX_BETWEEN: u32 = 4;
 
 /// The time range and frame rate of an animation.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Rate {
+pub(crate) struct Rate {
     /// Frames per second.
-    pub(super) fps: f64,
+    pub(crate) fps: f64,
     /// The first key, seconds.
-    pub(super) start_secs: f64,
+    pub(crate) start_secs: f64,
     /// The number of frames from the first key to the last; at least 1.
-    pub(super) frames: f64,
+    pub(crate) frames: f64,
     /// Whether every key is on a frame.
-    pub(super) holds_keys: bool,
+    pub(crate) holds_keys: bool,
 }
 
 /// Returns the lowest rate at which every key is on a frame, an integer if possible. `keys` are the
 /// times of all keys of all curves, seconds, in any order. `given` overrides the rate.
-pub(super) fn rate(mut keys: Vec<f64>, given: Option<f64>) -> Rate {
+pub(crate) fn rate(mut keys: Vec<f64>, given: Option<f64>) -> Rate {
     keys.sort_by(f64::total_cmp);
     // The distance is measured from the first key of a group.
     keys.dedup_by(|key, kept| *key - *kept < SAME_KEY_SECS);

@@ -69,7 +69,8 @@ pub fn read(
         }
         motions.push(motion);
     }
-    let characters = characters(&document, &nodes, &moves)?;
+    let humanoid = document.humanoid.as_ref().map(|humanoid| &humanoid.nodes[..]);
+    let characters = characters(&nodes, &skins(&document, &nodes)?, humanoid, &moves);
     if characters.is_empty() {
         return Err(document
             .error("a file without skeleton and without animation", "a character or an animation")
@@ -162,6 +163,21 @@ impl Motion {
     }
 }
 
+/// Returns the joints of each skin.
+fn skins(document: &Document<'_>, nodes: &Nodes) -> Result<Vec<Vec<usize>>, ImportError> {
+    let joints = |skin: &gltf::json::Skin| {
+        let joints: Vec<usize> = skin.joints.iter().map(Index::value).collect();
+        match joints.iter().find(|&&joint| joint >= nodes.all.len()) {
+            Some(missing) => Err(document.error(
+                msg!("node {missing} in a skin, which is not there"),
+                "a valid glTF 2.0 file",
+            )),
+            None => Ok(joints),
+        }
+    };
+    document.root.skins.iter().map(joints).collect()
+}
+
 fn given_fps(options: &ImportOptions) -> Option<f64> {
     options.fps.filter(|fps| fps.is_finite() && *fps > 0.0)
 }
@@ -233,7 +249,7 @@ impl Context<'_> {
             }
         }
         let stated = self.stated_roles(character);
-        let skin = skin.map(|mesh| Arc::new(Self::folded(mesh, &rest, &stated)));
+        let skin = skin.map(|mesh| Arc::new(folded(mesh, &rest, &stated)));
         let is_moved = |motion: &&Motion| {
             let moves =
                 |node: &usize| motion.turns.contains_key(node) || motion.places.contains_key(node);
@@ -260,25 +276,6 @@ impl Context<'_> {
         let bones = self.document.humanoid.iter().flat_map(|humanoid| &humanoid.roles);
         let joint = |wanted: usize| character.nodes.iter().position(|&node| node == wanted);
         bones.filter_map(|&(role, node)| Some((role, joint(node)?))).collect()
-    }
-
-    /// Moves the mesh to the joints of its clips ([`segue_motion::clip::Clip::folded`]): vertices
-    /// of a joint above the carrier follow the carrier.
-    fn folded(mut mesh: SkinnedMesh, rest: &RawMotion, stated: &[(Role, usize)]) -> SkinnedMesh {
-        let measure = measure(rest, Some(1.0), Some(UpAxis::Y));
-        let clip =
-            rest.clone().into_clip_with_roles(String::new(), 1.0, measure.provenance, stated);
-        if let Ok((clip, _)) = clip
-            && let Some(above) = clip.skeleton().folded_chain()
-        {
-            let bind = above
-                .file_index()
-                .iter()
-                .filter_map(|&file| mesh.bind.get(file).copied())
-                .collect();
-            mesh.rebind(&above.from_file(), bind);
-        }
-        mesh
     }
 
     /// Returns whether Segue wrote the file, so that the mesh is the one that Segue generates
@@ -408,4 +405,23 @@ impl Context<'_> {
             roles: (!how.stated.is_empty()).then_some(roles),
         })
     }
+}
+
+/// Moves the mesh to the joints of its clips ([`segue_motion::clip::Clip::folded`]): vertices
+/// of a joint above the carrier follow the carrier.
+pub(crate) fn folded(
+    mut mesh: SkinnedMesh,
+    rest: &RawMotion,
+    stated: &[(Role, usize)],
+) -> SkinnedMesh {
+    let measure = measure(rest, Some(1.0), Some(UpAxis::Y));
+    let clip = rest.clone().into_clip_with_roles(String::new(), 1.0, measure.provenance, stated);
+    if let Ok((clip, _)) = clip
+        && let Some(above) = clip.skeleton().folded_chain()
+    {
+        let bind =
+            above.file_index().iter().filter_map(|&file| mesh.bind.get(file).copied()).collect();
+        mesh.rebind(&above.from_file(), bind);
+    }
+    mesh
 }

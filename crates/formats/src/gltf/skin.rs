@@ -17,7 +17,7 @@ use segue_motion::skin::{RigidTransform, SkinnedMesh};
 use segue_text::{Message, msg};
 
 /// The greatest number of vertices of a character; beyond it the mesh is left out.
-const MAX_VERTICES: u64 = 1 << 21;
+pub(crate) const MAX_VERTICES: u64 = 1 << 21;
 /// The number of sets of joints and weights that are read; of all their weights the four greatest
 /// are used.
 const SETS: u32 = 2;
@@ -110,16 +110,16 @@ fn is_packed(document: &Document<'_>, primitive: &Primitive) -> bool {
         && accessor.is_some_and(|own| own.buffer_view.is_none() && own.sparse.is_none())
 }
 
-const WHITE: [f32; 4] = [1.0; 4];
+pub(crate) const WHITE: [f32; 4] = [1.0; 4];
 
 /// The rest transforms by which a skin deforms its vertices.
-struct Binding {
+pub(crate) struct Binding {
     /// The character's joint for each joint of the skin.
-    joints: Vec<Option<u16>>,
+    pub(crate) joints: Vec<Option<u16>>,
     /// For each joint of the skin, the transform from the mesh to the joint at rest.
-    rest: Vec<DMat4>,
+    pub(crate) rest: Vec<DMat4>,
     /// Whether it is a mesh without a skin, of which all vertices follow one joint.
-    is_rigid: bool,
+    pub(crate) is_rigid: bool,
 }
 
 impl Binding {
@@ -181,15 +181,16 @@ impl Binding {
 }
 
 /// One primitive, with its vertices at rest.
-struct Part {
-    positions: Vec<Vec3>,
-    normals: Vec<Vec3>,
-    joints: Vec<[u16; 4]>,
-    weights: Vec<[f32; 4]>,
-    triangles: Vec<[u32; 3]>,
+#[derive(Default)]
+pub(crate) struct Part {
+    pub(crate) positions: Vec<Vec3>,
+    pub(crate) normals: Vec<Vec3>,
+    pub(crate) joints: Vec<[u16; 4]>,
+    pub(crate) weights: Vec<[f32; 4]>,
+    pub(crate) triangles: Vec<[u32; 3]>,
     /// One for each vertex.
-    colors: Vec<[f32; 4]>,
-    texture: TextureUse,
+    pub(crate) colors: Vec<[f32; 4]>,
+    pub(crate) texture: TextureUse,
 }
 
 impl Part {
@@ -282,7 +283,11 @@ impl Part {
 
     /// Moves the vertices to where the skin has them at rest, and sets the joints that move them
     /// from there.
-    fn rest(&mut self, binding: &Binding, influences: &[Vec<(usize, f32)>]) -> Result<(), Message> {
+    pub(crate) fn rest(
+        &mut self,
+        binding: &Binding,
+        influences: &[Vec<(usize, f32)>],
+    ) -> Result<(), Message> {
         let has_normals = self.normals.len() == self.positions.len();
         let mut mirrored = 0usize;
         for (vertex, influences) in influences.iter().enumerate() {
@@ -341,7 +346,7 @@ impl Part {
         Ok(())
     }
 
-    fn join(self, mesh: &mut SkinnedMesh) {
+    pub(crate) fn join(self, mesh: &mut SkinnedMesh) {
         let before = mesh.positions.len() as u32;
         mesh.colors.extend(self.colors);
         mesh.positions.extend(self.positions);

@@ -52,9 +52,10 @@ pub(super) struct Colors {
 }
 
 /// The use of a base colour texture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum TextureUse {
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum TextureUse {
     /// There is none.
+    #[default]
     None,
     /// Each vertex has its colour at the vertex's place.
     AtVertices,
