@@ -40,7 +40,8 @@ const APP: [(&str, &str); 8] = [
 ];
 
 /// The crates of the workspace that are libraries.
-const CRATES: [&str; 4] = ["segue_motion", "segue_formats", "segue_session", "segue_scene"];
+const CRATES: [&str; 5] =
+    ["segue_motion", "segue_fbx", "segue_formats", "segue_session", "segue_scene"];
 
 /// Names that the libraries never use: screens, the browser, files, clock and threads.
 const OUTSIDE: [&str; 12] = [

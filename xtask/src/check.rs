@@ -17,10 +17,11 @@ const PARTS: [(&str, Part); 6] = [
 ];
 
 /// The crates below the app.
-const LIBRARIES: [&str; 6] = [
+const LIBRARIES: [&str; 7] = [
     "segue-text",
     "segue-text-derive",
     "segue-motion",
+    "segue-fbx",
     "segue-formats",
     "segue-session",
     "segue-scene",
@@ -47,6 +48,7 @@ fn lint(report: &mut Report) {
     report.run("clippy", clippy(&["--workspace", "--all-targets", "--features=ui-tests"]));
     report.step("clippy, web", || {
         tools::ensure_wasm_target()?;
+        tools::clang()?;
         shell::run(&mut clippy(&["--target=wasm32-unknown-unknown", "--bin=segue", "--bin=reader"]))
     });
 }

@@ -21,6 +21,7 @@ pub fn folder() -> PathBuf {
 /// Builds the page into `dist/`, after installing what that needs.
 pub fn build(profile: Profile) -> Result<()> {
     tools::ensure_wasm_target()?;
+    tools::clang()?;
     let name = match profile {
         Profile::Release => "release",
         Profile::Dev => "dev",

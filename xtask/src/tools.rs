@@ -32,6 +32,11 @@ pub fn ensure_wasm_target() -> Result<()> {
     })
 }
 
+/// Finds or installs the compiler of the C code that the page's reader contains.
+pub fn clang() -> Result<()> {
+    if on_path("clang") { Ok(()) } else { apt(&["clang"]) }
+}
+
 /// Finds or installs a software Vulkan driver, which the pictures of the UI need.
 pub fn software_vulkan() -> Result<()> {
     let any = |folder: &str| fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_some());

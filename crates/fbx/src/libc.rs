@@ -1,0 +1,142 @@
+//! The functions of the C library that ufbx calls where there is none, under the names that it
+//! gives them (`UFBX_NO_LIBC` in ufbx.c).
+
+#![expect(unsafe_code, reason = "C calls these functions by name and with raw pointers")]
+
+use std::alloc::{Layout, alloc, dealloc, realloc};
+use std::ffi::{c_int, c_void};
+
+/// Defines functions of real numbers by those of `libm`.
+macro_rules! math {
+    ($($name:ident = $libm:ident($($x:ident),+);)+) => {$(
+        // SAFETY: no other symbol has this prefix, and plain numbers are passed.
+        #[unsafe(no_mangle)]
+        extern "C" fn $name($($x: f64),+) -> f64 {
+            libm::$libm($($x),+)
+        }
+    )+};
+}
+
+math! {
+    ufbx_sqrt = sqrt(x);
+    ufbx_sin = sin(x);
+    ufbx_cos = cos(x);
+    ufbx_tan = tan(x);
+    ufbx_asin = asin(x);
+    ufbx_acos = acos(x);
+    ufbx_atan = atan(x);
+    ufbx_atan2 = atan2(y, x);
+    ufbx_pow = pow(x, y);
+    ufbx_fmin = fmin(x, y);
+    ufbx_fmax = fmax(x, y);
+    ufbx_fabs = fabs(x);
+    ufbx_copysign = copysign(x, y);
+    ufbx_nextafter = nextafter(x, y);
+    ufbx_rint = rint(x);
+    ufbx_floor = floor(x);
+    ufbx_ceil = ceil(x);
+}
+
+// SAFETY: no other symbol has this prefix, and a plain number is passed.
+#[unsafe(no_mangle)]
+extern "C" fn ufbx_isnan(x: f64) -> c_int {
+    c_int::from(x.is_nan())
+}
+
+// SAFETY, for the functions of strings and memory: ufbx passes what the functions of the same name
+// in C ask for, pointers to that many bytes or to a text with a NUL at its end.
+
+#[unsafe(no_mangle)]
+unsafe extern "C" fn ufbx_strlen(text: *const u8) -> usize {
+    let mut length = 0;
+    while unsafe { *text.add(length) } != 0 {
+        length += 1;
+    }
+    length
+}
+
+#[unsafe(no_mangle)]
+unsafe extern "C" fn ufbx_memcpy(to: *mut u8, from: *const u8, count: usize) -> *mut u8 {
+    unsafe { std::ptr::copy_nonoverlapping(from, to, count) };
+    to
+}
+
+#[unsafe(no_mangle)]
+unsafe extern "C" fn ufbx_memmove(to: *mut u8, from: *const u8, count: usize) -> *mut u8 {
+    unsafe { std::ptr::copy(from, to, count) };
+    to
+}
+
+#[unsafe(no_mangle)]
+unsafe extern "C" fn ufbx_memset(to: *mut u8, byte: c_int, count: usize) -> *mut u8 {
+    unsafe { std::ptr::write_bytes(to, byte as u8, count) };
+    to
+}
+
+#[unsafe(no_mangle)]
+unsafe extern "C" fn ufbx_memchr(bytes: *const u8, byte: c_int, count: usize) -> *const u8 {
+    for place in 0..count {
+        let here = unsafe { bytes.add(place) };
+        if unsafe { *here } == byte as u8 {
+            return here;
+        }
+    }
+    std::ptr::null()
+}
+
+#[unsafe(no_mangle)]
+unsafe extern "C" fn ufbx_memcmp(x: *const u8, y: *const u8, count: usize) -> c_int {
+    for place in 0..count {
+        let (x, y) = unsafe { (*x.add(place), *y.add(place)) };
+        if x != y {
+            return c_int::from(x) - c_int::from(y);
+        }
+    }
+    0
+}
+
+#[unsafe(no_mangle)]
+unsafe extern "C" fn ufbx_strcmp(x: *const u8, y: *const u8) -> c_int {
+    unsafe { ufbx_strncmp(x, y, usize::MAX) }
+}
+
+#[unsafe(no_mangle)]
+unsafe extern "C" fn ufbx_strncmp(x: *const u8, y: *const u8, count: usize) -> c_int {
+    for place in 0..count {
+        let (x, y) = unsafe { (*x.add(place), *y.add(place)) };
+        if x != y || x == 0 {
+            return c_int::from(x) - c_int::from(y);
+        }
+    }
+    0
+}
+
+/// The alignment of all that is allocated, as `malloc` gives it.
+const ALIGN: usize = 8;
+
+fn layout(size: usize) -> Option<Layout> {
+    Layout::from_size_align(size.max(1), ALIGN).ok()
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn ufbx_malloc(size: usize) -> *mut c_void {
+    // SAFETY: the layout is not empty.
+    layout(size).map_or(std::ptr::null_mut(), |layout| unsafe { alloc(layout) }.cast())
+}
+
+// SAFETY: ufbx passes a pointer that `ufbx_malloc` or this function returned, with its size.
+#[unsafe(no_mangle)]
+unsafe extern "C" fn ufbx_realloc(old: *mut c_void, old_size: usize, size: usize) -> *mut c_void {
+    let (Some(before), Some(_), false) = (layout(old_size), layout(size), old.is_null()) else {
+        return if old.is_null() { ufbx_malloc(size) } else { std::ptr::null_mut() };
+    };
+    unsafe { realloc(old.cast(), before, size.max(1)) }.cast()
+}
+
+// SAFETY: as for `ufbx_realloc`.
+#[unsafe(no_mangle)]
+unsafe extern "C" fn ufbx_free(old: *mut c_void, size: usize) {
+    if let (Some(layout), false) = (layout(size), old.is_null()) {
+        unsafe { dealloc(old.cast(), layout) };
+    }
+}

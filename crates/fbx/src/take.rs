@@ -1,0 +1,141 @@
+//! The takes of a file: which nodes move, and the times of their keys.
+
+use std::ops::Range;
+use ufbx::{AnimCurve, AnimStack, SceneRoot};
+
+/// The properties of a node that its transform depends on.
+const TRANSFORM: [&str; 10] = [
+    "Lcl Translation",
+    "Lcl Rotation",
+    "Lcl Scaling",
+    "PreRotation",
+    "PostRotation",
+    "RotationOffset",
+    "RotationPivot",
+    "ScalingOffset",
+    "ScalingPivot",
+    "RotationOrder",
+];
+
+/// The part of a node in a take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Movement {
+    /// It has no keys: its transform is the one outside of the takes.
+    Still,
+    /// Its keys give the same transform for every time.
+    Held,
+    /// It moves.
+    Moves,
+}
+
+/// A take: an animation of the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Take {
+    /// Its name.
+    pub name: String,
+    /// The times between which it plays, seconds, as far as the file states them.
+    pub span_secs: Option<Range<f64>>,
+    /// The times of all keys of all moving nodes, rising, seconds.
+    pub key_secs: Vec<f64>,
+    /// The part of each node.
+    pub movements: Vec<Movement>,
+}
+
+pub(crate) fn take(root: &SceneRoot, stack: &AnimStack) -> Take {
+    // Without the root node of ufbx.
+    let mut movements = vec![Movement::Still; root.nodes.len().saturating_sub(1)];
+    let mut times = Times::default();
+    for layer in &stack.layers {
+        for prop in layer.anim_props.as_ref() {
+            let node = ufbx::as_node(&prop.element);
+            let (Some(node), true) = (node, TRANSFORM.contains(&prop.prop_name.as_ref())) else {
+                continue;
+            };
+            let place = (node.element.typed_id as usize).checked_sub(1);
+            let Some(movement) = place.and_then(|place| movements.get_mut(place)) else {
+                continue;
+            };
+            for curve in prop.anim_value.curves.iter().flatten() {
+                if curve.keyframes.is_empty() {
+                    continue;
+                }
+                if is_constant(curve) && !layer.weight_is_animated {
+                    *movement = (*movement).max(Movement::Held);
+                } else {
+                    *movement = Movement::Moves;
+                    times.add(curve);
+                }
+            }
+        }
+    }
+    follow_scales(root, &mut movements);
+    let span = stack.time_begin..stack.time_end;
+    Take {
+        name: stack.element.name.as_ref().to_owned(),
+        span_secs: (span.start.is_finite() && span.end.is_finite() && span.start < span.end)
+            .then_some(span),
+        key_secs: times.merged(),
+        movements,
+    }
+}
+
+/// Returns whether a curve has the same value everywhere: equal keys, and no tangent that leads
+/// away from them.
+fn is_constant(curve: &AnimCurve) -> bool {
+    let keys = curve.keyframes.as_ref();
+    let first = keys.first().map_or(0.0, |key| key.value);
+    keys.iter().all(|key| key.value == first && key.left.dy == 0.0 && key.right.dy == 0.0)
+        || keys.len() == 1
+}
+
+/// Moves the nodes that ufbx adds where scale is inherited in another way, with the nodes that
+/// they belong to, and the siblings whose translation they scale.
+fn follow_scales(root: &SceneRoot, movements: &mut [Movement]) {
+    for (place, node) in root.nodes.into_iter().skip(1).enumerate() {
+        let Some(parent) = &node.parent else { continue };
+        let above = (parent.element.typed_id as usize)
+            .checked_sub(1)
+            .and_then(|parent| movements.get(parent).copied());
+        let helper = parent
+            .scale_helper
+            .as_ref()
+            .and_then(|helper| (helper.element.typed_id as usize).checked_sub(1))
+            .and_then(|helper| movements.get(helper).copied());
+        if node.is_scale_helper || parent.scale_helper.is_some() {
+            let with = above.max(helper).unwrap_or(Movement::Still);
+            if let Some(movement) = movements.get_mut(place) {
+                *movement = (*movement).max(with);
+            }
+        }
+    }
+}
+
+/// The times of keys of curves, most of which have the same ones.
+#[derive(Default)]
+struct Times {
+    /// Rising, without repetition.
+    all: Vec<f64>,
+    /// Those of the last curve.
+    last: Vec<f64>,
+}
+
+impl Times {
+    fn add(&mut self, curve: &AnimCurve) {
+        let keys = curve.keyframes.as_ref();
+        let same = keys.len() == self.last.len()
+            && keys.iter().zip(&self.last).all(|(key, &time)| key.time == time);
+        if same {
+            return;
+        }
+        self.last.clear();
+        self.last.extend(keys.iter().map(|key| key.time));
+        self.all.extend(self.last.iter().copied().filter(|time| time.is_finite()));
+        // The list never grows beyond that of one curve and what was there before.
+        self.all.sort_by(f64::total_cmp);
+        self.all.dedup();
+    }
+
+    fn merged(self) -> Vec<f64> {
+        self.all
+    }
+}
