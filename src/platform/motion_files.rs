@@ -1,15 +1,17 @@
 //! The files that are read: names and limits, and the notices about files that are not.
 
+use segue_formats::{ARCHIVE_ENDINGS, MOTION_ENDINGS};
 use segue_text::{Message, msg};
 
 /// The largest file that is read, bytes. A motion file of that size holds days; a larger one would
 /// only fill the memory.
 pub(super) const MAX_FILE_BYTES: u64 = 512 * 1024 * 1024;
 
-/// The endings of motion files. Of a folder, only these are read; a file that is dropped by itself
-/// is examined whatever its name.
-pub(super) const MOTION_ENDINGS: [&str; 12] =
-    ["bvh", "asf", "amc", "glb", "gltf", "npz", "npy", "c3d", "trc", "csv", "zip", "gz"];
+/// Returns the endings of motion files and archives. Of a folder, only these are read; a file that
+/// is dropped by itself is examined whatever its name.
+pub(super) fn endings() -> Vec<&'static str> {
+    [&MOTION_ENDINGS[..], &ARCHIVE_ENDINGS].concat()
+}
 
 /// The greatest number of files that are read from a folder, the same as from an archive.
 pub(super) const MAX_FILES_OF_FOLDER: usize = segue_formats::archive::MAX_FILES;
@@ -34,13 +36,13 @@ pub(super) fn too_large(name: &str, bytes: u64, max: u64) -> Option<Message> {
 /// Returns whether a file of a folder is read. Hidden files are not: those that macOS adds beside
 /// others have the same endings.
 pub(super) fn is_motion_file(name: &str) -> bool {
-    let known = |own: &str| MOTION_ENDINGS.iter().any(|ending| own.eq_ignore_ascii_case(ending));
+    let known = |own: &str| endings().iter().any(|ending| own.eq_ignore_ascii_case(ending));
     !name.starts_with('.') && name.rsplit_once('.').is_some_and(|(_, own)| known(own))
 }
 
 /// Returns the notice about a folder without motion files.
 pub(super) fn no_motion_in(folder: &str) -> Message {
-    let endings = MOTION_ENDINGS.map(|ending| format!(".{ending}")).to_vec();
+    let endings: Vec<String> = endings().iter().map(|ending| format!(".{ending}")).collect();
     msg!("{folder} has no motion files ({endings}).", folder = folder.to_owned(), endings)
 }
 

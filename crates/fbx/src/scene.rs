@@ -106,11 +106,12 @@ impl Scene {
     ) -> Result<Self, OpenError> {
         let memory =
             || AllocatorOpts { memory_limit: options.max_memory, ..AllocatorOpts::default() };
-        let mut report = |progress_so_far: &Progress| match progress(
-            usize::try_from(progress_so_far.bytes_read).unwrap_or(usize::MAX),
-        ) {
-            true => ProgressResult::Continue,
-            false => ProgressResult::Cancel,
+        let mut report = |done: &Progress| {
+            if progress(usize::try_from(done.bytes_read).unwrap_or(usize::MAX)) {
+                ProgressResult::Continue
+            } else {
+                ProgressResult::Cancel
+            }
         };
         let root = ufbx::load_memory(
             bytes,
@@ -183,11 +184,12 @@ impl Scene {
     /// Returns the up axis that the file states.
     #[must_use]
     pub fn up(&self) -> UpAxis {
-        match self.root.settings.original_axis_up {
-            CoordinateAxis::PositiveX | CoordinateAxis::NegativeX => UpAxis::X,
-            CoordinateAxis::PositiveY | CoordinateAxis::NegativeY => UpAxis::Y,
-            CoordinateAxis::PositiveZ | CoordinateAxis::NegativeZ => UpAxis::Z,
-            CoordinateAxis::Unknown => UpAxis::Unknown,
+        let axis = ufbx::find_prop(&self.root.settings.props, "UpAxis");
+        match axis.map_or(-1, |axis| axis.value_int) {
+            0 => UpAxis::X,
+            1 => UpAxis::Y,
+            2 => UpAxis::Z,
+            _ => UpAxis::Unknown,
         }
     }
 

@@ -7,15 +7,11 @@
 use super::gzip::{no_memory, read_at_most};
 use super::text::name as decoded;
 use super::warning::{ImportWarning, Tally, WarningKind};
-use super::{ImportError, ImportOptions, has_extension};
+use super::{ImportError, ImportOptions, MOTION_ENDINGS, has_extension};
 use flate2::bufread::{DeflateDecoder, GzDecoder};
 use rawzip::{CompressionMethod, ErrorKind, ZipArchive, ZipFileHeaderRecord, ZipSliceArchive};
 use segue_text::{Message, ToMessage, msg};
 use std::io;
-
-/// The endings of files that hold motion, or a part of it.
-const MOTION_ENDINGS: [&str; 11] =
-    ["bvh", "asf", "amc", "glb", "gltf", "bin", "npy", "npz", "c3d", "trc", "csv"];
 
 /// The greatest number of motion files by default; see [`ArchiveLimits::default`].
 pub const MAX_FILES: usize = 2000;
@@ -67,9 +63,8 @@ pub(crate) fn is_zip(bytes: &[u8]) -> bool {
     bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"PK\x05\x06")
 }
 
-/// Unpacks the motion files of a zip archive: `.bvh`, `.asf`, `.amc`, `.glb`, `.gltf` with its
-/// `.bin`, `.npy`, `.npz`, `.c3d`, `.trc`, and tables that may be those of a robot, each also
-/// compressed as `.gz`.
+/// Unpacks the motion files of a zip archive: those of [`MOTION_ENDINGS`](crate::MOTION_ENDINGS), and
+/// the `.bin` of a `.gltf`, each also compressed as `.gz`.
 ///
 /// A file that is damaged, encrypted or compressed in an unusual way is left out with a warning, as
 /// long as there are others.
@@ -104,7 +99,7 @@ pub fn unpack(
         return Err(ImportError::whole_file(
             name,
             found,
-            "motion files (.bvh, .asf, .amc, .glb, .gltf, .npz, .npy, .c3d, .trc)",
+            "motion files (.bvh, .asf, .amc, .fbx, .glb, .gltf, .vrm, .vrma, .npz, .npy, .c3d, .trc)",
         ));
     }
     // The sort is stable: of two files with one path, the one that comes first in the archive stays
@@ -300,7 +295,8 @@ pub(super) fn unpack_entry(
 }
 
 fn is_motion(path: &str) -> bool {
-    MOTION_ENDINGS.iter().any(|extension| has_extension(path, extension))
+    // The arrays of a glTF file stand beside it.
+    MOTION_ENDINGS.iter().chain(&["bin"]).any(|ending| has_extension(path, ending))
 }
 
 /// Returns a path inside the archive with `/` only, and without drives, roots, `.` and `..`, and

@@ -28,6 +28,7 @@
 //! | [`robot_csv`] | yes, the hinges of a Unitree G1 | |
 //! | [`numpy`] (NPY, NPZ) | motions of AMASS, SMPL, Kimodo, `HumanML3D` and others | [`numpy::write_npz`] |
 //! | [`gltf`] (VRM, VRMA) | yes, with their bone map | |
+//! | [`fbx`] | yes, motion and skinned meshes | |
 //! | [`csv`] | | [`csv::write_csv`] |
 //! | [`archive`] (zip), gzip | file by file, [`unpack_gzip`] | |
 //!
@@ -67,12 +68,12 @@
 //!
 //! # What it does not do
 //!
-//! No FBX. [`import`] neither opens archives nor looks for a second file: the caller has the files,
-//! and passes an AMC file with its skeleton ([`acclaim::read_motion`]).
+//! [`import`] neither opens archives nor looks for a second file: the caller has the files, and
+//! passes an AMC file with its skeleton ([`acclaim::read_motion`]).
 //!
 //! # Sources
 //!
-//! [`bvh`], [`acclaim`] and [`gltf`] cite the documents of their formats.
+//! [`bvh`], [`acclaim`], [`gltf`] and [`fbx`] cite the documents of their formats.
 
 pub mod acclaim;
 pub mod archive;
@@ -82,6 +83,7 @@ pub mod c3d;
 pub mod csv;
 mod encoding;
 mod error;
+pub mod fbx;
 pub mod gltf;
 mod gzip;
 mod labelled;
@@ -227,6 +229,7 @@ pub fn import_with_progress(
         FileKind::SmplModel => {
             numpy::model_clip(&numpy::read_model(name, bytes, options)?, options).map(Some)
         }
+        FileKind::Fbx => fbx::read_with_progress(name, bytes, options, progress),
         FileKind::Zip | FileKind::Gzip => {
             Err(ImportError::whole_file(name, "an archive", "one of the files in it"))
         }
@@ -244,12 +247,19 @@ pub fn import_with_progress(
             let error = ImportError::whole_file(
                 name,
                 found,
-                "a motion file (.bvh, .asf with .amc, .glb, .gltf, .vrm, .vrma, .npz, .npy, .c3d, .trc, .csv of a robot, .zip)",
+                "a motion file (.bvh, .asf with .amc, .fbx, .glb, .gltf, .vrm, .vrma, .npz, .npy, .c3d, .trc, .csv of a robot, .zip)",
             );
             Err(error.with_hint("convert it to BVH, or rename it if it is one"))
         }
     }
 }
+
+/// The endings of files that hold motion.
+pub const MOTION_ENDINGS: [&str; 13] =
+    ["bvh", "asf", "amc", "fbx", "glb", "gltf", "vrm", "vrma", "npz", "npy", "c3d", "trc", "csv"];
+
+/// The endings of files that hold others.
+pub const ARCHIVE_ENDINGS: [&str; 2] = ["zip", "gz"];
 
 /// The format of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
@@ -276,6 +286,8 @@ pub enum FileKind {
     Vrm,
     /// An animation of humanoid characters, a [`gltf`] file.
     Vrma,
+    /// A scene with animations, [`fbx`].
+    Fbx,
     /// Several files in one, [`archive`].
     Zip,
     /// One file, packed with gzip.
@@ -313,6 +325,7 @@ impl FileKind {
             Self::SmplModel => "smpl",
             Self::Vrm => "vrm",
             Self::Vrma => "vrma",
+            Self::Fbx => "fbx",
             Self::Zip => "zip",
             Self::Gzip => "gz",
             Self::Unknown => "unknown",
@@ -338,6 +351,9 @@ pub fn kind_of(name: &str, bytes: &[u8]) -> FileKind {
     }
     if gltf::is_gltf(bytes) {
         return gltf_kind(name).unwrap_or(FileKind::Gltf);
+    }
+    if fbx::is_fbx(bytes) {
+        return FileKind::Fbx;
     }
     if gzip::is_gzip(bytes) {
         return FileKind::Gzip;
@@ -365,6 +381,7 @@ pub fn kind_of(name: &str, bytes: &[u8]) -> FileKind {
             ("trc", FileKind::Trc),
             ("npy", FileKind::Numpy),
             ("npz", FileKind::Numpy),
+            ("fbx", FileKind::Fbx),
             ("zip", FileKind::Zip),
             ("gz", FileKind::Gzip),
         ];
@@ -428,10 +445,15 @@ mod tests {
             import("walk.BVH", b"nothing", &options).unwrap_err().to_string(),
             "walk.BVH:1:1: found `nothing`, expected `HIERARCHY` and a `ROOT`"
         );
-        let error = import("walk.fbx", b"Kaydara", &options).unwrap_err();
+        let error = import("walk.max", b"Kaydara", &options).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "walk.fbx:1:1: found a file that ends in .fbx, expected a motion file (.bvh, .asf with .amc, .glb, .gltf, .vrm, .vrma, .npz, .npy, .c3d, .trc, .csv of a robot, .zip)"
+            "walk.max:1:1: found a file that ends in .max, expected a motion file (.bvh, .asf with .amc, .fbx, .glb, .gltf, .zip)"
+        );
+        let error = import("walk.max", b"Kaydara", &options).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "walk.max:1:1: found a file that ends in .max, expected a motion file (.bvh, .asf with .amc, .fbx, .glb, .gltf, .vrm, .vrma, .npz, .npy, .c3d, .trc, .csv of a robot, .zip)"
         );
         assert!(error.hint.is_some());
         for (name, empty) in [("x.bvh", ""), ("x.amc", " \r\n\t"), ("x.glb", ""), ("", "")] {

@@ -93,6 +93,20 @@ pub enum WarningKind {
         /// Metres per unit.
         metres_per_unit: f64,
     },
+    /// A unit that the file states and that does not fit the body: another is used.
+    UnitOfFile {
+        /// The height of the body in the stated unit, metres.
+        metres: f64,
+        /// Metres per unit, as used.
+        metres_per_unit: f64,
+    },
+    /// Keys outside of the span of their take: left out.
+    OutsideTake {
+        /// Seconds, of the first such take.
+        secs: f64,
+    },
+    /// Constraints of an animation program: not evaluated.
+    Constraints,
     /// OFFSETs that are all zero: the rest pose is taken from the position channels of the first
     /// row.
     RestFromFirstRow,
@@ -393,6 +407,22 @@ impl ToMessage for ImportWarning {
             WarningKind::NotMetres { metres_per_unit } => {
                 msg!(
                     "the body is far too large for metres; units of {metres_per_unit} m are assumed"
+                )
+            }
+            WarningKind::UnitOfFile { metres, metres_per_unit } => {
+                msg!(
+                    "the body would be {metres} tall in the unit of the file; units of {metres_per_unit} m are assumed",
+                    metres = length(*metres)
+                )
+            }
+            WarningKind::OutsideTake { secs } => {
+                msg!(
+                    "{count, plural, one {# take has} other {# takes have}} keys outside of its span, up to {secs:.1} s; left out"
+                )
+            }
+            WarningKind::Constraints => {
+                msg!(
+                    "{count, plural, one {# constraint} other {# constraints}} not evaluated; bake the animation before the export if limbs stand still"
                 )
             }
             WarningKind::RestFromFirstRow => {

@@ -104,6 +104,7 @@ pub(super) fn expected_bytes(name: &str, size: u64) -> u64 {
     let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();
     match ending.as_str() {
         "zip" | "gz" => size.saturating_mul(7),
+        "fbx" => size.saturating_mul(2),
         "glb" | "gltf" | "vrm" | "vrma" | "npy" | "npz" => size,
         _ => size / 4 * 3,
     }

@@ -3,7 +3,7 @@
 
 use super::LargeFile;
 use crate::platform::motion_files::{
-    MAX_FILE_BYTES, MAX_FILES_OF_FOLDER, MOTION_ENDINGS, is_motion_file, last_part, no_motion_in,
+    MAX_FILE_BYTES, MAX_FILES_OF_FOLDER, endings, is_motion_file, last_part, no_motion_in,
     too_large, too_many_in,
 };
 use crate::platform::{Inbox, Incoming};
@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// Opens a dialogue for files, and reads the chosen ones.
 pub(crate) fn open_files(inbox: &Inbox) {
     let asked = rfd::AsyncFileDialog::new()
-        .add_filter("Motion files", &MOTION_ENDINGS)
+        .add_filter("Motion files", &endings())
         .add_filter("All files", &["*"])
         .pick_files();
     let inbox = inbox.clone();
@@ -210,7 +210,7 @@ mod tests {
         let reasons = received(&inbox);
         assert_eq!(
             reasons[0],
-            "empty has no motion files (.bvh, .asf, .amc, .glb, .gltf, .c3d, .trc, .csv, .zip, .gz)."
+            "empty has no motion files (.bvh, .asf, .amc, .fbx, .glb, .gltf, .vrm, .vrma, .npz, .npy, .c3d, .trc, .csv, .zip, .gz)."
         );
         assert!(reasons[1].starts_with("walk.bvh cannot be read: "), "{reasons:?}");
         std::fs::remove_dir_all(&folder).unwrap();

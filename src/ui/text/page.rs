@@ -17,7 +17,7 @@ pub(crate) const SAVING: Word = Word::new("Saving…");
 pub(crate) const NOT_ALL_SAVED: Word = Word::new("Not all saved");
 pub(crate) const MEMORY: Word = Word::new("Memory");
 pub(crate) const DROP_HERE: Word =
-    Word::new("Drop BVH, ASF + AMC, GLB, NPZ, C3D, a zip or a folder");
+    Word::new("Drop BVH, FBX, GLB, NPZ, AMC, C3D, a zip or a folder");
 pub(crate) const DROP_NOW: Word = Word::new("Drop to open");
 /// The button that corrects a clip that was read in the wrong unit, or with displaced roots.
 pub(crate) const CORRECT: Word = Word::new("Correct it");
