@@ -1,5 +1,5 @@
-//! Labelled points of a file on their way to clips: as a body where the labels tell it, otherwise as
-//! points.
+//! Labelled points of a file on their way to clips: as a body where the labels tell it, otherwise
+//! as points.
 
 use super::assemble::assemble;
 use super::error::Fault;
@@ -101,7 +101,7 @@ impl LabelledPoints {
         assemble(name, vec![raw], fps, &own, self.unit, tally, 0)
     }
 
-    /// Returns the skeleton of a body, the axis that is up, and the number of markers it is made of.
+    /// Returns the skeleton of a body, the axis that is up, and the number of its markers.
     fn fit(
         &self,
         body: &MarkerBody,

@@ -3,7 +3,8 @@
 //! Two lines name and give the rate, the numbers of frames and markers, and the unit; the next one
 //! names the markers, each above three columns, and one more numbers the columns. Rows hold a frame
 //! number, a time, and three numbers for each marker; a gap is an empty cell, or not a number.
-//! Cells are separated by tabs, in some files by commas, or by spaces, which leave no room for gaps.
+//! Cells are separated by tabs, in some files by commas, or by spaces, which leave no room for
+//! gaps.
 //!
 //! The numbers in the header are not relied upon: the names and the rows count.
 //!

@@ -117,7 +117,8 @@ impl Layout {
         let valid = |scale: &f32| scale.is_finite() && *scale != 0.0;
         let by_parameter = parameters.number("POINT:SCALE").map(|scale| scale as f32).filter(valid);
         let in_header = processor.f32_at(bytes, 12).filter(valid);
-        // Of two scales of integers, a file of Motion Analysis has its bodies' size by the header's.
+        // Of two scales of integers, that of the header is the size of the bodies in a file of
+        // Motion Analysis.
         let scale = match (by_parameter, in_header) {
             (Some(own), Some(header)) if own > 0.0 && header > 0.0 => header,
             (own, header) => own.or(header).unwrap_or(-1.0),

@@ -48,7 +48,7 @@ pub fn read(
             assumed
         });
         let raw = Robot::new().motion(&poses);
-        // The model of the robot is metric: neither unit nor axis is in question, unless set by hand.
+        // The model of the robot is metric, Z up; both may be set by hand.
         let own = ImportOptions {
             metres_per_unit: options.metres_per_unit.or(Some(1.0)),
             up: options.up.or(Some(UpAxis::Z)),

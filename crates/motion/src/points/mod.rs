@@ -55,8 +55,8 @@
 //! # Accuracy and cost
 //!
 //! From the joint centres of a synthesised walk every joint is found within 0.1 mm, and with noise
-//! of 5 mm and gaps of half a second within 1 cm on average. The twist of a limb is known as well as
-//! its bend is: 20° and more decide it. The last joint of a limb keeps the rotation of the one
+//! of 5 mm and gaps of half a second within 1 cm on average. The twist of a limb is known as well
+//! as its bend is: 20° and more decide it. The last joint of a limb keeps the rotation of the one
 //! before. O(frames × points).
 //!
 //! # What it does not do

@@ -10,11 +10,12 @@ use glam::Vec3;
 /// radius of a marker; metres, for a leg of [`LEG_M`] from hip to ankle.
 const HALF_KNEE_M: f32 = 0.058;
 const HALF_ANKLE_M: f32 = 0.044;
-/// Half the width of an elbow, likewise.
+/// Half the width of an elbow with the radius of a marker, metres, for the same leg.
 const HALF_ELBOW_M: f32 = 0.042;
 /// The length of an adult's leg from hip joint to ankle, metres.
 const LEG_M: f32 = 0.86;
-/// A marker on the thigh defines the knee's direction from this distance beside the bone on, metres.
+/// A marker on the thigh defines the knee's direction from this distance beside the bone on,
+/// metres.
 const LEAST_WAND_M: f32 = 0.02;
 /// Sines of an elbow's bend between which its axis replaces the usual one: 6° and 20°.
 const BEND: (f32, f32) = (0.1, 0.35);
@@ -183,7 +184,8 @@ impl<'a> Centres<'a> {
         if (0.3..2.0).contains(&ratio) { ratio } else { 1.0 }
     }
 
-    /// Returns the centre of a joint of the leg: between both markers, or inwards of the lateral one.
+    /// Returns the centre of a joint of the leg: between both markers, or inwards of the lateral
+    /// one.
     fn leg_joint(
         &self,
         side: Side,
