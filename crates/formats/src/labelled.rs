@@ -67,7 +67,7 @@ impl LabelledPoints {
         }
         for (index, label) in self.labels.iter_mut().enumerate() {
             if label.is_empty() {
-                *label = format!("Point {number}", number = index + 1);
+                *label = format!("P{}", index + 1);
             }
         }
         let given = options.fps.filter(|fps| fps.is_finite() && (0.1..=100_000.0).contains(fps));
