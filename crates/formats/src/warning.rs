@@ -241,6 +241,11 @@ pub enum WarningKind {
     },
     /// A motion without a body: bones of a generic length are used.
     GenericBody,
+    /// Places of joints between which the bones change their lengths.
+    ChangingBones {
+        /// The mean distance of the joints from their places, millimetres.
+        error_mm: f64,
+    },
     /// A motion without a path: the body stays in its place.
     NoPath,
     /// Quaternions whose order the values do not show: the scalar is taken as the first component.
@@ -477,6 +482,9 @@ impl ToMessage for ImportWarning {
             ),
             WarningKind::GenericBody => msg!(
                 "the file has no body: the angles are true, the bones are those of a generic one; open the SMPL model (.npz) as well for the true ones"
+            ),
+            WarningKind::ChangingBones { error_mm } => msg!(
+                "the bones change their lengths in the file; with fixed lengths, the joints lie {error_mm:.0} mm from their places on average"
             ),
             WarningKind::NoPath => {
                 msg!("the file has no path of the body; it stays in its place")

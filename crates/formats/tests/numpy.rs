@@ -61,6 +61,8 @@ fn places_of_every_file_equal_the_oracle() {
         ("matrices.npy", 30.0, UpAxis::Y),
         ("six.npy", 30.0, UpAxis::Y),
         ("vectors.npy", 30.0, UpAxis::Y),
+        ("joints22.npy", 20.0, UpAxis::Y),
+        ("joints22_z_up.npy", 20.0, UpAxis::Z),
         ("dictionary.npy", 30.0, UpAxis::Y),
         ("pickle0.pkl", 30.0, UpAxis::Y),
         ("pickle1.pkl", 30.0, UpAxis::Y),
@@ -77,10 +79,20 @@ fn places_of_every_file_equal_the_oracle() {
         assert_places(clip, stem, if stem.starts_with("soma") { 30 } else { 22 });
         assert_eq!((clip.name(), clip.fps()), (stem, fps));
         assert_eq!((clip.provenance().up, clip.provenance().metres_per_unit), (up, 1.0), "{name}");
-        let has_body = stem.starts_with("soma") || stem.starts_with("humanml");
+        let has_body = ["soma", "humanml", "joints"].iter().any(|name| stem.starts_with(name));
         let told = warnings(&file);
         assert_eq!(told.iter().any(|text| text.starts_with(GENERIC)), !has_body, "{told:?}");
     }
+}
+
+#[test]
+fn results_of_several_samples_are_clips_of_their_lengths() {
+    let file = read("results.npy");
+    let clips: Vec<(&str, usize)> =
+        file.clips.iter().map(|own| (own.clip.name(), own.clip.frames())).collect();
+    assert_eq!(clips, [("results 1", 8), ("results 2", 5)]);
+    assert_places(&file.clips[0].clip, "joints22", 22);
+    assert_eq!(file.clips[1].clip.fps(), 20.0);
 }
 
 #[test]
@@ -161,7 +173,9 @@ fn files_that_are_cut_off_or_changed_are_read_or_refused() {
         for at in 0..bytes.len().min(900) {
             let mut changed = bytes.clone();
             changed[at] ^= 0x55;
-            let _ = import(name, &changed, &options).map_err(|error| error.to_string());
+            if let Ok(file) = import(name, &changed, &options) {
+                assert!(file.clips.iter().all(|own| own.clip.frames() <= bytes.len()));
+            }
         }
     }
 }

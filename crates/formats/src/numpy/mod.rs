@@ -1,8 +1,8 @@
 //! `NumPy`: arrays in `.npy` and `.npz` files, as research on human motion has them.
 //!
 //! A `.npy` file is a header, which is a Python dictionary with type, order and shape, and the
-//! elements (`NumPy`, "The NPY format", versions 1.0 to 3.0). A `.npz` file is a zip archive of them.
-//! Neither has a skeleton or a unit: which motion the arrays are is known by their names and
+//! elements (`NumPy`, "The NPY format", versions 1.0 to 3.0). A `.npz` file is a zip archive of
+//! them. Neither has a skeleton or a unit: which motion the arrays are is known by their names and
 //! shapes.
 //!
 //! | file | arrays | body |

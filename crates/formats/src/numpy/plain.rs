@@ -105,7 +105,7 @@ fn take(
     tally: &mut Tally,
 ) -> Result<(Take, Option<usize>), Fault> {
     match *view.shape() {
-        [_, HUMANML] => return Ok((features::read_humanml(view, tally)?.into_take()?, None)),
+        [_, HUMANML] => return Ok((features::read_humanml(view, tally)?.into_take(tally)?, None)),
         [_, LATER] => return Ok((features::read_later(view, tally)?, None)),
         [frames, ROW_OF_SMPL] => {
             let poses = turns::read(&view.part(1, 0..72), Form::AxisAngle, tally)?;
@@ -138,7 +138,7 @@ fn take(
         _ => {}
     }
     if let Some(points) = points::read(view, Some(HUMANML_FPS), tally)? {
-        return Ok((points.into_take()?, None));
+        return Ok((points.into_take(tally)?, None));
     }
     let (joints, form) = match *view.shape() {
         [_, joints, 3] => (joints, Form::AxisAngle),

@@ -1,17 +1,25 @@
-//! Places of joints without rotations.
+//! Places of joints without rotations: a skeleton is laid through them
+//! ([`skeleton_from_points`]).
 
 use super::array::View;
 use super::body::{self, BODY_JOINTS};
-use super::take::Take;
+use super::take::{DEFAULT_FPS, Take};
 use crate::error::Fault;
-use crate::warning::Tally;
-use glam::Vec3;
+use crate::raw::Y_UP_FROM_Z_UP;
+use crate::warning::{Tally, WarningKind};
+use glam::{DVec3, Quat, Vec3};
 use segue_motion::clip::UpAxis;
-use segue_text::msg;
+use segue_motion::points::{PointSet, joint_points, skeleton_from_points};
+use segue_text::ToMessage;
 
 /// The greatest spread of a bone's length, as a share of its mean, up to which points are joints of
 /// one body. Joints of generated motion are not quite rigid.
 const MAX_SPREAD: f64 = 0.25;
+/// The mean distance of joints from their places up to which nothing is said, millimetres.
+const MAX_ERROR_MM: f64 = 2.0;
+/// The distance from ankles to head that is taken for metres, and that of a person.
+const LIKELY_METRES: std::ops::Range<f64> = 0.5..2.5;
+const USUAL_METRES: f64 = 1.5;
 /// The least mean length of a bone, metres or any larger unit.
 const MIN_BONE: f64 = 0.005;
 
@@ -46,15 +54,59 @@ impl JointPoints {
     /// Returns the motion of a skeleton through the points.
     ///
     /// # Errors
-    /// [`Fault`]: rotations are not found from points here.
-    pub(super) fn into_take(self) -> Result<Take, Fault> {
-        let found = msg!("places of {joints} joints without rotations", joints = self.names.len());
-        Err(Fault::new(
-            0,
-            found,
-            "a motion with rotations (AMASS, SMPL, Kimodo or the 272 values of HumanML3D)",
-        )
-        .with_hint("fit a body to the places first, or save the motion as BVH"))
+    /// [`Fault`] when no skeleton goes through them, as without frames.
+    pub(super) fn into_take(self, tally: &mut Tally) -> Result<Take, Fault> {
+        let upward = self.upward();
+        let up = up_axis(upward, self.up);
+        let y_up_from_file = if up == UpAxis::Z { Y_UP_FROM_Z_UP } else { Quat::IDENTITY };
+        let positions: Vec<Vec3> =
+            self.positions.iter().map(|place| y_up_from_file * *place).collect();
+        let points = joint_points(&self.names, &self.parents);
+        let fps = self.fps.unwrap_or(DEFAULT_FPS);
+        let set = PointSet { points: &points, positions: &positions, fps, up: UpAxis::Y };
+        let fit = skeleton_from_points(&set)
+            .map_err(|error| Fault::new(0, error.to_message(), "places of joints"))?;
+        // In files of other units the body is as tall as in those of metres.
+        let tall = upward.length();
+        let metres_per_unit =
+            if LIKELY_METRES.contains(&tall) { 1.0 } else { USUAL_METRES / tall.max(1e-9) };
+        let error_mm = 1000.0 * metres_per_unit * f64::from(fit.error.mean);
+        if error_mm > MAX_ERROR_MM {
+            tally.add(WarningKind::ChangingBones { error_mm }, None);
+        }
+        let (mut rotations, mut root) = (fit.rotations, fit.root_translations);
+        let file_from_y_up = y_up_from_file.conjugate();
+        let roots = rotations.iter_mut().step_by(fit.joints.len().max(1));
+        roots.for_each(|turn| *turn = file_from_y_up * *turn);
+        for place in &mut root {
+            *place = file_from_y_up * *place;
+        }
+        let mut take = Take::new(fit.joints, rotations, root);
+        take.default_fps = fps;
+        take.up = Some(up);
+        Ok(take)
+    }
+
+    /// Returns the way from the ankles to the head, on average; zero without them.
+    fn upward(&self) -> DVec3 {
+        let joint = |name: &str| self.names.iter().position(|own| own == name);
+        let (Some(head), Some(left), Some(right)) =
+            (joint("head"), joint("left_ankle"), joint("right_ankle"))
+        else {
+            return DVec3::ZERO;
+        };
+        let upward = |frame: &[Vec3]| (frame[head] - (frame[left] + frame[right]) / 2.0).as_dvec3();
+        let frames = self.positions.chunks_exact(self.names.len().max(1));
+        let count = frames.len().max(1) as f64;
+        frames.map(upward).sum::<DVec3>() / count
+    }
+}
+
+/// Returns the axis along which a body is upright, if that is clear.
+fn up_axis(upward: DVec3, default: UpAxis) -> UpAxis {
+    match default {
+        UpAxis::Y if upward.z.abs() > 2.0 * upward.y.abs() => UpAxis::Z,
+        up => up,
     }
 }
 
@@ -108,7 +160,6 @@ mod tests {
     use crate::numpy::array::Array;
     use crate::numpy::features::{HUMANML, read_humanml};
     use crate::numpy::header::Dtype;
-    use glam::Quat;
     use std::borrow::Cow;
 
     fn array(shape: &[usize], values: impl Iterator<Item = f32>) -> Array<'static> {

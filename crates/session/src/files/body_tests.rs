@@ -1,4 +1,4 @@
-//! Tests of motions without bones and body models in files of their own (NumPy).
+//! Tests of motions without bones and body models in files of their own (`NumPy`).
 
 use super::fixtures::stored;
 use crate::fixtures::*;

@@ -1,5 +1,5 @@
 //! Motions without their skeleton, and skeletons without a motion (ASF and AMC, body models and
-//! NumPy).
+//! `NumPy`).
 
 use super::intake::FileIntake;
 use super::messages::notify_unread;

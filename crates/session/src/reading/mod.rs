@@ -265,7 +265,7 @@ fn read_several(
 struct Skeletons<'a> {
     /// Those of AMC files.
     acclaim: Vec<(&'a Companion, AcclaimSkeleton)>,
-    /// Those of NumPy files.
+    /// Those of `NumPy` files.
     models: Vec<(&'a Companion, SmplModel)>,
 }
 

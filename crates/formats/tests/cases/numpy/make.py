@@ -236,6 +236,20 @@ def pickles():
     expect("dictionary", at)
 
 
+def points():
+    """Places of joints alone, and the dictionary that MDM saves with them."""
+    samples = []
+    for name in ("joints22", "joints22_z_up"):
+        turns = body_turns(22)
+        turns[:, 0] *= 0.3
+        at, _ = places(PARENTS, OFFSETS, matrices(turns), smooth(3, size=0.05) + [0, 0.93, 0])
+        np.save(HERE / f"{name}.npy", (at @ Y_UP_FROM_Z_UP if name.endswith("z_up") else at).astype("f4"))
+        expect(name, at)
+        samples.append(at.transpose(1, 2, 0).astype("f4"))
+    results = {"motion": np.array(samples), "text": ["one", "two"], "lengths": np.array([FRAMES, 5]), "num_samples": 2, "num_repetitions": 1}
+    np.save(HERE / "results.npy", np.array(results, dtype=object), allow_pickle=True)
+
+
 amass()
 stage_two()
 smpl()
@@ -243,3 +257,4 @@ kimodo()
 features()
 plain()
 pickles()
+points()
