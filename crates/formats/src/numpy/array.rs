@@ -10,6 +10,9 @@ use std::borrow::Cow;
 /// The greatest share of values that are not numbers; with more, a file is refused.
 const MAX_SHARE_NOT_FINITE: f64 = 0.01;
 
+/// The least size of values that are taken for faults: no unit makes a body of them.
+const MAX_VALUE: f32 = 1e18;
+
 /// An array of a file. Its elements stay as the file has them and are converted when they are read.
 #[derive(Clone, Debug)]
 pub(super) struct Array<'a> {
@@ -125,7 +128,11 @@ impl<'a> Array<'a> {
         let view = self.view();
         let values: Vec<f32> = view.places().map(|place| view.value(place) as f32).collect();
         let vectors = values.chunks_exact(3).map(Vec3::from_slice);
-        vectors.map(|vector| Some(vector).filter(|vector| vector.is_finite())).collect()
+        vectors
+            .map(|vector| {
+                Some(vector).filter(|vector| vector.to_array().into_iter().all(is_usable))
+            })
+            .collect()
     }
 
     /// Returns the number of an array with a single element.
@@ -133,6 +140,11 @@ impl<'a> Array<'a> {
         let view = self.view();
         (self.is_number() && view.len() == 1).then(|| view.value(0))
     }
+}
+
+/// Returns whether a value can be calculated with: the square of its length is finite.
+fn is_usable(value: f32) -> bool {
+    value.abs() < MAX_VALUE
 }
 
 /// Returns the number of elements of a shape. Sizes beside one of 0 may be of any size.
@@ -212,7 +224,7 @@ impl View<'_> {
     /// numbers repeat the value of the index before on the first axis.
     ///
     /// # Errors
-    /// [`Fault`] when the elements are no numbers, when more than 1 % of them are not finite, and
+    /// [`Fault`] when the elements are no numbers, when more than 1 % of them are not usable, and
     /// when there is no memory.
     pub(super) fn numbers(&self, tally: &mut Tally) -> Result<Vec<f32>, Fault> {
         if !self.dtype.is_number() {
@@ -227,7 +239,7 @@ impl View<'_> {
         let mut bad = 0_usize;
         for place in self.places() {
             let value = self.value(place) as f32;
-            if value.is_finite() {
+            if is_usable(value) {
                 numbers.push(value);
                 continue;
             }
@@ -378,7 +390,8 @@ mod tests {
     #[test]
     fn numbers_that_are_missing_repeat_the_frame_before() {
         let with = |bad: usize| {
-            let value = |i: usize| if (2..2 + bad).contains(&i) { f32::NAN } else { i as f32 };
+            let fault = |i: usize| if i.is_multiple_of(2) { f32::NAN } else { 1e30 };
+            let value = |i: usize| if (2..2 + bad).contains(&i) { fault(i) } else { i as f32 };
             let data = (0..400).flat_map(|i| value(i).to_le_bytes()).collect();
             array("<f4", &[200, 2], false, data)
         };

@@ -100,6 +100,12 @@ impl Take {
         options: &ImportOptions,
         tally: &mut Tally,
     ) -> Result<ImportedClip, Fault> {
+        let is_finite = self.raw.joints.iter().all(|joint| joint.offset.is_finite())
+            && self.raw.root_translations.iter().all(|place| place.is_finite());
+        if !is_finite {
+            let found = "numbers that are too large for a body";
+            return Err(Fault::new(0, found, "a motion file"));
+        }
         let given = options.fps.filter(|fps| fps.is_finite() && *fps > 0.0);
         let fps = given.or(self.fps).unwrap_or(self.default_fps);
         if given.is_none() && self.fps.is_none() {
