@@ -24,8 +24,8 @@ pub(super) struct Image {
 }
 
 impl Image {
-    /// Decodes an image, where `has_room` says that there is memory for so many bytes. Returns `None` for
-    /// other formats, and for one that is damaged or too large.
+    /// Decodes an image; `has_room` says whether there is memory for so many bytes. Returns `None`
+    /// for other formats, and for one that is damaged or too large.
     pub(super) fn decode(bytes: &[u8], has_room: impl FnOnce(usize) -> bool) -> Option<Self> {
         if bytes.starts_with(b"\x89PNG") {
             decode_png(bytes, has_room)

@@ -1,5 +1,5 @@
 // Writes the VRM files and the VRM animation of tests/cases/vrm, and the positions of their bones
-// in every frame by three.js and three-vrm: `node vrm.mjs ../cases/vrm`, with three 0.180.0,
+// in every frame by three.js and three-vrm: `node vrm.mjs ../cases/vrm`, with three 0.187.0,
 // @pixiv/three-vrm 3.5.5 and @pixiv/three-vrm-animation 3.5.5 installed beside this file.
 
 import { writeFileSync } from "node:fs";

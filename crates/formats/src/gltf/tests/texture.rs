@@ -2,12 +2,13 @@
 
 use super::skin::{mesh_of, square};
 use super::*;
+use ::png::{BitDepth, ColorType, Encoder};
 
 /// Returns a PNG of pixels with 8 bits for each channel.
 fn png(width: u32, pixels: &[[u8; 3]]) -> Vec<u8> {
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, width, pixels.len() as u32 / width);
-    encoder.set_color(png::ColorType::Rgb);
+    let mut encoder = Encoder::new(&mut bytes, width, pixels.len() as u32 / width);
+    encoder.set_color(ColorType::Rgb);
     let mut writer = encoder.write_header().unwrap();
     writer.write_image_data(pixels.as_flattened()).unwrap();
     drop(writer);
@@ -134,7 +135,7 @@ fn colours_of_texture_vertices_and_factor_are_multiplied() {
 fn images_of_every_layout_are_decoded() {
     let write = |color, depth, palette: bool, data: &[u8]| {
         let mut bytes = Vec::new();
-        let mut encoder = png::Encoder::new(&mut bytes, 1, 1);
+        let mut encoder = Encoder::new(&mut bytes, 1, 1);
         encoder.set_color(color);
         encoder.set_depth(depth);
         if palette {
@@ -145,7 +146,6 @@ fn images_of_every_layout_are_decoded() {
         drop(writer);
         colors(&textured(&bytes, CENTRES))[0]
     };
-    use png::{BitDepth, ColorType};
     assert_eq!(write(ColorType::Grayscale, BitDepth::Eight, false, &[188]), GRAY);
     assert_eq!(write(ColorType::GrayscaleAlpha, BitDepth::Eight, false, &[188, 9]), GRAY);
     assert_eq!(write(ColorType::Rgba, BitDepth::Eight, false, &[0, 255, 0, 9]), GREEN);
