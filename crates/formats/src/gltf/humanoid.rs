@@ -6,7 +6,7 @@
 use glam::{DMat3, DQuat, DVec3};
 use segue_motion::skeleton::Role;
 use serde::Deserialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The bone map of a file, and what follows from its kind.
 pub(super) struct Humanoid {
@@ -14,13 +14,13 @@ pub(super) struct Humanoid {
     /// The nodes of all bones; the bones that have no role are among them: chest, neck, shoulders,
     /// eyes, jaw and fingers.
     pub(super) nodes: Vec<usize>,
-    /// The nodes of the bones that have a role.
+    /// The nodes of the bones that have a role, the first for each role.
     pub(super) roles: Vec<(Role, usize)>,
     /// Nodes whose animation is that of the face: expressions, and the direction of the eyes.
-    face: Vec<usize>,
+    face: BTreeSet<usize>,
     /// Nodes, and meshes of all nodes, that are drawn from the character's own eyes only.
-    first_person_nodes: Vec<usize>,
-    first_person_meshes: Vec<usize>,
+    first_person_nodes: BTreeSet<usize>,
+    first_person_meshes: BTreeSet<usize>,
 }
 
 /// The extension that has the bone map.
@@ -55,18 +55,21 @@ impl Humanoid {
     }
 
     fn new(kind: Kind, bones: impl IntoIterator<Item = (String, usize)>) -> Self {
-        let (mut nodes, mut roles) = (Vec::new(), Vec::new());
+        let (mut nodes, mut roles): (Vec<usize>, Vec<(Role, usize)>) = (Vec::new(), Vec::new());
         for (name, node) in bones {
             nodes.push(node);
-            roles.extend(role(&name).map(|role| (role, node)));
+            let is_new = |role: &Role| roles.iter().all(|(known, _)| known != role);
+            if let Some(role) = role(&name).filter(is_new) {
+                roles.push((role, node));
+            }
         }
         Self {
             kind,
             nodes,
             roles,
-            face: Vec::new(),
-            first_person_nodes: Vec::new(),
-            first_person_meshes: Vec::new(),
+            face: BTreeSet::new(),
+            first_person_nodes: BTreeSet::new(),
+            first_person_meshes: BTreeSet::new(),
         }
     }
 

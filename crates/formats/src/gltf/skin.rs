@@ -4,7 +4,7 @@
 use super::characters::Character;
 use super::document::Document;
 use super::morph;
-use super::node::Nodes;
+use super::node::{Node, Nodes};
 use super::texture::{Images, TextureUse, colors};
 use crate::ImportError;
 use crate::warning::{Tally, WarningKind};
@@ -39,6 +39,12 @@ pub(super) fn mesh(
     for (joint, &node) in character.nodes.iter().enumerate() {
         joint_of[node] = u16::try_from(joint).ok();
     }
+    // The joint that each node is, or hangs from; parents come first.
+    let mut joint_above = joint_of.clone();
+    for &node in &nodes.order {
+        let parent = nodes.all[node].parent;
+        joint_above[node] = joint_of[node].or_else(|| joint_above[parent?]);
+    }
     let mut mesh = SkinnedMesh::default();
     let mut is_colored = false;
     let mut images = Images::default();
@@ -50,10 +56,11 @@ pub(super) fn mesh(
         if humanoid.is_some_and(|humanoid| humanoid.is_first_person(index, shape.value())) {
             continue;
         }
-        let (Some(shape), Some(skin)) = (
-            document.root.get(shape),
-            Binding::of_node(document, nodes, &joint_of, index, node.skin),
-        ) else {
+        let skin = match node.skin {
+            Some(skin) => Binding::of_skin(document, nodes, &joint_of, skin),
+            None => joint_above[index].map(|joint| Ok(Binding::rigid(joint, &nodes.all[index]))),
+        };
+        let (Some(shape), Some(skin)) = (document.root.get(shape), skin) else {
             continue;
         };
         let weights = morph::weights(node, shape);
@@ -123,25 +130,24 @@ pub(crate) struct Binding {
 }
 
 impl Binding {
-    /// Returns the binding of a node's mesh; `None` where it has nothing to do with the character.
-    fn of_node(
+    /// Returns the binding of a skin; `None` where it has nothing to do with the character.
+    fn of_skin(
         document: &Document<'_>,
         nodes: &Nodes,
         joint_of: &[Option<u16>],
-        node: usize,
-        skin: Option<Index<Skin>>,
+        skin: Index<Skin>,
     ) -> Option<Result<Self, ImportError>> {
+        let skin = document.root.get(skin)?;
         let joint = |node: usize| joint_of.get(node).copied().flatten();
-        if let Some(skin) = skin {
-            let skin = document.root.get(skin)?;
-            let joints: Vec<_> = skin.joints.iter().map(|own| joint(own.value())).collect();
-            let is_own = joints.iter().any(Option::is_some);
-            return is_own.then(|| Self::read(document, nodes, skin, joints));
-        }
-        let above = nodes.upwards(node).find_map(joint)?;
-        let world = nodes.all.get(node)?.world;
-        let rest = vec![DMat4::from_mat3_translation(world.linear, world.position)];
-        Some(Ok(Self { joints: vec![Some(above)], rest, is_rigid: true }))
+        let joints: Vec<_> = skin.joints.iter().map(|own| joint(own.value())).collect();
+        let is_own = joints.iter().any(Option::is_some);
+        is_own.then(|| Self::read(document, nodes, skin, joints))
+    }
+
+    /// Returns the binding of a node's mesh to one joint.
+    fn rigid(joint: u16, node: &Node) -> Self {
+        let rest = DMat4::from_mat3_translation(node.world.linear, node.world.position);
+        Self { joints: vec![Some(joint)], rest: vec![rest], is_rigid: true }
     }
 
     fn read(

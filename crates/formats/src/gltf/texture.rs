@@ -17,11 +17,18 @@ use std::rc::Rc;
 /// decoded again where they are needed.
 const MAX_KEPT_BYTES: usize = 96 << 20;
 
+/// The greatest size of all images that are decoded for a character, bytes, those that are decoded
+/// again included: it bounds the time.
+const MAX_DECODED_BYTES: usize = 1 << 30;
+
 /// The decoded images of a file. An image that cannot be decoded is `None`.
 #[derive(Default)]
 pub(super) struct Images {
     decoded: BTreeMap<usize, Option<Rc<Image>>>,
+    /// The bytes of these images.
     bytes: usize,
+    /// The bytes of all images that were decoded.
+    total: usize,
 }
 
 impl Images {
@@ -29,9 +36,8 @@ impl Images {
         if let Some(known) = self.decoded.get(&index) {
             return known.clone();
         }
-        let image = document
-            .image(index)
-            .and_then(|bytes| Image::decode(&bytes, |size| document.has_room(size)));
+        let is_allowed = |size: usize| self.total < MAX_DECODED_BYTES && document.has_room(size);
+        let image = document.image(index).and_then(|bytes| Image::decode(&bytes, is_allowed));
         let image = image.map(Rc::new);
         let size = image.as_ref().map_or(0, |image| image.bytes());
         if self.bytes.saturating_add(size) > MAX_KEPT_BYTES {
@@ -39,6 +45,7 @@ impl Images {
             self.bytes = 0;
         }
         self.bytes += size;
+        self.total = self.total.saturating_add(size);
         self.decoded.insert(index, image.clone());
         image
     }

@@ -92,6 +92,8 @@ fn one() -> Value {
 fn zero() -> Value {
     let bone = |(node, (name, ..)): (usize, &(&str, _, _))| json!({ "bone": name, "node": node });
     let mut bones: Vec<Value> = BONES.iter().enumerate().map(bone).collect();
+    // Of two nodes for one bone the first counts; -1 is none.
+    bones.push(json!({ "bone": "head", "node": 3 }));
     bones.push(json!({ "bone": "jaw", "node": -1, "useDefaultValues": true }));
     json!({ "humanBones": bones })
 }
