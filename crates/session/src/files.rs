@@ -32,6 +32,8 @@ mod fixtures;
 #[cfg(test)]
 mod group_tests;
 #[cfg(test)]
+mod humanoid_tests;
+#[cfg(test)]
 mod memory_tests;
 #[cfg(test)]
 mod sample_tests;
