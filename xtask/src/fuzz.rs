@@ -70,9 +70,13 @@ fn fuzz(target: &str, minutes: u32) -> Result<()> {
         "rustup",
         &["run", "nightly", "cargo", "fuzz", "run", target, &found, &seeds, "--"],
     );
-    // A link is short, and a file of a few rows is sufficient. Ten seconds for either are a
-    // finding.
-    let length = if target == "url" { 600 } else { 8192 };
+    // A link is short, and a file of a few rows is sufficient, but of FBX the head alone is long.
+    // Ten seconds for any of them are a finding.
+    let length = match target {
+        "url" => 600,
+        "fbx" => 16_384,
+        _ => 8192,
+    };
     fuzz.arg(format!("-max_total_time={}", minutes * 60)).arg(format!("-max_len={length}"));
     fuzz.args(["-timeout=10", "-rss_limit_mb=2048", "-print_final_stats=1"]);
     // The variables of this cargo and its pinned compiler must not reach the nightly one.

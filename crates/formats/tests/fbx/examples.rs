@@ -198,3 +198,14 @@ pub(crate) fn all() -> [(&'static str, File); 4] {
         ("pivots", pivots()),
     ]
 }
+
+/// Three joints with a skin and two frames, small enough to be changed byte by byte.
+pub(crate) fn tiny() -> File {
+    let mut file = namespaced();
+    file.nodes.truncate(3);
+    for track in file.takes.iter_mut().flat_map(|take| &mut take.layers).flatten() {
+        track.values.truncate(2);
+    }
+    file.takes[0].layers[0].retain(|track| track.node < 3);
+    file
+}

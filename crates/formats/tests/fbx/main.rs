@@ -6,6 +6,7 @@ mod examples;
 mod rig;
 
 use glam::Vec3;
+use proptest::prelude::*;
 use segue_formats::{ImportOptions, ImportedFile, fbx, import};
 use segue_motion::clip::UpAxis;
 use segue_motion::skeleton::{Role, Roles, Side};
@@ -62,6 +63,12 @@ fn files_of_every_family_have_joints_where_blender_has_them() {
             let path = std::path::Path::new(&folder).join(format!("{name}.fbx"));
             std::fs::write(path, document::binary(&file.document())).unwrap();
         }
+        // The seeds of fuzzing.
+        let tiny = examples::tiny().document();
+        let seeds = std::path::Path::new(&folder).join("seeds");
+        std::fs::create_dir_all(&seeds).unwrap();
+        std::fs::write(seeds.join("binary.fbx"), document::binary(&tiny)).unwrap();
+        std::fs::write(seeds.join("text.fbx"), document::text(7500, &tiny)).unwrap();
         return;
     }
     let golden = golden();
@@ -240,4 +247,48 @@ fn reading_stops_when_it_is_told_to() {
         calls < 2
     });
     assert!(stopped.unwrap().is_none());
+}
+
+/// Checks that a file which was read is a motion with a consistent mesh.
+fn is_whole(found: &ImportedFile) {
+    assert!(!found.clips.is_empty());
+    for found in &found.clips {
+        let clip = &found.clip;
+        let is_unit = |frame| clip.rotations(frame).iter().all(|q| q.is_normalized());
+        assert!((0..clip.frames()).all(is_unit));
+        assert!(clip.root_translations().iter().all(|place| place.is_finite()));
+        if let Some(mesh) = &found.mesh {
+            let vertices = mesh.positions.len();
+            assert!(mesh.positions.iter().chain(&mesh.normals).all(|v| v.is_finite()));
+            assert!(mesh.triangles.iter().flatten().all(|&vertex| (vertex as usize) < vertices));
+            assert_eq!(mesh.bind.len(), clip.skeleton().len());
+            let joints = mesh.bind.len();
+            assert!(mesh.joints.iter().flatten().all(|&joint| usize::from(joint) < joints));
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn bytes_that_are_changed_are_read_or_refused(
+        is_text in any::<bool>(),
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..4_u8), 1..12),
+    ) {
+        let document = examples::tiny().document();
+        let mut bytes =
+            if is_text { document::text(7500, &document) } else { document::binary(&document) };
+        for (place, byte, how) in changes {
+            let at = place.index(bytes.len());
+            match how {
+                0 => bytes[at] = byte,
+                1 => bytes[at] ^= 1 << (byte % 8),
+                2 => drop(bytes.remove(at)),
+                _ => bytes.insert(at, byte),
+            }
+        }
+        let options = ImportOptions { max_bytes: 16 << 20, ..ImportOptions::default() };
+        if let Ok(found) = fbx::read("changed.fbx", &bytes, &options) {
+            is_whole(&found);
+        }
+    }
 }
