@@ -24,7 +24,15 @@ pub(super) fn frames(take: &Take, file_fps: f64, given: Option<f64>) -> (Rate, f
     let of_file = stated.map(|fps| rate(keys.clone(), Some(fps))).filter(|rate| rate.holds_keys);
     let found = match given {
         Some(fps) => rate(keys.clone(), Some(fps)),
-        None => of_file.unwrap_or_else(|| rate(keys.clone(), None)),
+        None => of_file.unwrap_or_else(|| {
+            let of_keys = rate(keys.clone(), None);
+            // A few keys between the frames of the file say nothing about a rate.
+            let is_dense = keys.len() as f64 > 0.5 * of_keys.frames;
+            match stated {
+                Some(fps) if !is_dense => rate(keys.clone(), Some(fps)),
+                _ => of_keys,
+            }
+        }),
     };
     let frame = 1.0 / found.fps;
     let span = take.span_secs.clone().filter(|span| *span != DEFAULT_SPAN);
@@ -57,6 +65,7 @@ mod tests {
         let (rate, outside) = frames(&take([0.0, 0.5, 2.0], None), 24.0, None);
         assert_eq!((rate.fps, rate.frames, outside), (24.0, 49.0, 0.0));
         assert_eq!(frames(&take([0.0, 0.5, 2.0], None), 24.0, Some(60.0)).0.frames, 121.0);
+        assert_eq!(frames(&take([0.0, 0.3304, 0.9914], None), 25.0, None).0.fps, 25.0);
     }
 
     #[test]
