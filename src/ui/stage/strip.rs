@@ -308,11 +308,14 @@ fn number_ui(
 ) {
     let row = id.row();
     let measured = pane.outcome.as_deref().and_then(|outcome| outcome.metric(id));
-    let value = written(row, measured.and_then(|metric| metric.value));
+    let number = measured.and_then(|metric| metric.value);
+    let value = written(row, number);
+    // The dash of a number that there is not has no unit.
+    let unit = if number.is_some() { unit_of(row) } else { Word::default() };
     let rank = rank_of(session.panes(), row, index);
     let metric = Metric {
         value: &value,
-        unit: unit_of(row),
+        unit,
         name: Word::new(row.label),
         short: Word::new(row.short),
         rank,
@@ -321,7 +324,7 @@ fn number_ui(
     };
     let response = draw(&metric, rect, ui.make_persistent_id(("metric", index, id)), ui);
     let at_secs = measured.and_then(|metric| metric.at_secs);
-    let explained = Explained { row, value: &value, unit: unit_of(row), rank, at_secs, pane };
+    let explained = Explained { row, value: &value, unit, rank, at_secs, pane };
     explanation_ui(&response, &explained, session, out, ui);
 }
 
@@ -337,10 +340,12 @@ fn rank_of(panes: &[Pane], row: &MetricRow, index: usize) -> Rank {
     }
 }
 
-/// Returns the unit that is written behind a number: degrees have their sign in it.
+/// Returns the unit that is written behind a number: degrees have their sign in it, and the name of
+/// a number of frames says what is counted.
 fn unit_of(row: &MetricRow) -> Word {
     match row.unit {
         Unit::Degrees | Unit::Count => Word::default(),
+        Unit::Frames if row.label.starts_with("Frames") => Word::default(),
         unit => Word::new(unit.text()),
     }
 }

@@ -316,3 +316,9 @@ fn hint_stands_below_the_feet_and_leaves_for_good() {
     harness.run_steps(3);
     assert!(hint(&harness).is_none());
 }
+
+#[test]
+fn number_that_names_its_unit_has_no_second_one() {
+    let harness = harness(DESK, DARK, page("lab=edit&a=walk&play=off"));
+    harness.get_by_label("Frames 192");
+}
