@@ -145,9 +145,15 @@ fn head_ui(lab: &LabUi, session: &Session, state: &mut UiState, ui: &mut Ui) {
 }
 
 /// Draws the foot of the right panel, which does not scroll: the buttons that keep and save the
-/// result.
-pub(crate) fn lab_footer_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    footer_ui(session, of(session.params().lab()).kept, state, out, ui);
+/// result. `most` is its greatest height, points.
+pub(crate) fn lab_footer_ui(
+    session: &Session,
+    most: f32,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
+    footer_ui(session, of(session.params().lab()).kept, most, state, out, ui);
 }
 
 fn group_ui(title: Word, group: Group, session: &Session, out: &mut Out, ui: &mut Ui) {

@@ -102,7 +102,9 @@ fn footer_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui)
     let right = (space::L - BAR_MARGIN) as i8;
     let margin = Margin { right, top: space::S as i8, ..Margin::ZERO };
     let panel = Panel::bottom("keep and save").frame(Frame::new().inner_margin(margin));
-    let shown = panel.resizable(false).show(ui, |ui| labs::lab_footer_ui(session, state, out, ui));
+    let most = ui.available_height();
+    let shown =
+        panel.resizable(false).show(ui, |ui| labs::lab_footer_ui(session, most, state, out, ui));
     // The panel takes a new height in the next frame.
     let (id, height) = (shown.response.id.with("height"), shown.response.rect.height());
     if ui.data_mut(|data| std::mem::replace(data.get_temp_mut_or(id, height), height)) != height {

@@ -7,8 +7,8 @@ use crate::ui::language::{Word, say};
 use crate::ui::out::Out;
 use crate::ui::state::UiState;
 use crate::ui::text;
-use crate::ui::theme::{palette_of, space};
-use eframe::egui::{Id, Response, Ui};
+use crate::ui::theme::{palette_of, space, theme_of};
+use eframe::egui::{Id, Rect, Response, ScrollArea, Ui, UiBuilder, vec2};
 use segue_session::{Command, NoResult, Pane, Session};
 use segue_text::Message;
 
@@ -38,10 +38,11 @@ impl Kept {
 const PATIENCE_SECS: f64 = 0.4;
 
 /// Draws the buttons, and the reason why one of them cannot be pressed. `kept` returns what is kept
-/// and saved of a pane.
+/// and saved of a pane, `most` is the greatest height of the foot, points.
 pub(crate) fn footer_ui(
     session: &Session,
     kept: fn(&Session, usize) -> Kept,
+    most: f32,
     state: &mut UiState,
     out: &mut Out,
     ui: &mut Ui,
@@ -63,7 +64,9 @@ pub(crate) fn footer_ui(
         [kept.keep_refused, kept.save_refused].map(|own| missing.unwrap_or(own));
     let can_save = not_saved.is_empty();
     if state.save_open && can_save {
-        save_options_ui(&kept.saved, state, out, ui);
+        let others = (if panes.len() > 1 { 2.0 } else { 1.0 }) * theme_of(ui).row_height();
+        let room = most - others - 4.0 * space::S;
+        scrolled_ui(room, ui, |ui| save_options_ui(&kept.saved, state, out, ui));
         ui.add_space(space::S);
     }
     ui.horizontal_wrapped(|ui| {
@@ -88,6 +91,23 @@ pub(crate) fn footer_ui(
         if !reason.is_empty() && !reasons[..index].contains(&reason) {
             kit::note_ui(reason, palette_of(ui).muted, ui);
         }
+    }
+}
+
+/// Draws rows, which scroll where they are higher than `most`, points. A panel that sizes itself
+/// gives them the height that they had in the last frame, so that it is noted here.
+fn scrolled_ui(most: f32, ui: &mut Ui, rows: impl FnOnce(&mut Ui)) {
+    let id = Id::unique("height of the save options");
+    let needed = ui.data(|data| data.get_temp::<f32>(id)).unwrap_or(most);
+    let size = vec2(ui.available_width(), needed.min(most).max(0.0));
+    let place = Rect::from_min_size(ui.cursor().min, size);
+    let shown = ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
+        ScrollArea::vertical().id_salt("save options").auto_shrink([false, true]).show(ui, rows)
+    });
+    let height = shown.inner.content_size.y;
+    if height != needed {
+        ui.data_mut(|data| data.insert_temp(id, height));
+        ui.request_repaint();
     }
 }
 

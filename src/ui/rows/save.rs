@@ -54,7 +54,8 @@ pub(super) fn save_options_ui(which: &str, state: &mut UiState, out: &mut Out, u
 /// Draws the choice of the format, and the button that saves.
 fn format_row_ui(which: &str, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let theme = theme_of(ui);
-    let rect = kit::paint::full_width((30.0 * theme.scale()).round(), ui);
+    let height = (30.0 * theme.scale()).max(theme.row_height() + 2.0).round();
+    let rect = kit::paint::full_width(height, ui);
     let label = [kit::paint::Run::new(text::SAVE_AS, Type::Label, palette_of(ui).text)];
     let label = kit::paint::line_of(&label, rect.width() * 0.4, ui);
     let label = kit::paint::put(ui.painter(), rect.left_center(), Align2::LEFT_CENTER, label);

@@ -1,6 +1,7 @@
 //! The foot of the panel: keeping and saving the result, always in sight.
 
 use super::*;
+use eframe::egui::pos2;
 
 const TABLET: Vec2 = vec2(800.0, 768.0);
 
@@ -170,4 +171,24 @@ fn every_lab_has_a_line_about_it_and_more() {
     harness.get_by_label(text::VIEW_DETAILS.english());
     press(text::ALL_HELP.english(), &mut harness);
     assert!(harness.query_by_label(text::VIEW_DETAILS.english()).is_none());
+}
+
+#[test]
+fn save_options_of_a_low_panel_scroll_and_cover_nothing() {
+    for (size, theme) in [(PHONE, Theme { touch: true, ..DARK }), (vec2(1280.0, 720.0), HALL)] {
+        let mut harness = harness(size, theme, page("compare=blend_window:30,10&play=off"));
+        node_of(text::SAVE_MENU.english(), &harness).click();
+        harness.run();
+        picture(&format!("footer-low-{}", size.x), &mut harness);
+        let stage = harness.state().stage;
+        let whole = Rect::from_min_max(pos2(0.0, stage.bottom()), size.to_pos2());
+        let rows = [text::SAVED_PANE, text::KEEP, text::SAVE_MENU, text::SAVE];
+        let rows = rows.map(|label| harness.get_by_label(label.english()).rect());
+        for (index, row) in rows.into_iter().enumerate() {
+            assert!(size.x > 500.0 || whole.contains_rect(row), "{index}: {row:?} in {whole:?}");
+            assert!(row.bottom() <= size.y, "{index}: {row:?}");
+        }
+        assert!(rows[0].bottom() <= rows[3].top(), "{rows:?}");
+        assert!(rows[3].bottom() <= rows[1].top(), "{rows:?}");
+    }
 }
