@@ -98,8 +98,9 @@ fn head_ui(session: &Session, closes: bool, state: &mut UiState, out: &mut Out, 
     }
     let free = row.with_max_x(row.right() - buttons as f32 * side - space::XS);
     let has_notices = !session.notices().list().is_empty() || session.notices().added().is_some();
+    // The chip of the notices takes the row, unless the work is at risk.
     if let Some(stored) =
-        state.stored.filter(|stored| !has_notices || *stored != StorageState::Done)
+        state.stored.filter(|stored| !has_notices || *stored == StorageState::Incomplete)
     {
         kit::section_mark_ui(text::stored(stored), free, ui);
     }

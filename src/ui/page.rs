@@ -12,12 +12,12 @@ use super::presenter::presenter_ui;
 use super::stage::{Paint, stage_panel_ui};
 use super::state::{Layout, UiState};
 use super::text;
-use super::theme::{palette_of, space, theme_of};
+use super::theme::{Theme, palette_of, space, theme_of};
 use super::timeline::{CurveCache, more_height, timeline_panel_ui};
 use super::top_bar;
 use eframe::egui::accesskit::Role;
 use eframe::egui::scroll_area::{DragScroll, ScrollSource};
-use eframe::egui::{self, Frame, Margin, Panel, Rect, ScrollArea, Stroke, Ui, vec2};
+use eframe::egui::{self, Frame, Margin, Panel, Rect, ScrollArea, Stroke, Ui, pos2, vec2};
 use segue_session::{Key, Session};
 
 /// Draws the page. `paint` draws the 3D picture into the stage.
@@ -52,18 +52,21 @@ pub(crate) fn show(
         }
     }
     in_time::steer(session, state, &mut out, ui.ctx());
-    let under_title = notices_on_stage(state.stage, theme_of(ui).scale());
-    state.notice_place.get_or_insert(under_title);
+    let is_low = layout == Layout::Phone && !session.is_driven();
+    let on_stage = notices_on_stage(state.stage, is_low, theme_of(ui));
+    state.notice_place.get_or_insert(on_stage);
     overlays::overlays_ui(session, state, &mut out, ui);
     out
 }
 
 /// Returns the place of the notices where no panel has one: under the title of the first pane, left
-/// of the buttons.
-fn notices_on_stage(stage: Rect, scale: f32) -> NoticePlace {
-    let corner = stage.min + vec2(space::M, 40.0 * scale);
+/// of the buttons; on a small stage, whose figure reaches the title, in the lower left corner.
+fn notices_on_stage(stage: Rect, is_small: bool, theme: Theme) -> NoticePlace {
+    let (scale, height) = (theme.scale(), 24.0 * theme.scale());
+    let top =
+        if is_small { stage.bottom() - theme.hit() - height } else { stage.top() + 40.0 * scale };
     let width = (stage.width() - 2.0 * space::M - 96.0 * scale).min(420.0 * scale);
-    let row = Rect::from_min_size(corner, vec2(width, 24.0 * scale));
+    let row = Rect::from_min_size(pos2(stage.left() + space::M, top), vec2(width, height));
     NoticePlace { row, heading_end: row.left() - space::S }
 }
 
