@@ -60,8 +60,8 @@ const OUTSIDE: [&str; 12] = [
 ];
 
 /// The folders of all Rust sources.
-const ALL_SOURCES: [&str; 7] =
-    ["src", "crates", "tests", "examples", "tools", "fuzz/fuzz_targets", "xtask/src"];
+const ALL_SOURCES: [&str; 8] =
+    ["src", "crates", "tests", "examples", "tools", "fuzz/src", "fuzz/fuzz_targets", "xtask/src"];
 
 /// The greatest width of a comment, columns; rows of tables and links may be wider.
 const MAX_COMMENT_COLUMNS: usize = 100;
