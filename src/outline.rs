@@ -10,7 +10,6 @@ use eframe::egui::accesskit::{
     Action, ActionData, ActionRequest, HasPopup, Node, NodeId, Role, Toggled, TreeId, TreeUpdate,
 };
 use eframe::egui::{Context, Event, FullOutput, Key, Modifiers, Plugin, RawInput};
-use segue_motion::math::sort::sort_by_key;
 use serde::Serialize;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -394,7 +393,7 @@ impl Found<'_> {
     /// the timeline, and what lies over the page last.
     fn sort_parts(&self, numbers: &mut [u32]) {
         let of = self.by_number();
-        sort_by_key(numbers, |number| {
+        numbers.sort_by_key(|number| {
             let element = of[number];
             let rank = match element.role {
                 "banner" => 0,
@@ -412,7 +411,7 @@ impl Found<'_> {
     /// Puts the elements of a line in order, from left to right.
     fn sort_line(&self, numbers: &mut [u32]) {
         let of = self.by_number();
-        sort_by_key(numbers, |number| of[number].place[0]);
+        numbers.sort_by_key(|number| of[number].place[0]);
     }
 
     fn by_number(&self) -> HashMap<u32, &Element> {

@@ -7,7 +7,6 @@
 //! closed has no time to read what others have stored, so it writes an exit record of its own,
 //! which is merged when the work is read or stored next.
 
-use segue_motion::math::sort::sort_by;
 use segue_session::{Saved, SavedEntry};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -110,7 +109,7 @@ impl Records {
                 Ok(()) => {}
             }
         }
-        sort_by(&mut later, |(one, _), (other, _)| one.total_cmp(other));
+        later.sort_by(|(one, _), (other, _)| one.total_cmp(other));
         for (_, record) in later {
             records.add(record);
         }

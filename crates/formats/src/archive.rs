@@ -63,8 +63,8 @@ pub(crate) fn is_zip(bytes: &[u8]) -> bool {
     bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"PK\x05\x06")
 }
 
-/// Unpacks the motion files of a zip archive: those of [`MOTION_ENDINGS`](crate::MOTION_ENDINGS), and
-/// the `.bin` of a `.gltf`, each also compressed as `.gz`.
+/// Unpacks the motion files of a zip archive, those with [`MOTION_ENDINGS`], and the `.bin` of a
+/// `.gltf`, each also compressed as `.gz`.
 ///
 /// A file that is damaged, encrypted or compressed in an unusual way is left out with a warning, as
 /// long as there are others.

@@ -32,15 +32,7 @@ pub(crate) fn menu_ui<R>(
     align: RectAlign,
     content: impl FnOnce(&mut Ui) -> R,
 ) -> Option<InnerResponse<R>> {
-    Popup::menu(opener)
-        .align(align)
-        .gap(space::XS)
-        .close_behavior(PopupCloseBehavior::CloseOnClick)
-        .show(|ui| {
-            ui.spacing_mut().item_spacing.y = 1.0;
-            ui.set_min_width(opener.rect.width().max(150.0 * theme_of(ui).scale()));
-            content(ui)
-        })
+    popup_ui(opener, align, PopupCloseBehavior::CloseOnClick, content)
 }
 
 /// Draws a menu as [`menu_ui`] does, of switches: it stays open until the user clicks beside it.
@@ -49,15 +41,20 @@ pub(crate) fn switches_menu_ui<R>(
     align: RectAlign,
     content: impl FnOnce(&mut Ui) -> R,
 ) -> Option<InnerResponse<R>> {
-    Popup::menu(opener)
-        .align(align)
-        .gap(space::XS)
-        .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
-        .show(|ui| {
-            ui.spacing_mut().item_spacing.y = 1.0;
-            ui.set_min_width(opener.rect.width().max(150.0 * theme_of(ui).scale()));
-            content(ui)
-        })
+    popup_ui(opener, align, PopupCloseBehavior::CloseOnClickOutside, content)
+}
+
+fn popup_ui<R>(
+    opener: &Response,
+    align: RectAlign,
+    closes: PopupCloseBehavior,
+    content: impl FnOnce(&mut Ui) -> R,
+) -> Option<InnerResponse<R>> {
+    Popup::menu(opener).align(align).gap(space::XS).close_behavior(closes).show(|ui| {
+        ui.spacing_mut().item_spacing.y = 1.0;
+        ui.set_min_width(opener.rect.width().max(150.0 * theme_of(ui).scale()));
+        content(ui)
+    })
 }
 
 /// Draws a menu that opens at the pointer when `widget` is clicked with the second button, or

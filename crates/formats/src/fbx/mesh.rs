@@ -5,9 +5,9 @@ use crate::gltf::characters::Character;
 use crate::gltf::node::Nodes;
 use crate::gltf::skin::{Binding, Part, WHITE};
 use crate::warning::{Tally, WarningKind};
-use glam::{DMat3, DMat4, DVec3, Quat, Vec3};
+use glam::{DMat3, DMat4, DVec3, Vec3};
 use segue_fbx::Mesh;
-use segue_motion::skin::{RigidTransform, SkinnedMesh};
+use segue_motion::skin::SkinnedMesh;
 
 /// Returns the mesh of a character at rest, in the file's unit; `None` if it has none. Parts that
 /// cannot be read are left out with a warning.
@@ -80,14 +80,7 @@ pub(super) fn mesh(
     if whole.colors.iter().all(|color| *color == WHITE) {
         whole.colors = Vec::new();
     }
-    whole.bind = character
-        .nodes
-        .iter()
-        .map(|&node| RigidTransform {
-            rotation: Quat::IDENTITY,
-            translation: -nodes.all[node].world.position.as_vec3(),
-        })
-        .collect();
+    whole.bind = character.bind(nodes);
     Some(whole)
 }
 

@@ -1,8 +1,9 @@
 //! Selection of the nodes that are joints of a character.
 
 use super::node::{Nodes, World};
-use glam::DVec3;
+use glam::{DVec3, Quat};
 use segue_motion::skeleton::Joint;
+use segue_motion::skin::RigidTransform;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -17,6 +18,15 @@ pub(crate) struct Character {
     /// The number of nodes whose scale differs by axis: they shear their descendants when they
     /// rotate.
     pub(crate) uneven: usize,
+}
+
+impl Character {
+    /// Returns, for each joint, the transform from the world at rest to its axes.
+    pub(crate) fn bind(&self, nodes: &Nodes) -> Vec<RigidTransform> {
+        let place = |node: &usize| nodes.all[*node].world.position.as_vec3();
+        let bind = |node| RigidTransform { rotation: Quat::IDENTITY, translation: -place(node) };
+        self.nodes.iter().map(bind).collect()
+    }
 }
 
 /// Returns the characters of a file, in the order of its nodes. Each of `skins` is a set of joints

@@ -8,12 +8,12 @@ use super::node::{Node, Nodes};
 use super::texture::{Images, TextureUse, colors};
 use crate::ImportError;
 use crate::warning::{Tally, WarningKind};
-use glam::{DMat3, DMat4, DVec3, Quat, Vec3};
+use glam::{DMat3, DMat4, DVec3, Vec3};
 use gltf::json::accessor::Type;
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, Skin};
-use segue_motion::skin::{RigidTransform, SkinnedMesh};
+use segue_motion::skin::SkinnedMesh;
 use segue_text::{Message, msg};
 
 /// The greatest number of vertices of a character; beyond it the mesh is left out.
@@ -97,14 +97,7 @@ pub(super) fn mesh(
     if !is_colored {
         mesh.colors = Vec::new();
     }
-    mesh.bind = character
-        .nodes
-        .iter()
-        .map(|&node| RigidTransform {
-            rotation: Quat::IDENTITY,
-            translation: -nodes.all[node].world.position.as_vec3(),
-        })
-        .collect();
+    mesh.bind = character.bind(nodes);
     Some(mesh)
 }
 
