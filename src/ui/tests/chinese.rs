@@ -10,11 +10,11 @@ use std::fs;
 const HALL_SIZE: Vec2 = vec2(1280.0, 720.0);
 
 /// Names, units and keys that are the same in Chinese.
-const AS_IT_IS: [&str; 40] = [
-    "EN", "Enter", "Segue", "BVH", "ASF", "AMC", "GLB", "C3D", "TRC", "CSV", "CMU", "zip", "fps",
-    "cm", "ms", "Aa", "Shift", "Ctrl", "Home", "Esc", "Delete", "Tab", "atan", "atan2", "exp",
-    "json", "JSON", "DOT", "Markdown", "MB", "mocap", "cmu", "edu", "cs", "NSF", "EIA", "XYZ",
-    "ZXY", "YXZ", "English",
+const AS_IT_IS: [&str; 42] = [
+    "EN", "Enter", "Segue", "BVH", "ASF", "AMC", "FBX", "NPZ", "GLB", "C3D", "TRC", "CSV", "CMU",
+    "zip", "fps", "cm", "ms", "Aa", "Shift", "Ctrl", "Home", "Esc", "Delete", "Tab", "atan",
+    "atan2", "exp", "json", "JSON", "DOT", "Markdown", "MB", "mocap", "cmu", "edu", "cs", "NSF",
+    "EIA", "XYZ", "ZXY", "YXZ", "English",
 ];
 
 fn pack() -> LanguagePack {
@@ -135,7 +135,7 @@ fn name_of_a_users_clip_that_is_also_a_word_is_not_translated() {
         let rows =
             harness.get_all_by_role(Role::Button).filter_map(|row| row.accesskit_node().label());
         assert_eq!(rows.filter(|label| label.starts_with(&row)).count(), 1, "the library");
-        harness.get_by_role_and_label(Role::Button, &format!("把 {name} 設為 A"));
+        harness.get_by_role_and_label(Role::Button, &format!("{name} 作為 A"));
         let choice = harness.get_by_role_and_label(Role::ComboBox, Slot::A.label());
         assert_eq!(choice.value().as_deref(), Some(name), "the menu of clips");
         let headings = harness
