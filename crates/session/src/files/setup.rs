@@ -51,6 +51,7 @@ pub(super) fn companions(library: &Library) -> Vec<Companion> {
                 name: file.name.clone(),
                 sha256: file.sha256.clone(),
                 bytes: Arc::clone(bytes),
+                is_model: false,
             },
             _ => continue,
         };

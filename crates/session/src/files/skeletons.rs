@@ -38,7 +38,7 @@ impl FileIntake {
             // A motion on a generic body has its own now.
             let has_body = file.kind == FileKind::Numpy
                 && file.companion.is_none()
-                && skeletons.iter().any(Companion::is_model);
+                && skeletons.iter().any(|skeleton| skeleton.is_model);
             if !(awaits || has_other || has_body) {
                 continue;
             }

@@ -73,6 +73,9 @@ pub struct Companion {
     pub sha256: String,
     /// Its bytes; for a body model those that its joints need.
     pub bytes: Arc<[u8]>,
+    /// Whether it is a body model, not the skeleton of an ASF file.
+    #[serde(default)]
+    pub is_model: bool,
 }
 
 /// The result of reading a file: one part for a motion file, several for an archive.
@@ -272,7 +275,7 @@ struct Skeletons<'a> {
 impl<'a> Skeletons<'a> {
     fn of(companions: &'a [Companion], options: &ImportOptions) -> Self {
         let (models, others): (Vec<_>, Vec<_>) =
-            companions.iter().partition(|companion| companion.is_model());
+            companions.iter().partition(|companion| companion.is_model);
         let acclaim = |own: &'a Companion| {
             Some((own, acclaim::read_skeleton(&own.name, &own.bytes, options).ok()?))
         };
@@ -412,7 +415,8 @@ impl Companion {
     /// Returns the report on a file that was just read.
     #[must_use]
     pub fn new(name: &str, bytes: &[u8]) -> Self {
-        Self { name: name.to_owned(), sha256: sha256_hex(bytes), bytes: Arc::from(bytes) }
+        let name = name.to_owned();
+        Self { name, sha256: sha256_hex(bytes), bytes: Arc::from(bytes), is_model: false }
     }
 
     /// Returns a body model without its mesh: a few KB of 100 MB.
@@ -429,13 +433,8 @@ impl Companion {
     }
 
     fn of_joints(name: &str, sha256: String, model: &SmplModel) -> Self {
-        Self { name: name.to_owned(), sha256, bytes: Arc::from(model.to_bytes()) }
-    }
-
-    /// Returns whether it is a body model.
-    #[must_use]
-    pub fn is_model(&self) -> bool {
-        kind_of(&self.name, &self.bytes) == FileKind::SmplModel
+        let (name, bytes) = (name.to_owned(), Arc::from(model.to_bytes()));
+        Self { name, sha256, bytes, is_model: true }
     }
 }
 
