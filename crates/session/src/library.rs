@@ -62,7 +62,7 @@ pub struct SourceFile {
     /// Its format.
     pub kind: FileKind,
     /// The skeleton file that it was read with.
-    pub companion: Option<Companion>,
+    pub companion: Option<Box<Companion>>,
     /// The index of the clip in the file.
     pub index: usize,
     /// The options that the user set: unit, up axis and frame rate.

@@ -86,7 +86,7 @@ pub struct SavedFile {
     pub kind: FileKind,
     /// The skeleton file that it is read with.
     #[serde(default)]
-    pub companion: Option<Companion>,
+    pub companion: Option<Box<Companion>>,
     /// The index of the clip in the file.
     pub index: usize,
     /// The options of reading it.

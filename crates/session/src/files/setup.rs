@@ -13,7 +13,7 @@ pub(super) fn setup_of(library: &Library, file: &SourceFile) -> ReadSetup {
         options: file.options,
         roles: roles_by_hand(library, file),
         companions: match &file.companion {
-            Some(companion) => vec![companion.clone()],
+            Some(companion) => vec![Companion::clone(companion)],
             None if file.kind.takes_skeleton() => companions(library),
             None => Vec::new(),
         },
@@ -46,7 +46,7 @@ pub(super) fn companions(library: &Library) -> Vec<Companion> {
             continue;
         };
         let found = match (&file.companion, &file.content) {
-            (Some(companion), _) => companion.clone(),
+            (Some(companion), _) => Companion::clone(companion),
             (None, Content::Here(bytes)) if file.kind == FileKind::Asf => Companion {
                 name: file.name.clone(),
                 sha256: file.sha256.clone(),

@@ -120,7 +120,7 @@ pub struct ReadClips {
     /// The oddities, one sentence each.
     pub warnings: Vec<Message>,
     /// The skeleton file that was used.
-    pub companion: Option<Companion>,
+    pub companion: Option<Box<Companion>>,
     /// Whether there are no clips because the skeleton file is missing.
     pub awaits_skeleton: bool,
 }
@@ -321,7 +321,7 @@ impl SingleFile<'_> {
                         None
                     }),
                     Some((own, skeleton)) => {
-                        companion = Some((*own).clone());
+                        companion = Some(Box::new(Companion::clone(own)));
                         if !acclaim::goes_by_name(name, &own.name) {
                             warnings.push(msg!("it is on the skeleton of {file}", file = own.name));
                         }
@@ -348,7 +348,7 @@ impl SingleFile<'_> {
                 let read = numpy::read_with_models(name, bytes, &models, &setup.options);
                 read.map(|(file, used)| {
                     if let Some((own, _)) = used.and_then(|index| skeletons.models.get(index)) {
-                        companion = Some((*own).clone());
+                        companion = Some(Box::new(Companion::clone(own)));
                         warnings.push(msg!("its bones are those of {file}", file = own.name));
                     }
                     Some(file)
@@ -357,7 +357,7 @@ impl SingleFile<'_> {
             FileKind::SmplModel => {
                 numpy::read_model(name, bytes, &setup.options).and_then(|model| {
                     let sha256 = self.sha256.map_or_else(|| sha256_hex(bytes), str::to_owned);
-                    companion = Some(Companion::of_joints(name, sha256, &model));
+                    companion = Some(Box::new(Companion::of_joints(name, sha256, &model)));
                     numpy::model_clip(&model, &setup.options).map(Some)
                 })
             }

@@ -66,7 +66,7 @@ struct ClipsHead {
     #[serde(default)]
     meshes: Vec<MeshHead>,
     warnings: Vec<Message>,
-    companion: Option<Companion>,
+    companion: Option<Box<Companion>>,
     awaits_skeleton: bool,
 }
 
