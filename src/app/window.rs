@@ -33,7 +33,7 @@ impl Segue {
     pub(super) fn attach(&mut self, cc: &eframe::CreationContext<'_>) {
         self.inbox.set_context(&cc.egui_ctx);
         self.window = Window { generation: self.window.generation + 1, ..Window::default() };
-        cc.egui_ctx.add_plugin(ui::TabPresses::default());
+        cc.egui_ctx.add_plugin(ui::Pacing::default());
         // Fonts take effect with the next frame. Installed here, that is the first one, and the
         // work is done while the storage opens.
         self.apply_theme(&cc.egui_ctx);

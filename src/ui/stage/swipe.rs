@@ -15,6 +15,8 @@ use segue_session::Session;
 const WAY: f32 = 36.0;
 /// The time within which a finger goes that far, seconds. A slower one turns the camera.
 const SECS: f64 = 0.15;
+/// The frames that it may take where they are longer.
+const FRAMES: f64 = 2.5;
 
 /// A finger on the stage of several panes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +50,8 @@ pub(super) fn takes_drag(count: usize, response: &Response, state: &mut UiState,
     }
     let moved = response.interact_pointer_pos().map_or(vec2(0.0, 0.0), |at| at - swipe.from);
     if swipe.turns_page.is_none() {
-        if now - swipe.began > SECS || moved.y.abs() > WAY {
+        let frame_secs = f64::from(ui.input(|input| input.stable_dt));
+        if now - swipe.began > SECS.max(FRAMES * frame_secs) || moved.y.abs() > WAY {
             swipe.turns_page = Some(false);
         } else if moved.x.abs() >= WAY && moved.x.abs() > 1.5 * moved.y.abs() {
             swipe.turns_page = Some(true);

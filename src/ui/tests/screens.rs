@@ -142,6 +142,23 @@ fn swipe_over_the_stage_shows_the_next_pane_and_its_name() {
 }
 
 #[test]
+fn swipe_over_the_stage_counts_while_frames_are_slow() {
+    for frame_secs in [1.0 / 60.0, 0.2, 1.5] {
+        let link = "compare=blend_window:30,15&play=off";
+        let mut harness = stepped_harness(PHONE, FINGERS, frame_secs, page(link));
+        harness.ctx.add_plugin(Pacing::default());
+        let from = harness.state().stage.center();
+        let all = [TouchPhase::Start, TouchPhase::Move, TouchPhase::Move, TouchPhase::End];
+        let ways = [0.0, -60.0, -120.0, -120.0];
+        let events =
+            all.iter().zip(ways).flat_map(|(&phase, way)| finger(phase, from + vec2(way, 0.0)));
+        step(events.collect(), &mut harness);
+        harness.run_steps(6);
+        harness.get_by_label("15 frames · 2 / 2");
+    }
+}
+
+#[test]
 fn swipe_that_begins_on_the_map_scrolls_and_a_held_finger_sets_a_pin() {
     let mut harness = phone("lab=register&play=off");
     harness.get_by_label(text::DISTANCES.english()).scroll_to_me();
@@ -358,7 +375,7 @@ fn list_of_shortcuts_is_whole_in_its_first_frames() {
 #[test]
 fn tab_moves_on_by_one_stop_for_each_press() {
     let mut harness = harness(DESK, DARK, page("lab=blend&play=off"));
-    harness.ctx.add_plugin(TabPresses::default());
+    harness.ctx.add_plugin(Pacing::default());
     let press = |pressed: bool| Event::Key {
         key: Keyboard::Tab,
         physical_key: None,
