@@ -167,7 +167,10 @@ mod tests {
                 }
             }
             let (way, clicks) = dragged(frames);
-            assert!((way - (to - from)).length() < 6.1 && clicks == 0, "{cuts:b}: {way:?} {clicks}");
+            assert!(
+                (way - (to - from)).length() < 6.1 && clicks == 0,
+                "{cuts:b}: {way:?} {clicks}"
+            );
         }
     }
 
