@@ -85,7 +85,7 @@ const NO_SENTENCE: [&str; 32] = [
     "Inter SemiBold",
     "Noto Sans TC",
     "segue outline",
-    "segue tab presses",
+    "segue pacing",
     "(pointer: coarse)",
     "BTreeMap<Role, RoleJoint>",
     "LargeFile({} bytes)",

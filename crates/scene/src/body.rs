@@ -4,6 +4,7 @@
 #[cfg(test)]
 mod tests;
 
+use crate::framing::reach_of;
 use crate::{Color, Limb};
 use segue_motion::skeleton::{Roles, Skeleton, WorldPose, canonical_stance};
 use segue_motion::skin::shapes::{PlacedShape, Shape, limb_shapes};
@@ -36,6 +37,7 @@ pub struct Body {
     skin: Option<Arc<SkinnedMesh>>,
     retargeting: Option<Retargeting>,
     size: Option<f32>,
+    reach: f32,
 }
 
 /// The mapping by which poses of another skeleton move a body.
@@ -76,7 +78,7 @@ impl Body {
         // The renderer computes the shade of the first few limbs only, so the largest come first.
         shapes.sort_by(|x, y| y.weight(&rest).total_cmp(&x.weight(&rest)));
         let shapes = shapes.into_iter().map(|shape| shape.in_axes_of(&stance)).collect();
-        Self { shapes, skin: None, retargeting: None, size: None }
+        Self { shapes, skin: None, retargeting: None, size: None, reach: 0.0 }
     }
 
     /// Makes the body of a character that poses of the skeleton `source` with the roles
@@ -112,6 +114,7 @@ impl Body {
                 joints_of,
                 colors_of,
             }),
+            reach: reach_of(&character.mesh),
             ..Self::new(skeleton, Some(&character.roles)).with_skin(Arc::clone(&character.mesh))
         }
     }
@@ -147,6 +150,12 @@ impl Body {
     #[must_use]
     pub fn size(&self) -> f32 {
         self.size.unwrap_or(1.0)
+    }
+
+    /// Returns how far the mesh of a character reaches, metres ([`reach_of`]); 0 for a body about
+    /// bones.
+    pub(crate) fn reach(&self) -> f32 {
+        self.reach
     }
 
     /// Returns the skeleton of the drawn figure and the roles of its joints: the body's own where

@@ -3,6 +3,7 @@
 
 use crate::{
     Director, Highlights, Layer, Pane, PathMarks, StageOptions, Viewport, pose_at, shown_size,
+    view_size,
 };
 use glam::{Vec3, Vec3Swizzles};
 use segue_formats::gltf::{GlbOptions, write_glb};
@@ -51,7 +52,8 @@ fn staged_by(director: &mut Director, session: &Session, highlights: Highlights)
     let options = StageOptions { panes: &panes, highlights, ..StageOptions::default() };
     let stage = director.stage(session, &options, 20.0);
     let size = shown_size(session, &session.main_outcome().unwrap().motion);
-    assert!((stage.grid_metres * size - 1.0).abs() < 1e-4);
+    let cell = (stage.grid_metres * size).log10();
+    assert!((cell - cell.round()).abs() < 1e-4, "{cell}");
     stage.panes[0].clone()
 }
 
@@ -125,14 +127,27 @@ fn assert_drawn_together(session: &mut Session, size: f32, what: &str) {
             (target.y / hips.y - 0.87).abs() < 0.25,
             "{what}: the camera looks at {target}, hips at {hips}"
         );
-        assert!(
-            (pane.camera.distance * size / session.params().number(Key::CameraDistance) as f32
-                - 1.0)
-                .abs()
-                < 1e-3
-        );
+        let near = session.params().number(Key::CameraDistance) as f32 * view_size(session, motion);
+        assert!((pane.camera.distance * size / near - 1.0).abs() < 1e-3, "{what}");
     }
     assert!(rings > 2, "{what}: {rings} rings");
+}
+
+#[test]
+fn figure_of_any_size_stands_whole_in_the_picture() {
+    for size in [0.05, 0.4, 0.8, 1.0, 1.25, 3.0, 12.0, 40.0] {
+        let session = session("lab=view&a=idle&t=0.5", size);
+        let pane = staged(&session);
+        let skin = pane.figures[0].skin.as_ref().unwrap();
+        let clip_from_world = pane.camera.projection(640.0 / 480.0) * pane.camera.view();
+        let heights = (0..skin.mesh.bind.len()).map(|joint| {
+            let at = pane.joints[skin.joints.start + joint] * skin.mesh.bind[joint].inverse();
+            clip_from_world.project_point3(at.translation).y
+        });
+        let (low, high) = heights
+            .fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), y| (low.min(y), high.max(y)));
+        assert!(low > -0.9 && high < 0.9 && high - low > 0.55, "{size}: {low} to {high}");
+    }
 }
 
 #[test]

@@ -4,7 +4,7 @@ mod cameras;
 
 use crate::body_cache::BodyCache;
 use crate::context::{DrawContext, PosedResult};
-use crate::framing::{figure_height, resting_place, resting_point};
+use crate::framing::{farther, figure_height, height_in_view, resting_place, resting_point};
 use crate::{
     Camera, CameraRig, Colors, Highlights, Look, Pane, Skinning, Stage, Viewport, annotations,
     extra_characters, labs, result, sources,
@@ -78,8 +78,13 @@ impl Director {
         };
         let first =
             options.panes.iter().find_map(|&(index, _)| session.panes().get(index)?.shown_at(now));
-        let size = first.map_or(1.0, |shown| context.bodies.body(&shown.outcome.motion).size());
+        let (size, height) = first.map_or((1.0, 0.0), |shown| {
+            let motion = &shown.outcome.motion;
+            let body = context.bodies.body(motion);
+            (body.size(), height_in_view(motion, body.reach()) * body.size())
+        });
         let shown_size = size * figure_height(context.params);
+        let farther = farther(height);
         for (pane, &(index, viewport)) in panes.iter_mut().zip(options.panes) {
             pane.clear();
             pane.viewport = viewport;
@@ -107,7 +112,7 @@ impl Director {
                 (None, None, resting_place(&first.motion, &first.world_from_clip))
             };
             if let Some(rig) = self.rigs.get_mut(index) {
-                let aim = cameras::Aim { followed, rest, shown_size };
+                let aim = cameras::Aim { followed, rest, scale: farther / shown_size };
                 cameras::aim(rig, &aim, &context, dt_secs, pane);
             }
             if let Some(shown) = shown.filter(|_| options.highlights.joint) {
@@ -118,7 +123,8 @@ impl Director {
         stage.panes = panes;
         stage.look = options.look;
         stage.pixels_per_point = options.pixels_per_point;
-        stage.grid_metres = shown_size.recip();
+        // Of a mouse the cells are 10 cm, so that there is a ground beneath it.
+        stage.grid_metres = 10.0_f32.powf(farther.log10().round()) / shown_size;
         Arc::clone(&self.stage)
     }
 

@@ -95,7 +95,7 @@ pub use camera::{Camera, Lens, Ray};
 pub use camera_rig::CameraRig;
 pub use color::{Color, Colors, rgb, with_alpha};
 pub use director::{Director, StageOptions};
-pub use framing::{camera_of, resting_point, shown_size};
+pub use framing::{camera_of, resting_point, shown_size, view_size};
 pub use highlights::{Highlights, PathMarks};
 pub use look::Look;
 pub use pane::Pane;

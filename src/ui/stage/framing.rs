@@ -4,7 +4,7 @@ use crate::ui::out::Out;
 use crate::ui::state::UiState;
 use glam::Vec3;
 use segue_motion::math::Planar;
-use segue_scene::{Bounds, camera_of, resting_point, shown_size};
+use segue_scene::{Bounds, camera_of, resting_point, shown_size, view_size};
 use segue_session::choices::Follow;
 use segue_session::{Command, Key, Session, Value};
 
@@ -35,7 +35,7 @@ pub(crate) fn framing(
         all.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
     let first = outcomes().next().filter(|_| low.is_finite())?;
     let motion = &first.outcome.motion;
-    let height = motion.roles().body_height(motion.clip().skeleton());
+    let height = motion.body_height();
     let mut bounds = Bounds::default();
     bounds.include(low - Vec3::new(0.4, 0.0, 0.4));
     bounds.include(high + Vec3::new(0.4, height, 0.4));
@@ -44,14 +44,14 @@ pub(crate) fn framing(
     if let Some((key, value)) = &pitch {
         params.set(*key, value.clone()).ok()?;
     }
-    let shown = shown_size(session, motion);
-    let mut camera = camera_of(&params, shown);
+    let scale = view_size(session, motion) / shown_size(session, motion);
+    let mut camera = camera_of(&params, scale);
     let pane_width = state.stage.width() / session.panes().len().max(1) as f32;
     camera.frame(&bounds, pane_width / state.stage.height().max(1.0));
-    let pan = (camera.target - resting_point(first.outcome, &first.place)) * shown;
+    let pan = (camera.target - resting_point(first.outcome, &first.place)) / scale;
     let mut values = vec![
         (Key::Follow, Follow::Off.into()),
-        (Key::CameraDistance, Value::Number(f64::from(camera.distance * shown).clamp(0.5, 60.0))),
+        (Key::CameraDistance, Value::Number(f64::from(camera.distance / scale).clamp(0.5, 60.0))),
     ];
     values.extend(pitch);
     for (key, value) in [(Key::PanX, pan.x), (Key::PanY, pan.y), (Key::PanZ, pan.z)] {

@@ -12,7 +12,7 @@ use segue_session::{Key, Slot, joint_of};
 /// Half-life with which a camera that follows no character approaches a new view, seconds.
 const VIEW_HALF_LIFE_SECS: f32 = 0.06;
 /// The distance within one frame from which a camera cuts to the followed character instead of
-/// moving there, metres: the motion has started again.
+/// moving there, metres in the parameters' size: the motion has started again.
 const CUT_METRES: f32 = 1.5;
 
 /// The target of a pane's camera.
@@ -21,8 +21,8 @@ pub(super) struct Aim {
     pub(super) followed: Option<Vec3>,
     /// The target where it follows none.
     pub(super) rest: Vec3,
-    /// The ratio of the figure's visible size to that of its motion.
-    pub(super) shown_size: f32,
+    /// Metres in the size of the motion per metre of the parameters.
+    pub(super) scale: f32,
 }
 
 /// Advances a pane's camera towards the view of the parameters: at the followed point, or at the
@@ -39,11 +39,9 @@ pub(super) fn aim(
         params.number(Key::PanX) as f32,
         params.number(Key::PanY) as f32,
         params.number(Key::PanZ) as f32,
-    ) / aim.shown_size;
-    let goal = Camera {
-        target: aim.followed.unwrap_or(aim.rest) + pan,
-        ..camera_of(params, aim.shown_size)
-    };
+    ) * aim.scale;
+    let goal =
+        Camera { target: aim.followed.unwrap_or(aim.rest) + pan, ..camera_of(params, aim.scale) };
     let first = *rig == CameraRig::default();
     if context.highlights.path.is_held && !first {
         // The ground must not move while the user drags on it.
@@ -51,7 +49,7 @@ pub(super) fn aim(
         pane.focus = rig.goal.target.with_y(0.0);
         return;
     }
-    let cut = goal.target.distance(rig.goal.target) > CUT_METRES;
+    let cut = goal.target.distance(rig.goal.target) > CUT_METRES * aim.scale;
     rig.goal = goal;
     if first || cut {
         rig.jump();
