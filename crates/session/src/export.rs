@@ -6,7 +6,8 @@ use super::params::{Key, Params};
 use segue_formats::bvh::{self, RotationOrder};
 use segue_formats::csv::{CsvInputs, CsvOptions, write_csv};
 use segue_formats::gltf::{GlbError, GlbOptions, write_character_glb, write_glb};
-use segue_motion::clip::{Clip, CurveKind, Motion, joint_curve};
+use segue_formats::numpy::write_npz;
+use segue_motion::clip::{Clip, CurveKind, Interpolation, Motion, joint_curve, resample};
 use segue_motion::skin::{Character, Drive};
 
 /// A file format in which motions are saved.
@@ -19,11 +20,13 @@ pub enum ExportFormat {
     Csv,
     /// A scene with skeleton, body and animation.
     Glb,
+    /// Arrays for NumPy.
+    Npz,
 }
 
 impl ExportFormat {
     /// All formats.
-    pub const ALL: [Self; 3] = [Self::Bvh, Self::Csv, Self::Glb];
+    pub const ALL: [Self; 4] = [Self::Bvh, Self::Glb, Self::Npz, Self::Csv];
 
     /// Returns the name in the API, which is also the ending of files.
     #[must_use]
@@ -32,6 +35,7 @@ impl ExportFormat {
             Self::Bvh => "bvh",
             Self::Csv => "csv",
             Self::Glb => "glb",
+            Self::Npz => "npz",
         }
     }
 
@@ -48,12 +52,13 @@ impl ExportFormat {
             Self::Bvh => "text/plain",
             Self::Csv => "text/csv",
             Self::Glb => "model/gltf-binary",
+            Self::Npz => "application/zip",
         }
     }
 }
 
 /// Options of an export. A format uses those that it supports: BVH all but the body, GLB frame rate
-/// and body, CSV none.
+/// and body, NPZ the frame rate, CSV none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ExportOptions {
     /// The file format.
@@ -127,6 +132,12 @@ pub fn export(
             let inputs =
                 CsvInputs { clip: motion.clip(), contacts: Some(motion.contacts()), columns };
             Ok(write_csv(&inputs, &CsvOptions::default()).into_bytes())
+        }
+        ExportFormat::Npz => {
+            let resampled = options
+                .fps
+                .and_then(|fps| resample(motion.clip(), fps, Interpolation::default()).ok());
+            Ok(write_npz(resampled.as_ref().unwrap_or(motion.clip())))
         }
         ExportFormat::Glb => {
             let how = GlbOptions { fps: options.fps, smooth: true };
@@ -269,11 +280,11 @@ mod tests {
         let clip = read_back(text.as_bytes(), "x.bvh");
         assert_eq!(clip.fps().round(), 30.0);
         assert_eq!(clip.provenance().metres_per_unit, 1.0);
-        let glb = ExportOptions { format: ExportFormat::Glb, ..options };
-        assert_eq!(
-            read_back(&export(motion, None, &[], &glb).unwrap(), "x.glb").fps().round(),
-            30.0
-        );
+        for format in [ExportFormat::Glb, ExportFormat::Npz] {
+            let bytes = export(motion, None, &[], &ExportOptions { format, ..options }).unwrap();
+            let clip = read_back(&bytes, &format!("x.{}", format.name()));
+            assert_eq!(clip.fps().round(), 30.0);
+        }
     }
 
     #[test]

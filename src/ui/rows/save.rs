@@ -5,9 +5,8 @@ use crate::ui::language::{Text, Word};
 use crate::ui::out::{Action, Out};
 use crate::ui::state::UiState;
 use crate::ui::text;
-use crate::ui::theme::{Type, palette_of, space, theme_of};
-use eframe::egui::{Align, Align2, Layout, UiBuilder, pos2, vec2};
-use eframe::egui::{Rect, Ui};
+use crate::ui::theme::{space, theme_of};
+use eframe::egui::{Align, Layout, Ui, UiBuilder};
 use segue_formats::bvh::RotationOrder;
 use segue_session::export::{ExportBody, ExportFormat, ExportOptions};
 
@@ -54,26 +53,16 @@ pub(super) fn save_options_ui(which: &str, state: &mut UiState, out: &mut Out, u
 /// Draws the choice of the format, and the button that saves.
 fn format_row_ui(which: &str, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let theme = theme_of(ui);
-    let height = (30.0 * theme.scale()).max(theme.row_height() + 2.0).round();
-    let rect = kit::paint::full_width(height, ui);
-    let label = [kit::paint::Run::new(text::SAVE_AS, Type::Label, palette_of(ui).text)];
-    let label = kit::paint::line_of(&label, rect.width() * 0.4, ui);
-    let label = kit::paint::put(ui.painter(), rect.left_center(), Align2::LEFT_CENTER, label);
     let button = theme.row_height();
+    let rect = kit::paint::full_width(button, ui);
     let formats = ExportFormat::ALL.map(|format| (format, text::format(format)));
-    let well = Rect::from_min_max(
-        pos2(label.right() + space::M, rect.top()),
-        pos2(rect.right() - button - space::S, rect.bottom()),
-    );
-    ui.scope_builder(UiBuilder::new().id_salt("format").max_rect(well), |ui| {
-        if let Some(format) =
-            kit::segmented_ui(text::FILE_FORMAT, state.export.format, &formats, ui)
-        {
+    let row = rect.with_max_x(rect.right() - button - space::S);
+    ui.scope_builder(UiBuilder::new().id_salt("format").max_rect(row), |ui| {
+        if let Some(format) = kit::choice_row_ui(text::SAVE_AS, state.export.format, &formats, ui) {
             state.export.format = format;
         }
     });
-    let place =
-        Rect::from_min_size(pos2(rect.right() - button, rect.top() + 1.0), vec2(button, button));
+    let place = rect.with_min_x(rect.right() - button);
     let builder = UiBuilder::new()
         .id_salt("save")
         .max_rect(place)
@@ -88,6 +77,7 @@ fn format_row_ui(which: &str, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
 fn options_ui(export: &mut ExportOptions, ui: &mut Ui) {
     match export.format {
         ExportFormat::Csv => return,
+        ExportFormat::Npz => {}
         ExportFormat::Glb => {
             if let Some(body) = kit::choice_row_ui(text::SAVE_BODY, export.body, &BODIES, ui) {
                 export.body = body;

@@ -233,6 +233,7 @@ fn motion_is_saved_with_the_chosen_options() {
     press("X Y Z", &mut harness);
     picture("save-desk-dark", &mut harness);
     press("Save the file", &mut harness);
+    press("Save as", &mut harness);
     press("GLB", &mut harness);
     press("Save the file", &mut harness);
     harness.get_by_label("Stop recording and save").click();
