@@ -25,10 +25,10 @@
 //! | [`acclaim`] (ASF, AMC) | yes, a motion with its skeleton | |
 //! | [`gltf`] (glTF, GLB) | yes, motion and skinned meshes | [`gltf::write_glb`] |
 //! | [`c3d`], [`trc`] | yes, a skeleton from labelled points, or points | |
-//! | [`robot_csv`] | yes, the hinges of a Unitree G1 | |
+//! | [`robot_csv`] | yes, the hinges of a Unitree G1 | [`robot_csv::write_robot_csv`] |
 //! | [`numpy`] (NPY, NPZ) | motions of AMASS, SMPL, Kimodo, `HumanML3D` and others | [`numpy::write_npz`] |
-//! | [`gltf`] (VRM, VRMA) | yes, with their bone map | |
-//! | [`fbx`] | yes, motion and skinned meshes | |
+//! | [`gltf`] (VRM, VRMA) | yes, with their bone map | [`gltf::write_vrma`] |
+//! | [`fbx`] | yes, motion and skinned meshes | [`fbx::write_fbx`] |
 //! | [`csv`] | | [`csv::write_csv`] |
 //! | [`archive`] (zip), gzip | file by file, [`unpack_gzip`] | |
 //!

@@ -5,9 +5,10 @@ use super::motion::{curve_kind, joint_of};
 use super::params::{Key, Params};
 use segue_formats::bvh::{self, RotationOrder};
 use segue_formats::csv::{CsvInputs, CsvOptions, write_csv};
+use segue_formats::fbx::{FbxOptions, FbxWriteError, write_fbx};
 use segue_formats::gltf::{GlbError, GlbOptions, write_character_glb, write_glb};
 use segue_formats::numpy::write_npz;
-use segue_motion::clip::{Clip, CurveKind, Interpolation, Motion, joint_curve, resample};
+use segue_motion::clip::{Clip, CurveKind, Interpolation, Motion, UpAxis, joint_curve, resample};
 use segue_motion::skin::{Character, Drive};
 
 /// A file format in which motions are saved.
@@ -16,6 +17,8 @@ pub enum ExportFormat {
     /// Skeleton and motion as text, which most programs read.
     #[default]
     Bvh,
+    /// A scene with the skeleton and its animation, for the programs of film and games.
+    Fbx,
     /// A table for spreadsheets and scripts.
     Csv,
     /// A scene with skeleton, body and animation.
@@ -26,13 +29,14 @@ pub enum ExportFormat {
 
 impl ExportFormat {
     /// All formats.
-    pub const ALL: [Self; 4] = [Self::Bvh, Self::Glb, Self::Npz, Self::Csv];
+    pub const ALL: [Self; 5] = [Self::Bvh, Self::Fbx, Self::Glb, Self::Npz, Self::Csv];
 
     /// Returns the name in the API, which is also the ending of files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Bvh => "bvh",
+            Self::Fbx => "fbx",
             Self::Csv => "csv",
             Self::Glb => "glb",
             Self::Npz => "npz",
@@ -50,6 +54,7 @@ impl ExportFormat {
     pub const fn mime(self) -> &'static str {
         match self {
             Self::Bvh => "text/plain",
+            Self::Fbx => "application/octet-stream",
             Self::Csv => "text/csv",
             Self::Glb => "model/gltf-binary",
             Self::Npz => "application/zip",
@@ -57,14 +62,17 @@ impl ExportFormat {
     }
 }
 
-/// Options of an export. A format uses those that it supports: BVH all but the body, GLB frame rate
-/// and body, NPZ the frame rate, CSV none.
+/// Options of an export. A format uses those that it supports: BVH all but the body, FBX unit, up
+/// axis and frame rate, GLB frame rate and body, NPZ the frame rate, CSV none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ExportOptions {
     /// The file format.
     pub format: ExportFormat,
-    /// Metres per unit of length; `None` for the unit of the clip's source file.
+    /// Metres per unit of length; `None` for the unit of the clip's source file, and centimetres in
+    /// FBX.
     pub metres_per_unit: Option<f64>,
+    /// The up axis; `None` for that of the clip's source file, and Y in FBX.
+    pub up: Option<UpAxis>,
     /// One order for the rotations of all joints; `None` for those of the source file.
     pub rotation_order: Option<RotationOrder>,
     /// Frames per second; `None` for the clip's own rate.
@@ -104,6 +112,17 @@ impl ExportBody {
     }
 }
 
+/// The reason why a motion cannot be saved in a format.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, segue_text::ToMessage)]
+pub enum ExportError {
+    /// A GLB file cannot hold it.
+    #[error(transparent)]
+    Glb(#[from] GlbError),
+    /// An FBX file cannot hold it.
+    #[error(transparent)]
+    Fbx(#[from] FbxWriteError),
+}
+
 /// A column of a table beside the joints: its name and a number per frame.
 pub type Column = (String, Vec<f32>);
 
@@ -111,22 +130,27 @@ pub type Column = (String, Vec<f32>);
 /// the stage in place of a plain body: see [`ExportBody`].
 ///
 /// # Errors
-/// [`GlbError`] when the motion is too large for the format.
+/// [`ExportError`] when the format cannot hold the motion.
 pub fn export(
     motion: &Motion,
     character: Option<&Character>,
     columns: &[Column],
     options: &ExportOptions,
-) -> Result<Vec<u8>, GlbError> {
+) -> Result<Vec<u8>, ExportError> {
     match options.format {
         ExportFormat::Bvh => {
             let how = bvh::WriteOptions {
                 metres_per_unit: options.metres_per_unit,
                 rotation_order: options.rotation_order,
                 fps: options.fps,
-                ..bvh::WriteOptions::default()
+                up: options.up,
             };
             Ok(bvh::write(motion.clip(), &how).into_bytes())
+        }
+        ExportFormat::Fbx => {
+            let ExportOptions { metres_per_unit, up, fps, .. } = *options;
+            let how = FbxOptions { metres_per_unit, up, fps };
+            Ok(write_fbx(&[motion.clip()], &how)?)
         }
         ExportFormat::Csv => {
             let inputs =
@@ -147,6 +171,7 @@ pub fn export(
                 Some((clip, character)) => write_character_glb(&clip, &character.mesh, &how),
                 None => write_glb(motion.clip(), &how),
             }
+            .map_err(ExportError::from)
         }
     }
 }
@@ -260,7 +285,7 @@ mod tests {
                 );
             }
         }
-        assert_eq!(ExportFormat::from_name("fbx"), None);
+        assert_eq!(ExportFormat::from_name("max"), None);
     }
 
     #[test]
@@ -280,7 +305,14 @@ mod tests {
         let clip = read_back(text.as_bytes(), "x.bvh");
         assert_eq!(clip.fps().round(), 30.0);
         assert_eq!(clip.provenance().metres_per_unit, 1.0);
-        for format in [ExportFormat::Glb, ExportFormat::Npz] {
+        for format in [ExportFormat::Bvh, ExportFormat::Fbx] {
+            let options = ExportOptions { format, up: Some(UpAxis::Z), ..options };
+            let bytes = export(motion, None, &[], &options).unwrap();
+            let clip = read_back(&bytes, &format!("x.{}", format.name()));
+            let source = clip.provenance();
+            assert_eq!((source.up, source.metres_per_unit), (UpAxis::Z, 1.0), "{format:?}");
+        }
+        for format in [ExportFormat::Fbx, ExportFormat::Glb, ExportFormat::Npz] {
             let bytes = export(motion, None, &[], &ExportOptions { format, ..options }).unwrap();
             let clip = read_back(&bytes, &format!("x.{}", format.name()));
             assert_eq!(clip.fps().round(), 30.0);

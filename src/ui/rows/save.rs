@@ -8,11 +8,25 @@ use crate::ui::text;
 use crate::ui::theme::{space, theme_of};
 use eframe::egui::{Align, Layout, Ui, UiBuilder};
 use segue_formats::bvh::RotationOrder;
+use segue_motion::clip::UpAxis;
 use segue_session::export::{ExportBody, ExportFormat, ExportOptions};
 
 /// Metres per unit of length of saved files, with the name of the unit.
 const UNITS: [(Option<f64>, Word); 3] =
     [(None, text::AS_FILE), (Some(1.0), Word::new("m")), (Some(0.01), Word::new("cm"))];
+
+/// Those of FBX, which begin with the usual one.
+const FBX_UNITS: [(Option<f64>, Word); 2] = [UNITS[2], UNITS[1]];
+
+/// The up axes of saved files.
+const AXES: [(Option<UpAxis>, Text<'_>); 3] = [
+    (None, Text::Word(text::AS_FILE)),
+    (Some(UpAxis::Y), Text::Data("Y")),
+    (Some(UpAxis::Z), Text::Data("Z")),
+];
+
+/// Those of FBX, which begin with the usual one.
+const FBX_AXES: [(Option<UpAxis>, Text<'_>); 2] = [AXES[1], AXES[2]];
 
 /// The body in a saved file.
 const BODIES: [(ExportBody, Word); 2] =
@@ -83,11 +97,24 @@ fn options_ui(export: &mut ExportOptions, ui: &mut Ui) {
                 export.body = body;
             }
         }
+        ExportFormat::Fbx => {
+            let unit = export.metres_per_unit.or(FBX_UNITS[0].0);
+            if let Some(unit) = kit::choice_row_ui(text::SAVE_UNIT, unit, &FBX_UNITS, ui) {
+                export.metres_per_unit = unit;
+            }
+            let up = export.up.or(FBX_AXES[0].0);
+            if let Some(up) = kit::choice_row_ui(text::UP_AXIS, up, &FBX_AXES, ui) {
+                export.up = up;
+            }
+        }
         ExportFormat::Bvh => {
             if let Some(unit) =
                 kit::choice_row_ui(text::SAVE_UNIT, export.metres_per_unit, &UNITS, ui)
             {
                 export.metres_per_unit = unit;
+            }
+            if let Some(up) = kit::choice_row_ui(text::UP_AXIS, export.up, &AXES, ui) {
+                export.up = up;
             }
             if let Some(order) =
                 kit::choice_row_ui(text::ROTATION_ORDER, export.rotation_order, &ORDERS, ui)
