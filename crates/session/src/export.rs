@@ -6,8 +6,11 @@ use super::params::{Key, Params};
 use segue_formats::bvh::{self, RotationOrder};
 use segue_formats::csv::{CsvInputs, CsvOptions, write_csv};
 use segue_formats::fbx::{FbxOptions, FbxWriteError, write_fbx};
-use segue_formats::gltf::{GlbError, GlbOptions, write_character_glb, write_glb};
+use segue_formats::gltf::{
+    GlbError, GlbOptions, VrmaError, write_character_glb, write_glb, write_vrma,
+};
 use segue_formats::numpy::write_npz;
+use segue_formats::robot_csv::{RobotCsvError, write_robot_csv};
 use segue_motion::clip::{Clip, CurveKind, Interpolation, Motion, UpAxis, joint_curve, resample};
 use segue_motion::skin::{Character, Drive};
 
@@ -23,15 +26,20 @@ pub enum ExportFormat {
     Csv,
     /// A scene with skeleton, body and animation.
     Glb,
+    /// The motion of a body for characters of VRM.
+    Vrma,
     /// Arrays for NumPy.
     Npz,
+    /// A table of the hinges of a Unitree G1.
+    G1Csv,
 }
 
 impl ExportFormat {
     /// All formats.
-    pub const ALL: [Self; 5] = [Self::Bvh, Self::Fbx, Self::Glb, Self::Npz, Self::Csv];
+    pub const ALL: [Self; 7] =
+        [Self::Bvh, Self::Fbx, Self::Glb, Self::Vrma, Self::Npz, Self::Csv, Self::G1Csv];
 
-    /// Returns the name in the API, which is also the ending of files.
+    /// Returns the name in the API.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -39,7 +47,18 @@ impl ExportFormat {
             Self::Fbx => "fbx",
             Self::Csv => "csv",
             Self::Glb => "glb",
+            Self::Vrma => "vrma",
             Self::Npz => "npz",
+            Self::G1Csv => "g1",
+        }
+    }
+
+    /// Returns the ending of files.
+    #[must_use]
+    pub const fn ending(self) -> &'static str {
+        match self {
+            Self::G1Csv => "csv",
+            _ => self.name(),
         }
     }
 
@@ -55,15 +74,15 @@ impl ExportFormat {
         match self {
             Self::Bvh => "text/plain",
             Self::Fbx => "application/octet-stream",
-            Self::Csv => "text/csv",
-            Self::Glb => "model/gltf-binary",
+            Self::Csv | Self::G1Csv => "text/csv",
+            Self::Glb | Self::Vrma => "model/gltf-binary",
             Self::Npz => "application/zip",
         }
     }
 }
 
 /// Options of an export. A format uses those that it supports: BVH all but the body, FBX unit, up
-/// axis and frame rate, GLB frame rate and body, NPZ the frame rate, CSV none.
+/// axis and frame rate, GLB frame rate and body, CSV none, the others the frame rate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ExportOptions {
     /// The file format.
@@ -121,6 +140,12 @@ pub enum ExportError {
     /// An FBX file cannot hold it.
     #[error(transparent)]
     Fbx(#[from] FbxWriteError),
+    /// It is no motion of a body.
+    #[error(transparent)]
+    Vrma(#[from] VrmaError),
+    /// It is no motion of the robot.
+    #[error(transparent)]
+    G1Csv(#[from] RobotCsvError),
 }
 
 /// A column of a table beside the joints: its name and a number per frame.
@@ -157,6 +182,8 @@ pub fn export(
                 CsvInputs { clip: motion.clip(), contacts: Some(motion.contacts()), columns };
             Ok(write_csv(&inputs, &CsvOptions::default()).into_bytes())
         }
+        ExportFormat::Vrma => Ok(write_vrma(motion.clip(), motion.roles(), options.fps)?),
+        ExportFormat::G1Csv => Ok(write_robot_csv(motion.clip(), options.fps)?.into_bytes()),
         ExportFormat::Npz => {
             let resampled = options
                 .fps
@@ -268,9 +295,13 @@ mod tests {
         let motion = &session.main_outcome().unwrap().motion;
         for format in ExportFormat::ALL {
             assert_eq!(ExportFormat::from_name(format.name()), Some(format));
-            let bytes =
-                export(motion, None, &[], &ExportOptions { format, ..ExportOptions::default() })
-                    .unwrap();
+            let options = ExportOptions { format, ..ExportOptions::default() };
+            let bytes = export(motion, None, &[], &options);
+            if format == ExportFormat::G1Csv {
+                assert_eq!(bytes, Err(RobotCsvError::OtherSkeleton.into()));
+                continue;
+            }
+            let bytes = bytes.unwrap();
             if format == ExportFormat::Csv {
                 let text = String::from_utf8(bytes).unwrap();
                 assert_eq!(text.lines().count(), motion.clip().frames() + 1);
@@ -279,10 +310,9 @@ mod tests {
                 );
             } else {
                 let clip = read_back(&bytes, &format!("x.{}", format.name()));
-                assert_eq!(
-                    (clip.frames(), clip.skeleton().len()),
-                    (motion.clip().frames(), motion.clip().skeleton().len())
-                );
+                assert_eq!(clip.frames(), motion.clip().frames());
+                // Each joint of the built-in body is a bone of VRM, too.
+                assert_eq!(clip.skeleton().len(), motion.clip().skeleton().len());
             }
         }
         assert_eq!(ExportFormat::from_name("max"), None);
@@ -312,7 +342,8 @@ mod tests {
             let source = clip.provenance();
             assert_eq!((source.up, source.metres_per_unit), (UpAxis::Z, 1.0), "{format:?}");
         }
-        for format in [ExportFormat::Fbx, ExportFormat::Glb, ExportFormat::Npz] {
+        for format in [ExportFormat::Fbx, ExportFormat::Glb, ExportFormat::Vrma, ExportFormat::Npz]
+        {
             let bytes = export(motion, None, &[], &ExportOptions { format, ..options }).unwrap();
             let clip = read_back(&bytes, &format!("x.{}", format.name()));
             assert_eq!(clip.fps().round(), 30.0);

@@ -91,7 +91,7 @@ fn format_row_ui(which: &str, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
 fn options_ui(export: &mut ExportOptions, ui: &mut Ui) {
     match export.format {
         ExportFormat::Csv => return,
-        ExportFormat::Npz => {}
+        ExportFormat::Vrma | ExportFormat::Npz | ExportFormat::G1Csv => {}
         ExportFormat::Glb => {
             if let Some(body) = kit::choice_row_ui(text::SAVE_BODY, export.body, &BODIES, ui) {
                 export.body = body;

@@ -104,7 +104,7 @@ pub(crate) const KEEP_HELP: Word = Word::new("Adds the result to the library as 
 /// The button that opens the format and the options of a file.
 pub(crate) const SAVE_MENU: Word = Word::new("Save…");
 pub(crate) const SAVE_MENU_HELP: Word =
-    Word::new("Saves the result as a file: BVH, FBX, GLB, NPZ or CSV");
+    Word::new("Saves the result as a file: BVH, FBX, GLB, VRMA, NPZ or CSV");
 /// The reason why an unchanged clip is not kept.
 pub(crate) const KEPT_ALREADY: Word = Word::new("This clip is in the library already.");
 /// The button that opens the help texts of all rows.
@@ -236,7 +236,9 @@ pub(crate) fn format(format: ExportFormat) -> Word {
         ExportFormat::Csv => "CSV",
         ExportFormat::Fbx => "FBX",
         ExportFormat::Glb => "GLB",
+        ExportFormat::Vrma => "VRMA",
         ExportFormat::Npz => "NPZ",
+        ExportFormat::G1Csv => "CSV of a Unitree G1",
     })
 }
 
