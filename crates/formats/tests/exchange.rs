@@ -1,7 +1,7 @@
 //! Exported files, read by other programs: `bvh_anim` here, and `three`
 //! (`tests/browser/read_back.mjs`), `bvhio` (`tests/oracles/read_back.py`), `NumPy`
-//! (`tests/oracles/read_back_npz.py`) and Blender (`tests/oracles/read_back_fbx.py`) from files that
-//! these tests leave in the target folder. `cargo xtask test oracles` runs all but Blender.
+//! (`tests/oracles/read_back_npz.py`) and Blender (`tests/oracles/read_back_fbx.py`) from files
+//! that these tests leave in the target folder. `cargo xtask test oracles` runs all but Blender.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests: what fails here fails the test")]
 

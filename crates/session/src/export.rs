@@ -15,7 +15,7 @@ use segue_motion::clip::{Clip, CurveKind, Interpolation, Motion, UpAxis, joint_c
 use segue_motion::skin::{Character, Drive};
 
 /// A file format in which motions are saved.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum ExportFormat {
     /// Skeleton and motion as text, which most programs read.
     #[default]
@@ -83,7 +83,7 @@ impl ExportFormat {
 
 /// Options of an export. A format uses those that it supports: BVH all but the body, FBX unit, up
 /// axis and frame rate, GLB frame rate and body, CSV none, the others the frame rate.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ExportOptions {
     /// The file format.
     pub format: ExportFormat,
@@ -101,7 +101,7 @@ pub struct ExportOptions {
 }
 
 /// The body in an exported file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum ExportBody {
     /// The body of the character on the stage, on its own skeleton and in its own size; the plain
     /// one if the motion moves none of its joints.

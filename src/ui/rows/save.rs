@@ -64,6 +64,15 @@ pub(super) fn save_options_ui(which: &str, state: &mut UiState, out: &mut Out, u
     options_ui(&mut state.export, ui);
 }
 
+/// Draws the choice of a format and its options.
+pub(crate) fn format_rows_ui(export: &mut ExportOptions, ui: &mut Ui) {
+    let formats = ExportFormat::ALL.map(|format| (format, text::format(format)));
+    if let Some(format) = kit::choice_row_ui(text::SAVE_AS, export.format, &formats, ui) {
+        export.format = format;
+    }
+    options_ui(export, ui);
+}
+
 /// Draws the choice of the format, and the button that saves.
 fn format_row_ui(which: &str, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let theme = theme_of(ui);
