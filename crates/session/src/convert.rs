@@ -17,6 +17,7 @@ use segue_motion::skeleton::{FoldedChain, Joint, Pose, Roles, Skeleton, local_po
 use segue_motion::skin::{Character, SkinnedMesh};
 use segue_text::{Message, ToMessage as _, msg};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::sync::Arc;
 
@@ -24,6 +25,10 @@ use std::sync::Arc;
 const TABLE: &str = "conversion.csv";
 /// The size from which on an archive takes no further files, bytes: it is held in memory.
 const MAX_ZIP_BYTES: usize = 1 << 30;
+/// The characters of a file's name that are kept.
+const MAX_STEM: usize = 80;
+/// More files than an archive has room for.
+const MAX_FILES: u32 = 1 << 17;
 
 /// Options of a conversion.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -169,10 +174,12 @@ pub struct ConversionRow {
 }
 
 /// A conversion under way.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Conversion {
     options: ConvertOptions,
     zip: ZipWriter,
+    /// The paths in the archive in lower case, which some systems do not tell apart.
+    paths: BTreeSet<String>,
     rows: Vec<ConversionRow>,
 }
 
@@ -180,7 +187,7 @@ impl Conversion {
     /// Begins a conversion.
     #[must_use]
     pub fn new(options: ConvertOptions) -> Self {
-        Self { options, zip: ZipWriter::default(), rows: Vec::new() }
+        Self { options, ..Self::default() }
     }
 
     /// Returns its options.
@@ -242,6 +249,7 @@ impl Conversion {
                 return Err(ZipFull.to_message());
             }
             self.zip.add_packed(&path, &made.file).map_err(|full| full.to_message())?;
+            self.paths.insert(path.to_lowercase());
             Ok(path)
         });
         self.rows.push(ConversionRow { source: source.to_owned(), clip, output, odd });
@@ -260,16 +268,15 @@ impl Conversion {
             // `..` would lead out of the folder in which the archive is unpacked.
             path + &file_name(part, "").trim_matches(['.', ' ']).replace("..", "_") + "/"
         });
-        let is_free = |path: &String| !self.zip.contains(path) && path != TABLE;
-        let plain = folders.clone() + &file_name(stem, ending);
-        let named = folders.clone() + &file_name(&format!("{stem} {clip}"), ending);
-        let mut candidates = [plain, named].into_iter();
-        let first = candidates.find(is_free);
-        first.unwrap_or_else(|| {
-            let numbered =
-                |number| folders.clone() + &file_name(&format!("{stem} {number}"), ending);
-            (2_u32..).map(numbered).find(is_free).unwrap_or_default()
-        })
+        // With room for a number: long names are cut.
+        let stem: String = stem.chars().take(MAX_STEM).collect();
+        let names = [stem.clone(), format!("{stem} {clip}")].into_iter();
+        let numbered = (2..=MAX_FILES).map(|number| format!("{stem} {number}"));
+        names
+            .chain(numbered)
+            .map(|name| folders.clone() + &file_name(&name, ending))
+            .find(|path| path != TABLE && !self.paths.contains(&path.to_lowercase()))
+            .unwrap_or_default()
     }
 
     /// Returns the archive with its table.

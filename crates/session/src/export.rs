@@ -28,7 +28,7 @@ pub enum ExportFormat {
     Glb,
     /// The motion of a body for characters of VRM.
     Vrma,
-    /// Arrays for NumPy.
+    /// Arrays for `NumPy`.
     Npz,
     /// A table of the hinges of a Unitree G1.
     G1Csv,

@@ -259,7 +259,7 @@ fn swing(skeleton: &Skeleton, pose: &mut WorldPose, joint: usize, end: usize, di
     for index in joint..skeleton.len() {
         moves[index] = index == joint || skeleton.parent(index).is_some_and(|parent| moves[parent]);
         if moves[index] {
-            pose.rotations[index] = (turn * pose.rotations[index]).normalize();
+            pose.rotations[index] = turn * pose.rotations[index];
             pose.positions[index] = pivot + turn * (pose.positions[index] - pivot);
         }
     }

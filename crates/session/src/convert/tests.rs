@@ -228,3 +228,19 @@ fn clips_of_the_library_are_converted_beside_files() {
     assert_eq!(paths[0], "Walk.vrma");
     assert_ne!(paths[1], "Walk.vrma");
 }
+
+#[test]
+fn files_of_long_or_equal_names_are_numbered() {
+    let walk = Motion::with_roles(made(Action::Walk), &Roles::default());
+    let mut conversion = Conversion::new(options(ExportFormat::Npz));
+    let long = "x".repeat(300);
+    for name in [long.as_str(), &long, &long, "a/Walk.bvh", "a/walk.bvh", "conversion.bvh"] {
+        conversion.add_clip(name, &walk, None);
+    }
+    let mut paths: Vec<String> =
+        (conversion.rows().iter()).map(|row| row.output.clone().unwrap().to_lowercase()).collect();
+    assert!(paths.iter().all(|path| path.len() < 120));
+    paths.sort();
+    paths.dedup();
+    assert_eq!(paths.len(), 6);
+}
