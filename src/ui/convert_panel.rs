@@ -105,16 +105,14 @@ fn start_ui(session: &Session, state: &mut ConvertState, out: &mut Out, ui: &mut
         if kit::button_ui(choose, ui).clicked() {
             out.actions.push(Action::OpenFiles);
         }
-        if waiting > 0 {
-            if kit::button_ui(Button::new(text::CONVERT).primary(), ui).clicked() {
-                let (how, onto_a) = (state.export, state.onto_a);
-                out.actions.push(Action::Convert(ConvertAction::Start { how, onto_a }));
-            }
+        let convert = Button::new(text::CONVERT).primary();
+        if waiting > 0 && kit::button_ui(convert, ui).clicked() {
+            let (how, onto_a) = (state.export, state.onto_a);
+            out.actions.push(Action::Convert(ConvertAction::Start { how, onto_a }));
         }
-        if waiting > 0 || !state.shown.rows.is_empty() {
-            if kit::button_ui(Button::new(text::CLEAR_FILES), ui).clicked() {
-                out.actions.push(Action::Convert(ConvertAction::Clear));
-            }
+        let can_clear = waiting > 0 || !state.shown.rows.is_empty();
+        if can_clear && kit::button_ui(Button::new(text::CLEAR_FILES), ui).clicked() {
+            out.actions.push(Action::Convert(ConvertAction::Clear));
         }
     });
 }
