@@ -7,6 +7,7 @@ mod actions;
 mod address_bar;
 pub(crate) mod api;
 mod autosave;
+mod converter;
 mod downloads;
 mod events;
 mod frame;
@@ -26,6 +27,7 @@ use crate::ui::{self, CurveCache, UiState};
 use address_bar::AddressBar;
 use api::{ApiError, LoadedClips};
 use autosave::Autosave;
+use converter::Converter;
 use downloads::Downloads;
 use frame_stats::FrameStats;
 use language::LanguageLoader;
@@ -59,6 +61,7 @@ pub(crate) struct Segue {
     inbox: Inbox,
     autosave: Autosave,
     address: AddressBar,
+    converter: Converter,
     downloads: Downloads,
     reader: Reader,
     large_files: LargeFileStore,
@@ -147,6 +150,7 @@ impl Segue {
             read: BTreeMap::new(),
             inbox,
             address: AddressBar::default(),
+            converter: Converter::default(),
             downloads: Downloads::default(),
             frame_stats: FrameStats::default(),
             events: Vec::new(),
@@ -217,6 +221,7 @@ impl Segue {
             self.autosave.set_baseline(&self.session);
         }
         self.send_requests();
+        let is_converting = self.advance_conversion();
         let passed_ms = self.clock.left_work.map_or(0.0, |left_ms| now_ms - left_ms);
         let max_ms = (WORK_SHARE * passed_ms).clamp(MIN_WORK_MS, MAX_WORK_MS);
         let mut more = true;
@@ -226,6 +231,7 @@ impl Segue {
             self.session.work_took((platform::now_ms() - began_ms) / 1e3);
             more = more || self.picture.work();
         }
+        more = more || is_converting;
         self.clock.left_work = more.then_some(now_ms);
         // The work may have made new requests.
         self.send_requests();

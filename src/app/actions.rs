@@ -58,6 +58,7 @@ impl Segue {
                     ),
                 ),
             },
+            Action::Convert(action) => self.run_conversion(action),
             Action::SavePicture => {
                 if let Some(stage) = self.picture.stage_rect() {
                     platform::save_picture(

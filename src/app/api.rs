@@ -337,7 +337,7 @@ impl Segue {
             }
         };
         Ok(ExportedFile {
-            name: file_name(&stem, how.format.name()),
+            name: file_name(&stem, how.format.ending()),
             mime: how.format.mime(),
             bytes: export(motion, self.session.character().as_ref(), &curves, how)?,
         })

@@ -81,6 +81,7 @@ impl Segue {
             self.panels.presenter.note_fullscreen(platform::is_fullscreen(ctx));
         }
         self.panels.fetching = self.downloads.under_way().collect();
+        self.panels.convert.shown = self.converter.shown();
         self.panels.stored = self.autosave.progress();
         if self.session.is_driven() {
             self.panels.gamepad = platform::gamepad().map(|pad| ui::Gamepad {

@@ -1,6 +1,7 @@
 //! Answers of the platform to the app, and requests of the session to the platform.
 
 use super::api::ApiError;
+use super::converter::Converter;
 use super::downloads::lesson_file;
 use super::{Event, Segue};
 use crate::platform::{self, FileBytes, Incoming, LargeFile, ReadError, ReadEvent};
@@ -13,6 +14,14 @@ impl Segue {
     /// Takes in an answer of the platform.
     pub(super) fn receive(&mut self, incoming: Incoming) {
         match incoming {
+            // While the panel of conversions is open, files are not for the library.
+            Incoming::Opening(_) if self.panels.convert.is_open => {}
+            Incoming::File { name, bytes } if self.panels.convert.is_open => {
+                self.converter.add_file(name, FileBytes::Here(bytes));
+            }
+            Incoming::Large { name, file } if self.panels.convert.is_open => {
+                self.converter.add_file(name, FileBytes::Large(file));
+            }
             Incoming::Opening(count) => self.session.open_together(count),
             Incoming::File { name, bytes } => self.load(&name, bytes, false),
             Incoming::Large { name, file } => {
@@ -125,6 +134,9 @@ impl Segue {
 
     /// Takes in an event of a file that is being read in the background.
     fn on_read_event(&mut self, task: u64, event: ReadEvent) {
+        if Converter::is_own(task) {
+            return self.converter.on_read_event(task, event);
+        }
         if let ReadEvent::Progress(done) = event {
             return self.session.progress_reading(task, done);
         }

@@ -62,6 +62,8 @@ pub(crate) enum UiCommand {
     CopyLinkAsShown,
     CopyReport,
     OpenLibrary,
+    /// Opens the panel of conversions.
+    ConvertFiles,
     /// Shows the stage alone, or the whole page again.
     Present,
     /// Goes to the next or the previous step of a presenter.
@@ -156,6 +158,7 @@ impl UiCommand {
                 named(text::PREVIOUS, Icon::ChevronLeft, &[Keys(NONE, Keyboard::PageUp)])
             }
             Self::OpenLibrary => named(text::LIBRARY, Icon::Folder, &[]),
+            Self::ConvertFiles => named(text::CONVERT_FILES, Icon::Swap, &[]),
             Self::ToggleTheme => named(text::THEME, Icon::Contrast, &[]),
             Self::ToggleProjector => {
                 Row { text: text::LARGER, tooltip: text::PROJECTOR, ..keys(&[], Ignored) }
@@ -258,6 +261,7 @@ impl UiCommand {
             Self::NextStep => presenter::go(true, session, state, out),
             Self::PreviousStep => presenter::go(false, session, state, out),
             Self::OpenLibrary => state.library_open = true,
+            Self::ConvertFiles => state.convert.is_open = true,
             Self::ToggleTheme => {
                 let other = if theme_of(ui).dark { "light" } else { "dark" };
                 out.set_once(Key::Theme, Value::Choice(other));
@@ -276,6 +280,9 @@ impl UiCommand {
 /// Ends the search or the selection in the library, or closes the layers in front of the lesson, or
 /// else the lesson.
 fn close(session: &Session, state: &mut UiState, out: &mut Out) {
+    if !state.help_open && std::mem::take(&mut state.convert.is_open) {
+        return;
+    }
     if !state.help_open && state.library.close() {
         return;
     }

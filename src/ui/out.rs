@@ -3,6 +3,24 @@
 use segue_session::export::ExportOptions;
 use segue_session::{Command, Compare, Key, Value};
 
+/// A step of a conversion of many files.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum ConvertAction {
+    /// Add clips of the library, by their ids.
+    AddClips(Vec<String>),
+    /// Convert all files and clips that were added.
+    Start {
+        /// The format and its options.
+        how: ExportOptions,
+        /// Whether motions are put on the body of A.
+        onto_a: bool,
+    },
+    /// Stop, and save what is done.
+    Stop,
+    /// Remove the files that were added, and the last result.
+    Clear,
+}
+
 /// A request to the platform.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Action {
@@ -28,6 +46,8 @@ pub(crate) enum Action {
         /// The format and its options.
         how: ExportOptions,
     },
+    /// Convert files, or stop that.
+    Convert(ConvertAction),
     /// Put a report on the present state into the clipboard, with a picture.
     CopyReport,
     /// Put a text into the clipboard.

@@ -3,6 +3,7 @@
 
 use super::clip_drag::dragged_clip_ui;
 use super::commands;
+use super::convert_panel::convert_ui;
 use super::kit;
 use super::language::{Text, say};
 use super::notices::notices_ui;
@@ -21,6 +22,7 @@ pub(crate) fn overlays_ui(session: &Session, state: &mut UiState, out: &mut Out,
     if state.help_open {
         help_ui(state, ui);
     }
+    convert_ui(session, state, out, ui);
     drop_ui(state, ui);
     dragged_clip_ui(session, ui);
 }

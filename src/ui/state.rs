@@ -1,5 +1,6 @@
 //! The state of the interface between frames.
 
+use super::convert_panel::ConvertState;
 use super::labs::states::LabStates;
 use super::language::Language;
 use super::library_panel::LibraryState;
@@ -146,6 +147,8 @@ pub(crate) struct UiState {
     /// Files that are being fetched, with the share of each that has arrived, 0 to 1, where it is
     /// known.
     pub(crate) fetching: Vec<(String, Option<f64>)>,
+    /// The panel of conversions.
+    pub(crate) convert: ConvertState,
     /// Whether a page around this one can read the files that are opened here.
     pub(crate) host_reads: bool,
     /// How far the work is stored; `None` where it is not stored at all.
@@ -189,6 +192,7 @@ impl Default for UiState {
             strip: StripState::default(),
             stage: Rect::NOTHING,
             fetching: Vec::new(),
+            convert: ConvertState::default(),
             host_reads: false,
             stored: None,
         }

@@ -26,6 +26,7 @@ use std::sync::Arc;
 mod chinese;
 mod clips;
 mod contacts;
+mod convert;
 mod curves;
 mod drive;
 mod edit;

@@ -97,7 +97,12 @@ fn actions_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut 
 
 /// Draws the menu behind the button that copies the link.
 fn share_menu_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    for command in [UiCommand::CopyLinkAsShown, UiCommand::CopyReport, UiCommand::Present] {
+    for command in [
+        UiCommand::CopyLinkAsShown,
+        UiCommand::CopyReport,
+        UiCommand::ConvertFiles,
+        UiCommand::Present,
+    ] {
         command_item_ui(command, session, state, out, ui);
     }
 }
@@ -112,6 +117,7 @@ fn page_menu_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut 
         UiCommand::Redo,
         UiCommand::CopyLinkAsShown,
         UiCommand::CopyReport,
+        UiCommand::ConvertFiles,
         UiCommand::Present,
         UiCommand::ToggleTheme,
         UiCommand::SwitchLanguage,

@@ -40,7 +40,7 @@ onBothBackends("the API answers, and set() is all or nothing", async ({ open, ba
   assert.equal(pose.positions.length, 3 * pose.joints.length);
   assert.equal(pose.rotations.length, 4 * pose.joints.length);
   await assert.rejects(segue("pose", "result:7", 0), /found `result:7`/);
-  await assert.rejects(segue("export", "result", "fbx"), /export: found `fbx`, expected one of bvh/);
+  await assert.rejects(segue("export", "result", "max"), /export: found `max`, expected one of bvh/);
   assert.match((await segue("export", "result", "csv")).toString(), /^time_s,/);
   assert.match((await segue("export", "result", "bvh")).toString(), /^HIERARCHY\n/);
 });

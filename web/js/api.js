@@ -41,7 +41,7 @@ export function makeApi(handle, { stopped, onLost }) {
   const WHICH = "the id of a clip, \"result\", or \"result:1\" for the second pane";
   const PANE = "\"result\", or \"result:1\" for the second pane";
   const FILE = "the name of a file, such as \"walk.bvh\"";
-  const FORMAT = "\"bvh\", \"csv\" or \"glb\"";
+  const FORMAT = "\"bvh\", \"fbx\", \"glb\", \"vrma\", \"npz\", \"csv\" or \"g1\"";
   const BODY = "\"character\", \"plain\", or nothing";
 
   return Object.freeze({

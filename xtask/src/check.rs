@@ -77,13 +77,15 @@ fn tests_without_ui() -> Command {
 }
 
 fn oracles(report: &mut Report) {
-    report.step("exported files in three.js and bvhio", || {
+    report.step("exported files in three.js, bvhio and NumPy", || {
         tools::browser_packages()?;
         let python = tools::python("bvhio==1.5.4")?;
         shell::run(tests_without_ui().arg("--test=exchange"))?;
         let files = shell::target().join("tmp/exchange");
         shell::run(command("node", &["tests/browser/read_back.mjs"]).arg(&files))?;
-        shell::run(command(python, &["crates/formats/tests/oracles/read_back.py"]).arg(&files))
+        shell::run(command(python, &["crates/formats/tests/oracles/read_back.py"]).arg(&files))?;
+        let numpy = tools::python("numpy==1.26.4")?;
+        shell::run(command(numpy, &["crates/formats/tests/oracles/read_back_npz.py"]).arg(&files))
     });
 }
 

@@ -25,12 +25,12 @@
 //! | [`acclaim`] (ASF, AMC) | yes, a motion with its skeleton | |
 //! | [`gltf`] (glTF, GLB) | yes, motion and skinned meshes | [`gltf::write_glb`] |
 //! | [`c3d`], [`trc`] | yes, a skeleton from labelled points, or points | |
-//! | [`robot_csv`] | yes, the hinges of a Unitree G1 | |
+//! | [`robot_csv`] | yes, the hinges of a Unitree G1 | [`robot_csv::write_robot_csv`] |
 //! | [`numpy`] (NPY, NPZ) | motions of AMASS, SMPL, Kimodo, `HumanML3D` and others | [`numpy::write_npz`] |
-//! | [`gltf`] (VRM, VRMA) | yes, with their bone map | |
-//! | [`fbx`] | yes, motion and skinned meshes | |
+//! | [`gltf`] (VRM, VRMA) | yes, with their bone map | [`gltf::write_vrma`] |
+//! | [`fbx`] | yes, motion and skinned meshes | [`fbx::write_fbx`] |
 //! | [`csv`] | | [`csv::write_csv`] |
-//! | [`archive`] (zip), gzip | file by file, [`unpack_gzip`] | |
+//! | [`archive`] (zip), gzip | file by file, [`unpack_gzip`] | [`ZipWriter`] |
 //!
 //! # Example
 //!
@@ -96,12 +96,14 @@ mod text;
 pub mod trc;
 mod unlikely;
 mod warning;
+mod zip_out;
 
 pub use error::ImportError;
 pub use gzip::unpack_gzip;
 pub use measure::{CMU_METRES_PER_UNIT, Measure, UpSource};
 pub use unlikely::Mendable;
 pub use warning::{ImportWarning, WarningKind};
+pub use zip_out::{PackedFile, ZipFull, ZipWriter};
 
 use segue_motion::clip::{Clip, UpAxis};
 use segue_motion::skeleton::Roles;

@@ -1,6 +1,7 @@
 //! Exported files, read by other programs: `bvh_anim` here, and `three`
-//! (`tests/browser/read_back.mjs`) and `bvhio` (`tests/oracles/read_back.py`) from files that these
-//! tests leave in the target folder. `cargo xtask test oracles` runs all three.
+//! (`tests/browser/read_back.mjs`), `bvhio` (`tests/oracles/read_back.py`), `NumPy`
+//! (`tests/oracles/read_back_npz.py`) and Blender (`tests/oracles/read_back_fbx.py`) from files
+//! that these tests leave in the target folder. `cargo xtask test oracles` runs all but Blender.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests: what fails here fails the test")]
 
@@ -11,7 +12,9 @@ use common::shared_data;
 use glam::{DMat4, DVec3};
 use segue_formats::bvh::{RotationOrder, WriteOptions, write};
 use segue_formats::csv::{CsvInputs, CsvOptions, write_csv};
+use segue_formats::fbx::{FbxOptions, write_fbx};
 use segue_formats::gltf::{GlbOptions, write_character_glb, write_glb};
+use segue_formats::numpy::write_npz;
 use segue_formats::{ImportOptions, import};
 use segue_motion::clip::{Clip, UpAxis};
 use segue_motion::skeleton::Roles;
@@ -140,6 +143,13 @@ fn exported_bvh_in_another_reader_is_the_same_motion() {
     }
 }
 
+/// Returns the options of an FBX file for those of a BVH file: every unit of the cases, and both up
+/// axes.
+fn fbx_options(options: &WriteOptions) -> FbxOptions {
+    let up = Some(if options.fps.is_some() { UpAxis::Z } else { UpAxis::Y });
+    FbxOptions { metres_per_unit: options.metres_per_unit, up, fps: options.fps }
+}
+
 /// Returns a child of two colours that walks as an adult does: its motion, and its mesh.
 fn character() -> (Clip, SkinnedMesh) {
     let walk = synthesize(&Params::new(Action::Walk)).unwrap().clip;
@@ -153,8 +163,8 @@ fn character() -> (Clip, SkinnedMesh) {
     (drive.clip(&walk).unwrap(), mesh)
 }
 
-/// Writes the files for the readers in other languages: for each case BVH and GLB, and the
-/// positions as CSV.
+/// Writes the files for the readers in other languages: for each case BVH, GLB, NPZ and
+/// FBX, and the positions as CSV.
 #[test]
 fn exported_files_are_left_for_other_readers() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("exchange");
@@ -171,6 +181,8 @@ fn exported_files_are_left_for_other_readers() {
         };
         save("bvh", write(&clip, &options).as_bytes());
         save("glb", &write_glb(&clip, &GlbOptions { fps: options.fps, smooth: true }).unwrap());
+        save("npz", &write_npz(&expected));
+        save("fbx", &write_fbx(&[&clip], &fbx_options(&options)).unwrap());
         save("csv", write_csv(&inputs, &CsvOptions::default()).as_bytes());
         writeln!(list, "{name} {}", unit(&clip, &options)).unwrap();
     }
@@ -181,6 +193,8 @@ fn exported_files_are_left_for_other_readers() {
     };
     save("bvh", write(&clip, &WriteOptions::default()).as_bytes());
     save("glb", &write_character_glb(&clip, &mesh, &GlbOptions::default()).unwrap());
+    save("npz", &write_npz(&clip));
+    save("fbx", &write_fbx(&[&clip], &FbxOptions::default()).unwrap());
     save("csv", write_csv(&inputs, &CsvOptions::default()).as_bytes());
     writeln!(list, "character {}", unit(&clip, &WriteOptions::default())).unwrap();
     fs::write(folder.join("cases.txt"), list).unwrap();

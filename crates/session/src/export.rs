@@ -5,33 +5,60 @@ use super::motion::{curve_kind, joint_of};
 use super::params::{Key, Params};
 use segue_formats::bvh::{self, RotationOrder};
 use segue_formats::csv::{CsvInputs, CsvOptions, write_csv};
-use segue_formats::gltf::{GlbError, GlbOptions, write_character_glb, write_glb};
-use segue_motion::clip::{Clip, CurveKind, Motion, joint_curve};
+use segue_formats::fbx::{FbxOptions, FbxWriteError, write_fbx};
+use segue_formats::gltf::{
+    GlbError, GlbOptions, VrmaError, write_character_glb, write_glb, write_vrma,
+};
+use segue_formats::numpy::write_npz;
+use segue_formats::robot_csv::{RobotCsvError, write_robot_csv};
+use segue_motion::clip::{Clip, CurveKind, Interpolation, Motion, UpAxis, joint_curve, resample};
 use segue_motion::skin::{Character, Drive};
 
 /// A file format in which motions are saved.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum ExportFormat {
     /// Skeleton and motion as text, which most programs read.
     #[default]
     Bvh,
+    /// A scene with the skeleton and its animation, for the programs of film and games.
+    Fbx,
     /// A table for spreadsheets and scripts.
     Csv,
     /// A scene with skeleton, body and animation.
     Glb,
+    /// The motion of a body for characters of VRM.
+    Vrma,
+    /// Arrays for `NumPy`.
+    Npz,
+    /// A table of the hinges of a Unitree G1.
+    G1Csv,
 }
 
 impl ExportFormat {
     /// All formats.
-    pub const ALL: [Self; 3] = [Self::Bvh, Self::Csv, Self::Glb];
+    pub const ALL: [Self; 7] =
+        [Self::Bvh, Self::Fbx, Self::Glb, Self::Vrma, Self::Npz, Self::Csv, Self::G1Csv];
 
-    /// Returns the name in the API, which is also the ending of files.
+    /// Returns the name in the API.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Bvh => "bvh",
+            Self::Fbx => "fbx",
             Self::Csv => "csv",
             Self::Glb => "glb",
+            Self::Vrma => "vrma",
+            Self::Npz => "npz",
+            Self::G1Csv => "g1",
+        }
+    }
+
+    /// Returns the ending of files.
+    #[must_use]
+    pub const fn ending(self) -> &'static str {
+        match self {
+            Self::G1Csv => "csv",
+            _ => self.name(),
         }
     }
 
@@ -46,20 +73,25 @@ impl ExportFormat {
     pub const fn mime(self) -> &'static str {
         match self {
             Self::Bvh => "text/plain",
-            Self::Csv => "text/csv",
-            Self::Glb => "model/gltf-binary",
+            Self::Fbx => "application/octet-stream",
+            Self::Csv | Self::G1Csv => "text/csv",
+            Self::Glb | Self::Vrma => "model/gltf-binary",
+            Self::Npz => "application/zip",
         }
     }
 }
 
-/// Options of an export. A format uses those that it supports: BVH all but the body, GLB frame rate
-/// and body, CSV none.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// Options of an export. A format uses those that it supports: BVH all but the body, FBX unit, up
+/// axis and frame rate, GLB frame rate and body, CSV none, the others the frame rate.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ExportOptions {
     /// The file format.
     pub format: ExportFormat,
-    /// Metres per unit of length; `None` for the unit of the clip's source file.
+    /// Metres per unit of length; `None` for the unit of the clip's source file, and centimetres in
+    /// FBX.
     pub metres_per_unit: Option<f64>,
+    /// The up axis; `None` for that of the clip's source file, and Y in FBX.
+    pub up: Option<UpAxis>,
     /// One order for the rotations of all joints; `None` for those of the source file.
     pub rotation_order: Option<RotationOrder>,
     /// Frames per second; `None` for the clip's own rate.
@@ -69,7 +101,7 @@ pub struct ExportOptions {
 }
 
 /// The body in an exported file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum ExportBody {
     /// The body of the character on the stage, on its own skeleton and in its own size; the plain
     /// one if the motion moves none of its joints.
@@ -99,6 +131,23 @@ impl ExportBody {
     }
 }
 
+/// The reason why a motion cannot be saved in a format.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, segue_text::ToMessage)]
+pub enum ExportError {
+    /// A GLB file cannot hold it.
+    #[error(transparent)]
+    Glb(#[from] GlbError),
+    /// An FBX file cannot hold it.
+    #[error(transparent)]
+    Fbx(#[from] FbxWriteError),
+    /// It is no motion of a body.
+    #[error(transparent)]
+    Vrma(#[from] VrmaError),
+    /// It is no motion of the robot.
+    #[error(transparent)]
+    G1Csv(#[from] RobotCsvError),
+}
+
 /// A column of a table beside the joints: its name and a number per frame.
 pub type Column = (String, Vec<f32>);
 
@@ -106,27 +155,40 @@ pub type Column = (String, Vec<f32>);
 /// the stage in place of a plain body: see [`ExportBody`].
 ///
 /// # Errors
-/// [`GlbError`] when the motion is too large for the format.
+/// [`ExportError`] when the format cannot hold the motion.
 pub fn export(
     motion: &Motion,
     character: Option<&Character>,
     columns: &[Column],
     options: &ExportOptions,
-) -> Result<Vec<u8>, GlbError> {
+) -> Result<Vec<u8>, ExportError> {
     match options.format {
         ExportFormat::Bvh => {
             let how = bvh::WriteOptions {
                 metres_per_unit: options.metres_per_unit,
                 rotation_order: options.rotation_order,
                 fps: options.fps,
-                ..bvh::WriteOptions::default()
+                up: options.up,
             };
             Ok(bvh::write(motion.clip(), &how).into_bytes())
+        }
+        ExportFormat::Fbx => {
+            let ExportOptions { metres_per_unit, up, fps, .. } = *options;
+            let how = FbxOptions { metres_per_unit, up, fps };
+            Ok(write_fbx(&[motion.clip()], &how)?)
         }
         ExportFormat::Csv => {
             let inputs =
                 CsvInputs { clip: motion.clip(), contacts: Some(motion.contacts()), columns };
             Ok(write_csv(&inputs, &CsvOptions::default()).into_bytes())
+        }
+        ExportFormat::Vrma => Ok(write_vrma(motion.clip(), motion.roles(), options.fps)?),
+        ExportFormat::G1Csv => Ok(write_robot_csv(motion.clip(), options.fps)?.into_bytes()),
+        ExportFormat::Npz => {
+            let resampled = options
+                .fps
+                .and_then(|fps| resample(motion.clip(), fps, Interpolation::default()).ok());
+            Ok(write_npz(resampled.as_ref().unwrap_or(motion.clip())))
         }
         ExportFormat::Glb => {
             let how = GlbOptions { fps: options.fps, smooth: true };
@@ -136,6 +198,7 @@ pub fn export(
                 Some((clip, character)) => write_character_glb(&clip, &character.mesh, &how),
                 None => write_glb(motion.clip(), &how),
             }
+            .map_err(ExportError::from)
         }
     }
 }
@@ -232,9 +295,13 @@ mod tests {
         let motion = &session.main_outcome().unwrap().motion;
         for format in ExportFormat::ALL {
             assert_eq!(ExportFormat::from_name(format.name()), Some(format));
-            let bytes =
-                export(motion, None, &[], &ExportOptions { format, ..ExportOptions::default() })
-                    .unwrap();
+            let options = ExportOptions { format, ..ExportOptions::default() };
+            let bytes = export(motion, None, &[], &options);
+            if format == ExportFormat::G1Csv {
+                assert_eq!(bytes, Err(RobotCsvError::OtherSkeleton.into()));
+                continue;
+            }
+            let bytes = bytes.unwrap();
             if format == ExportFormat::Csv {
                 let text = String::from_utf8(bytes).unwrap();
                 assert_eq!(text.lines().count(), motion.clip().frames() + 1);
@@ -243,13 +310,12 @@ mod tests {
                 );
             } else {
                 let clip = read_back(&bytes, &format!("x.{}", format.name()));
-                assert_eq!(
-                    (clip.frames(), clip.skeleton().len()),
-                    (motion.clip().frames(), motion.clip().skeleton().len())
-                );
+                assert_eq!(clip.frames(), motion.clip().frames());
+                // Each joint of the built-in body is a bone of VRM, too.
+                assert_eq!(clip.skeleton().len(), motion.clip().skeleton().len());
             }
         }
-        assert_eq!(ExportFormat::from_name("fbx"), None);
+        assert_eq!(ExportFormat::from_name("max"), None);
     }
 
     #[test]
@@ -269,11 +335,19 @@ mod tests {
         let clip = read_back(text.as_bytes(), "x.bvh");
         assert_eq!(clip.fps().round(), 30.0);
         assert_eq!(clip.provenance().metres_per_unit, 1.0);
-        let glb = ExportOptions { format: ExportFormat::Glb, ..options };
-        assert_eq!(
-            read_back(&export(motion, None, &[], &glb).unwrap(), "x.glb").fps().round(),
-            30.0
-        );
+        for format in [ExportFormat::Bvh, ExportFormat::Fbx] {
+            let options = ExportOptions { format, up: Some(UpAxis::Z), ..options };
+            let bytes = export(motion, None, &[], &options).unwrap();
+            let clip = read_back(&bytes, &format!("x.{}", format.name()));
+            let source = clip.provenance();
+            assert_eq!((source.up, source.metres_per_unit), (UpAxis::Z, 1.0), "{format:?}");
+        }
+        for format in [ExportFormat::Fbx, ExportFormat::Glb, ExportFormat::Vrma, ExportFormat::Npz]
+        {
+            let bytes = export(motion, None, &[], &ExportOptions { format, ..options }).unwrap();
+            let clip = read_back(&bytes, &format!("x.{}", format.name()));
+            assert_eq!(clip.fps().round(), 30.0);
+        }
     }
 
     #[test]

@@ -14,6 +14,7 @@ mod tasks;
 
 pub(crate) use intake::FileIntake;
 pub use intake::LoadedFile;
+pub(crate) use setup::setup_for_new;
 pub(crate) use storage::{is_as_it_came, stored_entries};
 pub use tasks::Job;
 

@@ -70,6 +70,7 @@ mod clip_sets;
 mod command;
 mod compare;
 mod contact_edits;
+pub mod convert;
 mod document;
 pub mod export;
 mod extra_characters;

@@ -1,7 +1,6 @@
 //! Errors of the page's API.
 
-use segue_formats::gltf::GlbError;
-use segue_session::export::{ExportBody, ExportFormat};
+use segue_session::export::{ExportBody, ExportError, ExportFormat};
 use segue_session::{CommandError, LabError, NoResult, ValueError};
 use segue_text::Message;
 
@@ -78,7 +77,7 @@ pub(crate) enum ApiError {
     UnknownBody(String),
     /// A motion that cannot be written in the format.
     #[error(transparent)]
-    Export(#[from] GlbError),
+    Export(#[from] ExportError),
     /// A recording that cannot begin.
     #[error("record: {0}")]
     Recording(Message),

@@ -168,8 +168,8 @@ fn exported_file_can_be_loaded() {
     assert_eq!(loaded.clips.len(), 1);
     assert_eq!(loaded.clips[0].frames, segue.motion("walk").unwrap().clip().frames());
     assert_eq!(
-        segue.export("result", "fbx", None).unwrap_err().to_string(),
-        "found `fbx`, expected one of bvh, csv, glb"
+        segue.export("result", "max", None).unwrap_err().to_string(),
+        "found `max`, expected one of bvh, fbx, glb, vrma, npz, csv, g1"
     );
     assert_eq!(
         segue.export("result", "glb", Some("statue")).unwrap_err().to_string(),

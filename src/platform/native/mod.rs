@@ -11,7 +11,7 @@ pub(crate) use files::{download, open_files, read_arguments, read_dropped};
 pub(crate) use film::{Film, can_film, can_take_pictures, save_picture, take_picture};
 pub(crate) use frame_pacer::FramePacer;
 pub(crate) use gamepad::gamepad;
-pub(crate) use reader::{LargeFile, Reader, update_memory};
+pub(crate) use reader::{LargeFile, Reader, outside_memory, update_memory};
 pub(crate) use storage::Storage;
 
 use super::{Inbox, Incoming, address};

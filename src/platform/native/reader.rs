@@ -34,6 +34,11 @@ impl fmt::Debug for LargeFile {
     }
 }
 
+/// Returns a small file as it is: a window has room for it.
+pub(crate) fn outside_memory(bytes: Arc<[u8]>) -> FileBytes {
+    FileBytes::Here(bytes)
+}
+
 /// Does nothing, because only the system limits the memory of a window.
 pub(crate) fn update_memory(_reader: &mut Reader, _session: &mut Session) {}
 

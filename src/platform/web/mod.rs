@@ -23,7 +23,9 @@ pub(crate) use page::{
     next_turn, now_ms, open_page, prefers_reduced_motion, replace_query, requested_backend,
     set_fullscreen, set_page_language, sleep, watch_hiding, watch_navigation,
 };
-pub(crate) use reader::{LargeFile, Reader, set_worker_factory, update_memory, wasm_memory_bytes};
+pub(crate) use reader::{
+    LargeFile, Reader, outside_memory, set_worker_factory, update_memory, wasm_memory_bytes,
+};
 pub(crate) use snapshot::{Area, area_of, inline_picture, snapshot};
 pub(crate) use storage::Storage;
 

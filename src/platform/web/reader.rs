@@ -12,6 +12,7 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::fmt;
 use std::rc::Rc;
+use std::sync::Arc;
 use wasm_bindgen::{JsCast as _, JsValue};
 use web_sys::{Blob, MessageEvent, Worker};
 
@@ -62,6 +63,13 @@ impl fmt::Debug for LargeFile {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "LargeFile({} bytes)", self.len())
     }
+}
+
+/// Hands a small file to the browser, so that the app's memory has no copy of its bytes, if the
+/// browser has room for it.
+pub(crate) fn outside_memory(bytes: Arc<[u8]>) -> FileBytes {
+    let file = LargeFile::of_bytes(&Uint8Array::from(&bytes[..]));
+    file.map_or(FileBytes::Here(bytes), FileBytes::Large)
 }
 
 thread_local! {

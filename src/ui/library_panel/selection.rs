@@ -3,7 +3,7 @@
 use super::arrange::arrange;
 use crate::ui::kit::{self, Button, Icon};
 use crate::ui::language::say;
-use crate::ui::out::Out;
+use crate::ui::out::{Action, ConvertAction, Out};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
@@ -42,6 +42,11 @@ pub(super) fn selection_ui(session: &Session, state: &mut UiState, out: &mut Out
         {
             out.commands.push(Command::Set(values));
             out.commands.push(Command::Settle);
+            state.library.picked.clear();
+        }
+        if kit::button_ui(Button::new(text::CONVERT_CLIPS), ui).clicked() {
+            out.actions.push(Action::Convert(ConvertAction::AddClips(ids.clone())));
+            state.convert.is_open = true;
             state.library.picked.clear();
         }
         if kit::button_ui(Button::new(text::REMOVE), ui).clicked() {

@@ -5,15 +5,28 @@ use crate::ui::language::{Text, Word};
 use crate::ui::out::{Action, Out};
 use crate::ui::state::UiState;
 use crate::ui::text;
-use crate::ui::theme::{Type, palette_of, space, theme_of};
-use eframe::egui::{Align, Align2, Layout, UiBuilder, pos2, vec2};
-use eframe::egui::{Rect, Ui};
+use crate::ui::theme::{space, theme_of};
+use eframe::egui::{Align, Layout, Ui, UiBuilder};
 use segue_formats::bvh::RotationOrder;
+use segue_motion::clip::UpAxis;
 use segue_session::export::{ExportBody, ExportFormat, ExportOptions};
 
 /// Metres per unit of length of saved files, with the name of the unit.
 const UNITS: [(Option<f64>, Word); 3] =
     [(None, text::AS_FILE), (Some(1.0), Word::new("m")), (Some(0.01), Word::new("cm"))];
+
+/// Those of FBX, which begin with the usual one.
+const FBX_UNITS: [(Option<f64>, Word); 2] = [UNITS[2], UNITS[1]];
+
+/// The up axes of saved files.
+const AXES: [(Option<UpAxis>, Text<'_>); 3] = [
+    (None, Text::Word(text::AS_FILE)),
+    (Some(UpAxis::Y), Text::Data("Y")),
+    (Some(UpAxis::Z), Text::Data("Z")),
+];
+
+/// Those of FBX, which begin with the usual one.
+const FBX_AXES: [(Option<UpAxis>, Text<'_>); 2] = [AXES[1], AXES[2]];
 
 /// The body in a saved file.
 const BODIES: [(ExportBody, Word); 2] =
@@ -51,29 +64,28 @@ pub(super) fn save_options_ui(which: &str, state: &mut UiState, out: &mut Out, u
     options_ui(&mut state.export, ui);
 }
 
+/// Draws the choice of a format and its options.
+pub(crate) fn format_rows_ui(export: &mut ExportOptions, ui: &mut Ui) {
+    let formats = ExportFormat::ALL.map(|format| (format, text::format(format)));
+    if let Some(format) = kit::choice_row_ui(text::SAVE_AS, export.format, &formats, ui) {
+        export.format = format;
+    }
+    options_ui(export, ui);
+}
+
 /// Draws the choice of the format, and the button that saves.
 fn format_row_ui(which: &str, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let theme = theme_of(ui);
-    let height = (30.0 * theme.scale()).max(theme.row_height() + 2.0).round();
-    let rect = kit::paint::full_width(height, ui);
-    let label = [kit::paint::Run::new(text::SAVE_AS, Type::Label, palette_of(ui).text)];
-    let label = kit::paint::line_of(&label, rect.width() * 0.4, ui);
-    let label = kit::paint::put(ui.painter(), rect.left_center(), Align2::LEFT_CENTER, label);
     let button = theme.row_height();
+    let rect = kit::paint::full_width(button, ui);
     let formats = ExportFormat::ALL.map(|format| (format, text::format(format)));
-    let well = Rect::from_min_max(
-        pos2(label.right() + space::M, rect.top()),
-        pos2(rect.right() - button - space::S, rect.bottom()),
-    );
-    ui.scope_builder(UiBuilder::new().id_salt("format").max_rect(well), |ui| {
-        if let Some(format) =
-            kit::segmented_ui(text::FILE_FORMAT, state.export.format, &formats, ui)
-        {
+    let row = rect.with_max_x(rect.right() - button - space::S);
+    ui.scope_builder(UiBuilder::new().id_salt("format").max_rect(row), |ui| {
+        if let Some(format) = kit::choice_row_ui(text::SAVE_AS, state.export.format, &formats, ui) {
             state.export.format = format;
         }
     });
-    let place =
-        Rect::from_min_size(pos2(rect.right() - button, rect.top() + 1.0), vec2(button, button));
+    let place = rect.with_min_x(rect.right() - button);
     let builder = UiBuilder::new()
         .id_salt("save")
         .max_rect(place)
@@ -88,9 +100,20 @@ fn format_row_ui(which: &str, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
 fn options_ui(export: &mut ExportOptions, ui: &mut Ui) {
     match export.format {
         ExportFormat::Csv => return,
+        ExportFormat::Vrma | ExportFormat::Npz | ExportFormat::G1Csv => {}
         ExportFormat::Glb => {
             if let Some(body) = kit::choice_row_ui(text::SAVE_BODY, export.body, &BODIES, ui) {
                 export.body = body;
+            }
+        }
+        ExportFormat::Fbx => {
+            let unit = export.metres_per_unit.or(FBX_UNITS[0].0);
+            if let Some(unit) = kit::choice_row_ui(text::SAVE_UNIT, unit, &FBX_UNITS, ui) {
+                export.metres_per_unit = unit;
+            }
+            let up = export.up.or(FBX_AXES[0].0);
+            if let Some(up) = kit::choice_row_ui(text::UP_AXIS, up, &FBX_AXES, ui) {
+                export.up = up;
             }
         }
         ExportFormat::Bvh => {
@@ -98,6 +121,9 @@ fn options_ui(export: &mut ExportOptions, ui: &mut Ui) {
                 kit::choice_row_ui(text::SAVE_UNIT, export.metres_per_unit, &UNITS, ui)
             {
                 export.metres_per_unit = unit;
+            }
+            if let Some(up) = kit::choice_row_ui(text::UP_AXIS, export.up, &AXES, ui) {
+                export.up = up;
             }
             if let Some(order) =
                 kit::choice_row_ui(text::ROTATION_ORDER, export.rotation_order, &ORDERS, ui)

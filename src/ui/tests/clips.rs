@@ -233,19 +233,32 @@ fn motion_is_saved_with_the_chosen_options() {
     press("X Y Z", &mut harness);
     picture("save-desk-dark", &mut harness);
     press("Save the file", &mut harness);
+    press("Save as", &mut harness);
+    press("FBX", &mut harness);
+    press(text::UP_AXIS.english(), &mut harness);
+    press("Z", &mut harness);
+    picture("save-fbx-desk-dark", &mut harness);
+    press("Save the file", &mut harness);
+    press("Save as", &mut harness);
     press("GLB", &mut harness);
     press("Save the file", &mut harness);
     harness.get_by_label("Stop recording and save").click();
     press("Save the stage as a picture", &mut harness);
     harness.get_by_label("Recording, 1:07");
     let actions = &harness.state().out.actions;
-    let [Action::Save { which, how }, Action::Save { how: glb, .. }, rest @ ..] =
-        actions.as_slice()
+    let [
+        Action::Save { which, how },
+        Action::Save { how: fbx, .. },
+        Action::Save { how: glb, .. },
+        rest @ ..,
+    ] = actions.as_slice()
     else {
         panic!("{actions:?}")
     };
     assert_eq!((which.as_str(), how.format), ("result:1", ExportFormat::Bvh));
     assert_eq!(how.rotation_order, Some(segue_formats::bvh::RotationOrder::Xyz));
+    let z_up = Some(segue_motion::clip::UpAxis::Z);
+    assert_eq!((fbx.format, fbx.up), (ExportFormat::Fbx, z_up));
     assert_eq!(glb.format, ExportFormat::Glb);
     assert!(rest.contains(&Action::Record) && rest.contains(&Action::SavePicture));
 }

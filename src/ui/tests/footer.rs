@@ -55,7 +55,8 @@ fn result_is_kept_and_saved_from_the_footer() {
     harness.run();
     assert_eq!(is_open(&harness), Some(true));
     picture("footer-options", &mut harness);
-    harness.get_by_label("GLB").click();
+    press(text::SAVE_AS.english(), &mut harness);
+    press("GLB", &mut harness);
     harness.run();
     harness.get_by_label(text::SAVE_BODY.english());
     node_of(text::SAVE.english(), &harness).click();

@@ -88,7 +88,6 @@ pub(crate) const SAVE_BODY: Word = Word::new("Body in the file");
 pub(crate) const BODY_CHARACTER: Word = Word::new("Character on the stage");
 pub(crate) const BODY_PLAIN: Word = Word::new("Plain body");
 pub(crate) const ROTATION_ORDER: Word = Word::new("Rotation order");
-pub(crate) const FILE_FORMAT: Word = Word::new("File format");
 pub(crate) const SAVE_PICTURE: Word = Word::new("Save the stage as a picture");
 pub(crate) const RECORD: Word = Word::new("Record a video of the page");
 pub(crate) const STOP_RECORDING: Word = Word::new("Stop recording and save");
@@ -104,7 +103,8 @@ pub(crate) const KEEP: Word = Word::new("Keep in library");
 pub(crate) const KEEP_HELP: Word = Word::new("Adds the result to the library as a clip");
 /// The button that opens the format and the options of a file.
 pub(crate) const SAVE_MENU: Word = Word::new("Save…");
-pub(crate) const SAVE_MENU_HELP: Word = Word::new("Saves the result as a file: BVH, CSV or GLB");
+pub(crate) const SAVE_MENU_HELP: Word =
+    Word::new("Saves the result as a file: BVH, FBX, GLB, VRMA, NPZ or CSV");
 /// The reason why an unchanged clip is not kept.
 pub(crate) const KEPT_ALREADY: Word = Word::new("This clip is in the library already.");
 /// The button that opens the help texts of all rows.
@@ -234,7 +234,11 @@ pub(crate) fn format(format: ExportFormat) -> Word {
     Word::new(match format {
         ExportFormat::Bvh => "BVH",
         ExportFormat::Csv => "CSV",
+        ExportFormat::Fbx => "FBX",
         ExportFormat::Glb => "GLB",
+        ExportFormat::Vrma => "VRMA",
+        ExportFormat::Npz => "NPZ",
+        ExportFormat::G1Csv => "CSV of a Unitree G1",
     })
 }
 

@@ -21,6 +21,8 @@ mod mesh;
 mod read;
 mod sample;
 mod timing;
+mod write;
 
 pub use read::{read, read_with_progress};
 pub(crate) use segue_fbx::is_fbx;
+pub use write::{FbxOptions, FbxWriteError, write_fbx};

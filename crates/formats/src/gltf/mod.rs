@@ -30,9 +30,11 @@ pub(crate) mod rate;
 pub(crate) mod read;
 pub(crate) mod skin;
 mod texture;
+mod vrma;
 mod write;
 
 pub use read::read;
+pub use vrma::{VrmaError, write_vrma};
 pub use write::{GlbError, GlbOptions, write_character_glb, write_glb};
 
 /// Returns whether the bytes are a `.glb` file, or JSON that may be a `.gltf` file.

@@ -148,7 +148,7 @@ fn standing_rest(skeleton: &Skeleton) -> Vec<Vec3> {
 }
 
 /// Returns a node for each joint, at the joint's index, then one for each end site.
-fn nodes(skeleton: &Skeleton) -> Vec<Value> {
+pub(super) fn nodes(skeleton: &Skeleton) -> Vec<Value> {
     let joints = skeleton.joints();
     let mut children: Vec<Vec<usize>> = vec![Vec::new(); joints.len()];
     let mut ends = Vec::new();
@@ -305,7 +305,7 @@ fn bytes_of(weights: &[f32; 4]) -> [u8; 4] {
     bytes
 }
 
-fn animation(file: &mut File, clip: &Clip) -> Value {
+pub(super) fn animation(file: &mut File, clip: &Clip) -> Value {
     let mut times: Vec<f32> = Vec::with_capacity(clip.frames());
     for frame in 0..clip.frames() {
         let time = clip.time_of(frame) as f32;
@@ -352,7 +352,7 @@ const FLOAT: u32 = 5126;
 /// A file under construction: its binary part, and the JSON that describes it. Each accessor has a
 /// view of its own with the same index.
 #[derive(Default)]
-struct File {
+pub(super) struct File {
     binary: Vec<u8>,
     views: Vec<Value>,
     accessors: Vec<Value>,
@@ -391,7 +391,7 @@ impl File {
     }
 
     /// Returns the whole file: header, JSON and binary part, each padded to a multiple of four.
-    fn finish(self, mut root: Value) -> Result<Vec<u8>, GlbError> {
+    pub(super) fn finish(self, mut root: Value) -> Result<Vec<u8>, GlbError> {
         root["accessors"] = Value::Array(self.accessors);
         root["bufferViews"] = Value::Array(self.views);
         root["buffers"] = json!([{ "byteLength": self.binary.len() }]);

@@ -1,15 +1,11 @@
 //! Clips as `.npz` files, for scripts.
 
+use crate::zip_out::ZipWriter;
 use segue_motion::clip::Clip;
-use std::collections::BTreeSet;
 
 /// The place of the first element is a multiple of this, as `NumPy`'s documentation of the format
 /// asks.
 const ALIGNMENT: usize = 64;
-
-/// The date of the files in the archive, 1 January 1980 in the format of MS-DOS: the same clip
-/// gives the same bytes at any time.
-const DOS_DATE: u16 = 1 << 5 | 1;
 
 /// Writes a clip as a `.npz` file: a stored zip of arrays in version 1.0 of their format.
 ///
@@ -67,12 +63,7 @@ pub fn write_npz(clip: &Clip) -> Vec<u8> {
 
 /// Writes a `.npz` file array by array.
 #[derive(Debug, Default)]
-pub(super) struct NpzWriter {
-    bytes: Vec<u8>,
-    /// The entries of the list at the end.
-    list: Vec<u8>,
-    names: BTreeSet<String>,
-}
+pub(super) struct NpzWriter(ZipWriter);
 
 impl NpzWriter {
     pub(super) fn floats(&mut self, name: &str, shape: &[usize], values: &[f32]) {
@@ -101,51 +92,13 @@ impl NpzWriter {
 
     /// Adds an array of a type and shape from the bytes of its elements.
     pub(super) fn array(&mut self, name: &str, code: &str, shape: &[usize], elements: &[u8]) {
-        if !self.names.insert(name.to_owned()) {
-            return;
-        }
-        let file = npy(code, shape, elements);
-        let path = format!("{name}.npy");
-        let mut crc = flate2::Crc::new();
-        crc.update(&file);
-        let size = file.len() as u32;
-        let mut common: Vec<u8> = Vec::new();
-        // Version 2.0; no flags; stored; time and date.
-        for field in [20, 0, 0, 0, DOS_DATE] {
-            common.extend(u16::to_le_bytes(field));
-        }
-        for field in [crc.sum(), size, size] {
-            common.extend(field.to_le_bytes());
-        }
-        common.extend((path.len() as u16).to_le_bytes());
-        common.extend(0_u16.to_le_bytes());
-        let at = self.bytes.len() as u32;
-        self.bytes.extend(b"PK\x03\x04");
-        self.bytes.extend(&common);
-        self.bytes.extend(path.as_bytes());
-        self.bytes.extend(&file);
-        self.list.extend(b"PK\x01\x02\x14\0");
-        self.list.extend(&common);
-        // No comment, first disk, no attributes.
-        self.list.extend([0; 10]);
-        self.list.extend(at.to_le_bytes());
-        self.list.extend(path.as_bytes());
+        // A motion that has no room in an archive has none in memory, either.
+        self.0.store(&format!("{name}.npy"), &npy(code, shape, elements)).ok();
     }
 
     /// Returns the file.
-    pub(super) fn finish(mut self) -> Vec<u8> {
-        let (at, size) = (self.bytes.len() as u32, self.list.len() as u32);
-        let count = self.names.len() as u16;
-        self.bytes.append(&mut self.list);
-        self.bytes.extend(b"PK\x05\x06\0\0\0\0");
-        for number in [count, count] {
-            self.bytes.extend(number.to_le_bytes());
-        }
-        for number in [size, at] {
-            self.bytes.extend(number.to_le_bytes());
-        }
-        self.bytes.extend(0_u16.to_le_bytes());
-        self.bytes
+    pub(super) fn finish(self) -> Vec<u8> {
+        self.0.finish()
     }
 }
 

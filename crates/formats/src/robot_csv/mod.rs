@@ -20,8 +20,10 @@ mod read;
 mod robot;
 #[cfg(test)]
 mod tests;
+mod write;
 
 pub use read::read;
+pub use write::{RobotCsvError, write_robot_csv};
 
 use super::text::is_space;
 

@@ -57,6 +57,16 @@ impl Robot {
         Self { joints, axes }
     }
 
+    /// Returns the joints, Z up.
+    pub(super) fn joints(&self) -> &[Joint] {
+        &self.joints
+    }
+
+    /// Returns the axes of the hinges at rest in the frame of the pelvis, Z up.
+    pub(super) fn axes(&self) -> &[DVec3] {
+        &self.axes
+    }
+
     /// Returns the motion of these poses.
     pub(super) fn motion(self, poses: &[RobotPose]) -> RawMotion {
         let mut raw = RawMotion {

@@ -166,3 +166,45 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn written_table_is_read_back() {
+    let clip = opened(LAST).clips.remove(0).clip;
+    let text = write_robot_csv(&clip, None).unwrap();
+    assert!(text.lines().all(|line| line.split(',').count() == COLUMNS));
+    let (ours, theirs): (Vec<f64>, Vec<f64>) = (numbers(&text), numbers(LAST));
+    assert_eq!(ours.len(), theirs.len());
+    for (index, (own, expected)) in ours.iter().zip(&theirs).enumerate() {
+        // A quaternion and its opposite are the same rotation.
+        let is_turn = (3..7).contains(&(index % COLUMNS));
+        let apart = (own - expected).abs();
+        let apart = if is_turn { apart.min((own + expected).abs()) } else { apart };
+        assert!(apart < 1e-4, "{index}: {own}, not {expected}");
+    }
+    assert!(greatest_error(&opened(&text).clips[0].clip) < 2e-5);
+    // At another rate there are other rows.
+    let dense = write_robot_csv(&clip, Some(60.0)).unwrap();
+    assert_eq!(dense.lines().count(), 2 * clip.frames() - 1);
+}
+
+fn numbers(table: &str) -> Vec<f64> {
+    table.lines().flat_map(|line| line.split(',')).map(|cell| cell.parse().unwrap()).collect()
+}
+
+#[test]
+fn motion_that_is_not_the_robots_is_not_written() {
+    let skeleton = segue_motion::skeleton::fixtures::cmu_bvh();
+    let other = segue_motion::clip::fixtures::wander(&skeleton, 3, 1);
+    assert_eq!(write_robot_csv(&other, None), Err(RobotCsvError::OtherSkeleton));
+    let clip = opened(LAST).clips.remove(0).clip;
+    let turned = segue_motion::clip::fixtures::wander_by(clip.skeleton(), 8, 1, 0.5);
+    let Err(RobotCsvError::OffAxis { degrees, .. }) = write_robot_csv(&turned, None) else {
+        panic!("a knee that turns sideways was written");
+    };
+    assert!(degrees > 2);
+    let large = clip.skeleton().scaled(1.1);
+    let roots = clip.root_translations().to_vec();
+    let rotations = (0..clip.frames()).flat_map(|frame| clip.rotations(frame).to_vec()).collect();
+    let large = Clip::new("large", std::sync::Arc::new(large), 30.0, rotations, roots).unwrap();
+    assert_eq!(write_robot_csv(&large, None), Err(RobotCsvError::OtherSkeleton));
+}

@@ -18,11 +18,12 @@ pub(super) fn setup_of(library: &Library, file: &SourceFile) -> ReadSetup {
             None => Vec::new(),
         },
         sha256: Some(file.sha256.clone()),
+        convert: None,
     }
 }
 
 /// Returns the setup for reading a new file.
-pub(super) fn setup_for_new(library: &Library) -> ReadSetup {
+pub(crate) fn setup_for_new(library: &Library) -> ReadSetup {
     ReadSetup { companions: companions(library), ..ReadSetup::default() }
 }
 

@@ -5,6 +5,7 @@ mod wire;
 
 pub use wire::{Parcel, Unpacker, WireError};
 
+use super::convert::{ConvertOptions, ConvertedClip, convert_file};
 use super::outside;
 use segue_formats::acclaim::{self, AcclaimSkeleton};
 use segue_formats::archive::{self, ArchiveLimits};
@@ -62,6 +63,9 @@ pub struct ReadSetup {
     /// SHA-256 of the file's bytes, if it is known already; lower-case hexadecimal.
     #[serde(default)]
     pub sha256: Option<String>,
+    /// The options of converting its clips; `None` to return them.
+    #[serde(default)]
+    pub convert: Option<Box<ConvertOptions>>,
 }
 
 /// A small file that others depend on: the skeleton of a motion.
@@ -106,8 +110,12 @@ pub struct ReadFile {
     pub size: u64,
     /// Its format.
     pub kind: FileKind,
-    /// Its bytes, if it was unpacked from an archive: there is no other copy.
+    /// Its bytes, if it was unpacked from an archive: there is no other copy. If it was converted,
+    /// the compressed bytes of the new file.
     pub unpacked: Option<Vec<u8>>,
+    /// The clip that was converted, or the reason why there is none; `None` where no conversion was
+    /// asked for.
+    pub converted: Option<Result<ConvertedClip, Message>>,
     /// Its clips, or the error.
     pub result: Result<ReadClips, ImportError>,
 }
@@ -188,10 +196,8 @@ pub fn read(
             let skeletons = Skeletons::of(companions, &setup.options);
             let sha256 = setup.sha256.as_deref();
             let file = SingleFile { name, bytes, kind, sha256 };
-            return Some(ReadReport {
-                files: vec![file.read(setup, &skeletons, &|_| None, progress)?],
-                notes: Vec::new(),
-            });
+            let file = file.read(setup, &skeletons, &|_| None, progress)?;
+            return Some(ReadReport { files: converted(file, setup), notes: Vec::new() });
         }
     };
     match unpacked {
@@ -203,6 +209,7 @@ pub fn read(
                 size: bytes.len() as u64,
                 kind: kind_of(name, bytes),
                 unpacked: None,
+                converted: None,
                 result: Err(error),
             }],
             notes: Vec::new(),
@@ -249,7 +256,7 @@ fn read_several(
             &beside,
             &mut scaled,
         )?;
-        read.push((index, file));
+        read.extend(converted(file, setup).into_iter().map(|file| (index, file)));
         before += bytes.len();
     }
     // A skeleton that a motion uses is not imported by itself.
@@ -258,10 +265,19 @@ fn read_several(
         .filter_map(|(_, file)| Some(file.result.as_ref().ok()?.companion.as_ref()?.sha256.clone()))
         .collect();
     read.retain(|(_, file)| !used.contains(&file.sha256));
-    for (index, file) in &mut read {
+    for (index, file) in read.iter_mut().filter(|_| setup.convert.is_none()) {
         file.unpacked = files.get_mut(*index).map(|(_, bytes)| std::mem::take(bytes));
     }
     Some(ReadReport { files: read.into_iter().map(|(_, file)| file).collect(), notes })
+}
+
+/// Returns the file as it is, or its clips converted where the setup asks for that. Their motions
+/// are dropped at once, so that an archive of many takes the memory of one.
+fn converted(file: ReadFile, setup: &ReadSetup) -> Vec<ReadFile> {
+    match &setup.convert {
+        Some(options) => convert_file(file, options),
+        None => vec![file],
+    }
 }
 
 /// The skeleton files that can be read.
@@ -372,6 +388,7 @@ impl SingleFile<'_> {
             size: bytes.len() as u64,
             kind,
             unpacked: None,
+            converted: None,
             result: imported.map(|imported| {
                 let awaits_skeleton = imported.is_none();
                 let clips = ReadClips::of(imported.unwrap_or_default(), setup);

@@ -8,6 +8,7 @@ pub use parcel::Parcel;
 pub use unpacker::Unpacker;
 
 use super::{About, Companion};
+use crate::convert::ConvertedClip;
 use crate::memory::motion_bytes;
 use segue_formats::{FileKind, ImportError};
 use segue_motion::clip::{ClipError, Provenance};
@@ -57,6 +58,8 @@ struct FileHead {
     kind: FileKind,
     /// The number of bytes of the file itself, if they are included.
     unpacked: Option<usize>,
+    #[serde(default)]
+    converted: Option<Result<ConvertedClip, Message>>,
     result: Result<ClipsHead, ImportError>,
 }
 

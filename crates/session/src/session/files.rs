@@ -1,11 +1,12 @@
 //! Files that are added to the library, and the memory that they need.
 
 use super::Session;
-use crate::files::LoadedFile;
+use crate::convert::ConvertOptions;
+use crate::files::{LoadedFile, setup_for_new};
 use crate::library::Arrival;
 use crate::memory::{MemoryUse, PageMemory};
 use crate::motion::FeetReader;
-use crate::reading::{Content, ReadReport, ReadTask};
+use crate::reading::{Content, ReadReport, ReadSetup, ReadTask};
 use crate::samples::{SETS, SINGLES, Sample, SampleSet};
 use segue_formats::ImportError;
 use segue_text::Message;
@@ -55,6 +56,16 @@ impl Session {
         let loaded = self.files.load(document, notices, name, bytes, arrival);
         self.refresh();
         loaded
+    }
+
+    /// Returns the setup for reading a file in order to convert it, with the skeleton files that
+    /// the library knows.
+    #[must_use]
+    pub fn setup_for_conversion(&self, options: &ConvertOptions) -> ReadSetup {
+        ReadSetup {
+            convert: Some(Box::new(options.clone())),
+            ..setup_for_new(&self.document.library)
+        }
     }
 
     /// Requests a file to be read elsewhere ([`Request::Read`](crate::Request::Read)) and then

@@ -133,6 +133,7 @@ impl FileHead {
             size: file.size,
             kind: file.kind,
             unpacked: file.unpacked.as_ref().map(Vec::len),
+            converted: file.converted.clone(),
             result: match &file.result {
                 Ok(read) => Ok(ClipsHead {
                     clips: read

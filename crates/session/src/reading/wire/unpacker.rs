@@ -255,6 +255,7 @@ impl Incoming {
             size: head.size,
             kind: head.kind,
             unpacked: head.unpacked.map(|_| self.unpacked),
+            converted: head.converted,
             result,
         })
     }

@@ -1,0 +1,317 @@
+//! Conversion of many files at once: each is read, written in another format, and added to one
+//! archive with a table of what was odd. No file's fault ends the others.
+//!
+//! ```text
+//! file → reading::read with ReadSetup::convert (a worker) → compressed files → Conversion → zip
+//! clip of the library → Conversion::add_clip ─────────────────────────────────────┘
+//! ```
+//!
+//! Motions stay with the worker, one file at a time: what remains of each is its compressed output.
+
+use crate::export::{ExportFormat, ExportOptions, export, file_name};
+use crate::reading::{ReadFile, ReadReport};
+use segue_formats::csv::cell;
+use segue_formats::{PackedFile, ZipFull, ZipWriter};
+use segue_motion::clip::{Clip, Interpolation, Motion, reference_pose, resample, retarget_onto};
+use segue_motion::skeleton::{FoldedChain, Joint, Pose, Roles, Skeleton, local_pose};
+use segue_motion::skin::{Character, SkinnedMesh};
+use segue_text::{Message, ToMessage as _, msg};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::sync::Arc;
+
+/// The name of the table in the archive.
+const TABLE: &str = "conversion.csv";
+/// The size from which on an archive takes no further files, bytes: it is held in memory.
+const MAX_ZIP_BYTES: usize = 1 << 30;
+/// The characters of a file's name that are kept.
+const MAX_STEM: usize = 80;
+/// More files than an archive has room for.
+const MAX_FILES: u32 = 1 << 17;
+
+/// Options of a conversion.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ConvertOptions {
+    /// The format and its options.
+    pub export: ExportOptions,
+    /// The body to which motions are retargeted; `None` to keep their own.
+    pub rig: Option<TargetRig>,
+}
+
+/// A skeleton to which motions are retargeted, standing.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TargetRig {
+    joints: Vec<Joint>,
+    above: Option<FoldedChain>,
+    roles: Roles,
+    /// A pose in which the body stands: joints may have any rest pose.
+    rotations: Vec<glam::Quat>,
+    root: glam::Vec3,
+}
+
+impl TargetRig {
+    /// Returns the body of a motion.
+    #[must_use]
+    pub fn of(motion: &Motion) -> Self {
+        let (clip, roles) = (motion.clip(), motion.roles());
+        let skeleton = clip.skeleton();
+        let Pose { root_translation: root, rotations, .. } =
+            local_pose(skeleton, &reference_pose(clip, roles));
+        Self {
+            joints: skeleton.joints().to_vec(),
+            above: skeleton.folded_chain().cloned(),
+            roles: roles.clone(),
+            rotations,
+            root,
+        }
+    }
+
+    /// Returns a motion on this body.
+    fn put_on(&self, motion: &Motion) -> Result<Motion, Message> {
+        let skeleton = Skeleton::new(self.joints.clone()).map_err(|error| error.to_message())?;
+        let skeleton = Arc::new(skeleton.with_folded_chain(self.above.clone()));
+        let model = Clip::new("", skeleton, 30.0, self.rotations.clone(), vec![self.root])
+            .map_err(|error| error.to_message())?;
+        let clip = retarget_onto(motion.clip(), motion.roles(), &model, &self.roles)
+            .map_err(|error| error.to_message())?;
+        Ok(Motion::with_roles(clip, &self.roles))
+    }
+}
+
+/// A clip in another format. The compressed bytes of its file are not in here where they are sent
+/// beside it ([`ReadFile::unpacked`]).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ConvertedClip {
+    /// The clip's name.
+    pub clip: String,
+    /// The number of its frames as it was read.
+    pub frames: usize,
+    /// Frames per second as it was read.
+    pub fps: f64,
+    /// The number of its joints as it was read.
+    pub joints: usize,
+    /// The file.
+    pub file: PackedFile,
+}
+
+/// Converts a motion. `mesh` is the body of its file on its own skeleton, which a GLB file gets.
+///
+/// # Errors
+/// The reason why it cannot be written in the format, or be put on the body.
+pub fn convert_motion(
+    motion: &Motion,
+    mesh: Option<&Arc<SkinnedMesh>>,
+    options: &ConvertOptions,
+) -> Result<ConvertedClip, Message> {
+    let (own, how) = (motion.clip(), &options.export);
+    if own.frames() == 0 {
+        return Err("it has no frames".into());
+    }
+    let put_on = options.rig.as_ref().map(|rig| rig.put_on(motion)).transpose()?;
+    let shown = put_on.as_ref().unwrap_or(motion);
+    // The other formats resample by themselves.
+    let rate = how.fps.filter(|_| how.format == ExportFormat::Csv);
+    let resampled = rate
+        .and_then(|fps| resample(shown.clip(), fps, Interpolation::default()).ok())
+        .map(|clip| Motion::with_roles(clip, shown.roles()));
+    let character = mesh.filter(|_| options.rig.is_none()).map(|mesh| Character {
+        skeleton: own.skeleton().clone(),
+        roles: motion.roles().clone(),
+        mesh: mesh.clone(),
+    });
+    let bytes = export(resampled.as_ref().unwrap_or(shown), character.as_ref(), &[], how)
+        .map_err(|error| error.to_message())?;
+    let file = PackedFile::new(&bytes).ok_or_else(|| ZipFull.to_message())?;
+    let (frames, fps, joints) = (own.frames(), own.fps(), own.skeleton().len());
+    Ok(ConvertedClip { clip: own.name().to_owned(), frames, fps, joints, file })
+}
+
+/// Replaces the clips of a file that was read by converted ones: a file for each clip.
+pub(crate) fn convert_file(mut file: ReadFile, options: &ConvertOptions) -> Vec<ReadFile> {
+    file.unpacked = None;
+    let Ok(read) = &mut file.result else {
+        return vec![file];
+    };
+    let clips = std::mem::take(&mut read.clips);
+    if clips.is_empty() {
+        let reason = if read.awaits_skeleton {
+            msg!("it needs its skeleton, an ASF file: convert both together")
+        } else {
+            "it has no motion".into()
+        };
+        file.converted = Some(Err(reason));
+        return vec![file];
+    }
+    let mut files = Vec::new();
+    for own in clips {
+        let mut converted = convert_motion(&own.motion, own.mesh.as_ref(), options);
+        let mut made = file.clone();
+        if let Ok(converted) = &mut converted {
+            made.unpacked = Some(std::mem::take(&mut converted.file.deflated));
+        }
+        made.converted = Some(converted);
+        files.push(made);
+        // What was odd is told once.
+        if let Ok(read) = &mut file.result {
+            read.warnings.clear();
+        }
+    }
+    files
+}
+
+/// A line of the table of a conversion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConversionRow {
+    /// The file that was read, or the clip of the library.
+    pub source: String,
+    /// The clip's name, the number of its frames, frames per second, and the number of joints.
+    pub clip: Option<(String, usize, f64, usize)>,
+    /// The file in the archive, or the reason why there is none.
+    pub output: Result<String, Message>,
+    /// The oddities, one sentence each.
+    pub odd: Vec<Message>,
+}
+
+/// A conversion under way.
+#[derive(Clone, Debug, Default)]
+pub struct Conversion {
+    options: ConvertOptions,
+    zip: ZipWriter,
+    /// The paths in the archive in lower case, which some systems do not tell apart.
+    paths: BTreeSet<String>,
+    rows: Vec<ConversionRow>,
+}
+
+impl Conversion {
+    /// Begins a conversion.
+    #[must_use]
+    pub fn new(options: ConvertOptions) -> Self {
+        Self { options, ..Self::default() }
+    }
+
+    /// Returns its options.
+    #[must_use]
+    pub fn options(&self) -> &ConvertOptions {
+        &self.options
+    }
+
+    /// Returns the table so far.
+    #[must_use]
+    pub fn rows(&self) -> &[ConversionRow] {
+        &self.rows
+    }
+
+    /// Adds what became of a file, or the reason why it could not be read.
+    pub fn add_report(&mut self, source: &str, report: Result<ReadReport, Message>) {
+        let report = match report {
+            Ok(report) => report,
+            Err(reason) => return self.fail(source, reason),
+        };
+        if report.files.is_empty() {
+            self.fail(source, msg!("it has no motion"));
+        }
+        let mut notes = report.notes;
+        for file in report.files {
+            let mut odd = std::mem::take(&mut notes);
+            match (file.result, file.converted) {
+                (Err(error), _) => self.fail(&file.name, error.to_message()),
+                (Ok(_), None) => self.fail(&file.name, msg!("it has no motion")),
+                (Ok(read), Some(converted)) => {
+                    odd.extend(read.warnings);
+                    let converted = converted.map(|mut converted| {
+                        converted.file.deflated = file.unpacked.unwrap_or_default();
+                        converted
+                    });
+                    self.add(&file.name, converted, odd);
+                }
+            }
+        }
+    }
+
+    /// Converts a motion of the library and adds it. `mesh` is as in [`convert_motion`].
+    pub fn add_clip(&mut self, name: &str, motion: &Motion, mesh: Option<&Arc<SkinnedMesh>>) {
+        self.add(name, convert_motion(motion, mesh, &self.options), Vec::new());
+    }
+
+    /// Adds a line for a file without result.
+    pub fn fail(&mut self, source: &str, reason: Message) {
+        let (source, odd) = (source.to_owned(), Vec::new());
+        self.rows.push(ConversionRow { source, clip: None, output: Err(reason), odd });
+    }
+
+    fn add(&mut self, source: &str, made: Result<ConvertedClip, Message>, odd: Vec<Message>) {
+        let clip =
+            made.as_ref().ok().map(|made| (made.clip.clone(), made.frames, made.fps, made.joints));
+        let output = made.and_then(|made| {
+            let path = self.free_path(source, &made.clip);
+            if self.zip.len() + made.file.deflated.len() > MAX_ZIP_BYTES {
+                return Err(ZipFull.to_message());
+            }
+            self.zip.add_packed(&path, &made.file).map_err(|full| full.to_message())?;
+            self.paths.insert(path.to_lowercase());
+            Ok(path)
+        });
+        self.rows.push(ConversionRow { source: source.to_owned(), clip, output, odd });
+    }
+
+    /// Returns a path in the archive that no other file has: that of the source with the ending of
+    /// the format, and with the clip's name where the source has several.
+    fn free_path(&self, source: &str, clip: &str) -> String {
+        let ending = self.options.export.format.ending();
+        let mut parts: Vec<&str> =
+            source.split(['/', '\\']).filter(|part| !part.is_empty()).collect();
+        let name = parts.pop().unwrap_or_default();
+        let name = name.strip_suffix(".gz").unwrap_or(name);
+        let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+        let folders = parts.into_iter().fold(String::new(), |path, part| {
+            // `..` would lead out of the folder in which the archive is unpacked.
+            path + &file_name(part, "").trim_matches(['.', ' ']).replace("..", "_") + "/"
+        });
+        // With room for a number: long names are cut.
+        let stem: String = stem.chars().take(MAX_STEM).collect();
+        let names = [stem.clone(), format!("{stem} {clip}")].into_iter();
+        let numbered = (2..=MAX_FILES).map(|number| format!("{stem} {number}"));
+        names
+            .chain(numbered)
+            .map(|name| folders.clone() + &file_name(&name, ending))
+            .find(|path| path != TABLE && !self.paths.contains(&path.to_lowercase()))
+            .unwrap_or_default()
+    }
+
+    /// Returns the archive with its table.
+    #[must_use]
+    pub fn finish(mut self) -> Vec<u8> {
+        let table = self.table();
+        // A table that has no room is shown on screen still.
+        self.zip.store(TABLE, table.as_bytes()).ok();
+        self.zip.finish()
+    }
+
+    /// Returns the table as CSV, in English.
+    #[must_use]
+    pub fn table(&self) -> String {
+        let mut out = "source,clip,frames,fps,joints,file,odd,error\r\n".to_owned();
+        for row in &self.rows {
+            let (name, [frames, fps, joints]) = match &row.clip {
+                None => ("", [const { String::new() }; 3]),
+                Some((name, frames, fps, joints)) => {
+                    (name.as_str(), [frames.to_string(), fps.to_string(), joints.to_string()])
+                }
+            };
+            let odd: Vec<String> = row.odd.iter().map(ToString::to_string).collect();
+            let (file, error) = match &row.output {
+                Ok(path) => (path.clone(), String::new()),
+                Err(reason) => (String::new(), reason.to_string()),
+            };
+            let cells = [&row.source, name, &frames, &fps, &joints, &file, &odd.join("; "), &error]
+                .map(|text: &str| cell(text));
+            // Writing to a string cannot fail.
+            write!(out, "{}\r\n", cells.join(",")).ok();
+        }
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests;

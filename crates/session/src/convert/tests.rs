@@ -1,0 +1,246 @@
+//! Tests of conversions of many files.
+
+use super::*;
+use crate::reading::{Companion, Parcel, ReadSetup, Unpacker, read};
+use segue_formats::archive::{ArchiveLimits, unpack};
+use segue_formats::bvh::{WriteOptions, write};
+use segue_formats::fbx::{FbxOptions, write_fbx};
+use segue_formats::gltf::{GlbOptions, write_glb, write_vrma};
+use segue_formats::numpy::write_npz;
+use segue_formats::{ImportOptions, import};
+use segue_motion::skeleton::Role;
+use segue_motion::synth::{Action, Params, synthesize};
+
+fn made(action: Action) -> Clip {
+    synthesize(&Params::new(action)).unwrap().clip
+}
+
+fn options(format: ExportFormat) -> ConvertOptions {
+    ConvertOptions { export: ExportOptions { format, ..ExportOptions::default() }, rig: None }
+}
+
+/// Returns twenty files of many formats in folders; three of them are broken.
+fn mixed() -> Vec<(String, Vec<u8>)> {
+    let (walk, run) = (made(Action::Walk), made(Action::Run));
+    let roles = Roles::detect(walk.skeleton());
+    let bvh = |clip: &Clip| write(clip, &WriteOptions::default()).into_bytes();
+    let fbx = |clips: &[&Clip]| write_fbx(clips, &FbxOptions::default()).unwrap();
+    let glb = |clip: &Clip| write_glb(clip, &GlbOptions::default()).unwrap();
+    let mut files = vec![
+        ("set/both.fbx".to_owned(), fbx(&[&walk, &run])),
+        ("set/walk.fbx".into(), fbx(&[&walk])),
+        ("set/walk.glb".into(), glb(&walk)),
+        ("set/run.npz".into(), write_npz(&run)),
+        ("set/walk.vrma".into(), write_vrma(&walk, &roles, None).unwrap()),
+        ("../up/走路.bvh".into(), bvh(&walk)),
+        ("a\\b\\run.bvh".into(), bvh(&run)),
+        ("robot.csv".into(), ROBOT.to_vec()),
+        ("points.c3d".into(), C3D.to_vec()),
+        ("=sum(1).bvh".into(), bvh(&run)),
+        ("one/same.bvh".into(), bvh(&walk)),
+        ("one/same.npz".into(), write_npz(&walk)),
+        // The broken ones.
+        ("broken/cut.bvh".into(), bvh(&walk)[..400].to_vec()),
+        ("broken/cut.fbx".into(), fbx(&[&walk])[..5000].to_vec()),
+        ("broken/notes.txt".into(), b"nothing of a motion".to_vec()),
+    ];
+    for index in 0..5 {
+        files.push((format!("more/{index}.bvh"), bvh(&run)));
+    }
+    files
+}
+
+const ROBOT: &[u8] = include_bytes!("../../../formats/tests/cases/robot_csv/scalar_last.csv");
+const C3D: &[u8] = include_bytes!("../../../formats/tests/cases/c3d/ezc3d.c3d");
+
+/// Converts files as the page does, through the worker's messages.
+fn converted(files: &[(String, Vec<u8>)], options: ConvertOptions) -> Conversion {
+    let mut conversion = Conversion::new(options.clone());
+    let setup = ReadSetup { convert: Some(Box::new(options)), ..ReadSetup::default() };
+    let setup: ReadSetup = serde_json::from_str(&serde_json::to_string(&setup).unwrap()).unwrap();
+    for (name, bytes) in files {
+        let report = read(name, bytes, &setup, &mut |_| true).unwrap();
+        let parcel = Parcel::new(report).unwrap();
+        let mut unpacker = Unpacker::new(parcel.head(), u64::MAX).unwrap();
+        parcel.pieces(|piece| unpacker.push(piece));
+        conversion.add_report(name, Ok(unpacker.finish().unwrap()));
+    }
+    conversion
+}
+
+fn files_of(conversion: Conversion) -> Vec<(String, Vec<u8>)> {
+    let zip = conversion.finish();
+    let limits = ArchiveLimits::default();
+    let files = unpack("x.zip", &zip, &limits).unwrap().files;
+    files.into_iter().map(|file| (file.path, file.bytes)).collect()
+}
+
+fn bytes_of<'a>(files: &'a [(String, Vec<u8>)], path: &str) -> &'a [u8] {
+    &files.iter().find(|(own, _)| own == path).unwrap().1
+}
+
+fn text_of<'a>(files: &'a [(String, Vec<u8>)], path: &str) -> &'a str {
+    std::str::from_utf8(bytes_of(files, path)).unwrap()
+}
+
+/// Returns the only clip of a file.
+fn read_back(name: &str, bytes: &[u8]) -> Clip {
+    import(name, bytes, &ImportOptions::default()).unwrap().clips.remove(0).clip
+}
+
+#[test]
+fn conversion_of_mixed_files_survives_the_broken_ones() {
+    let files = mixed();
+    assert_eq!(files.len(), 20);
+    for format in [ExportFormat::Fbx, ExportFormat::Bvh, ExportFormat::Npz, ExportFormat::Glb] {
+        let conversion = converted(&files, options(format));
+        let failed: Vec<&str> = (conversion.rows().iter())
+            .filter(|row| row.output.is_err())
+            .map(|row| row.source.as_str())
+            .collect();
+        assert_eq!(failed, ["broken/cut.bvh", "broken/cut.fbx", "broken/notes.txt"]);
+        // One file has two clips.
+        assert_eq!(conversion.rows().len(), 21);
+        let rows = conversion.rows().to_vec();
+        let outputs = files_of(conversion);
+        for row in rows {
+            let Ok(path) = &row.output else { continue };
+            let (_, frames, ..) = row.clip.as_ref().unwrap();
+            let back = read_back(path, bytes_of(&outputs, path));
+            assert_eq!(back.frames(), *frames, "{path}");
+        }
+    }
+}
+
+#[test]
+fn files_of_a_conversion_keep_their_folders_and_have_names_of_their_own() {
+    let conversion = converted(&mixed(), options(ExportFormat::Fbx));
+    let paths: Vec<&str> =
+        conversion.rows().iter().filter_map(|row| row.output.as_deref().ok()).collect();
+    for path in [
+        "set/both.fbx",
+        "set/both Run.fbx",
+        "motion/up/走路.fbx",
+        "a/b/run.fbx",
+        "one/same.fbx",
+        "more/4.fbx",
+    ] {
+        assert!(paths.contains(&path), "{path} is not among {paths:?}");
+    }
+    let mut sorted = paths.clone();
+    sorted.sort_unstable();
+    sorted.dedup();
+    assert_eq!(sorted.len(), paths.len());
+    assert!(paths.iter().all(|path| !path.contains("..") && !path.starts_with('/')));
+    let table = conversion.table();
+    assert_eq!(table.lines().count(), 1 + 21);
+    assert!(table.contains("\r\n'=sum(1).bvh,"), "a formula would run in a spreadsheet: {table}");
+    let files = files_of(conversion);
+    assert!(text_of(&files, TABLE) == table);
+}
+
+#[test]
+fn conversion_follows_rate_and_rig() {
+    let run = made(Action::Run);
+    let target = segue_motion::skeleton::fixtures::mixamo();
+    let standing = Clip::new(
+        "t",
+        target.clone(),
+        30.0,
+        vec![glam::Quat::IDENTITY; target.len()],
+        vec![target.joints()[0].offset],
+    );
+    let target = Motion::with_roles(standing.unwrap(), &Roles::detect(&target));
+    let how = ConvertOptions {
+        export: ExportOptions { fps: Some(30.0), ..options(ExportFormat::Npz).export },
+        rig: Some(TargetRig::of(&target)),
+    };
+    let files = [("run.bvh".to_owned(), write(&run, &WriteOptions::default()).into_bytes())];
+    let conversion = converted(&files, how.clone());
+    assert_eq!(conversion.rows()[0].output.as_deref(), Ok("run.npz"));
+    let outputs = files_of(conversion);
+    let back = read_back("run.npz", bytes_of(&outputs, "run.npz"));
+    let names = |clip: &Clip| -> Vec<String> {
+        clip.skeleton().joints().iter().map(|joint| joint.name.clone()).collect()
+    };
+    assert_eq!(names(&back), names(target.clip()));
+    let frames = resample(&run, 30.0, Interpolation::default()).unwrap().frames();
+    assert_eq!((back.fps(), back.frames()), (30.0, frames));
+    let roles = Roles::detect(back.skeleton());
+    let far = |clip: &Clip, roles: &Roles| {
+        let hips = roles.get(Role::Hips).unwrap();
+        let at = |frame: usize| clip.world_pose(frame).positions[hips];
+        at(0).distance(at(clip.frames() - 1))
+    };
+    assert!(far(&back, &roles) > 0.3 * far(&run, &Roles::detect(run.skeleton())));
+    // A table has the rate, too.
+    let table = ConvertOptions {
+        export: ExportOptions { format: ExportFormat::Csv, ..how.export },
+        rig: None,
+    };
+    let outputs = files_of(converted(&files, table));
+    assert_eq!(text_of(&outputs, "run.csv").lines().count(), 1 + frames);
+}
+
+#[test]
+fn motion_without_its_skeleton_tells_what_it_needs() {
+    let (asf, amc) = (crate::fixtures::ASF.as_bytes(), crate::fixtures::AMC.as_bytes());
+    let files = [("small.amc".to_owned(), amc.to_vec())];
+    let alone = converted(&files, options(ExportFormat::Bvh));
+    let reason = alone.rows()[0].output.as_ref().unwrap_err().to_string();
+    assert!(reason.contains("ASF"), "{reason}");
+    let setup = ReadSetup {
+        convert: Some(Box::new(options(ExportFormat::Bvh))),
+        companions: vec![Companion::new("small.asf", asf)],
+        ..ReadSetup::default()
+    };
+    let mut both = Conversion::new(options(ExportFormat::Bvh));
+    both.add_report("small.amc", Ok(read("small.amc", amc, &setup, &mut |_| true).unwrap()));
+    assert_eq!(both.rows()[0].output.as_deref(), Ok("small.bvh"));
+}
+
+#[test]
+fn conversion_of_an_archive_has_its_files() {
+    let mut zip = ZipWriter::default();
+    for (name, bytes) in mixed().iter().filter(|(name, _)| name.starts_with("more/")) {
+        zip.store(name, bytes).unwrap();
+    }
+    let files = [("all.zip".to_owned(), zip.finish())];
+    let conversion = converted(&files, options(ExportFormat::Npz));
+    let paths: Vec<&str> =
+        conversion.rows().iter().filter_map(|row| row.output.as_deref().ok()).collect();
+    assert_eq!(paths.len(), 5);
+    assert_eq!(paths[0], "all.zip/more/0.npz");
+}
+
+#[test]
+fn clips_of_the_library_are_converted_beside_files() {
+    let walk =
+        Motion::with_roles(made(Action::Walk), &Roles::detect(made(Action::Walk).skeleton()));
+    let mut conversion = Conversion::new(options(ExportFormat::G1Csv));
+    conversion.add_clip("Walk", &walk, None);
+    assert!(conversion.rows()[0].output.as_ref().unwrap_err().to_string().contains("Unitree G1"));
+    let mut conversion = Conversion::new(options(ExportFormat::Vrma));
+    conversion.add_clip("Walk", &walk, None);
+    conversion.add_clip("Walk", &walk, None);
+    let paths: Vec<&str> =
+        conversion.rows().iter().filter_map(|row| row.output.as_deref().ok()).collect();
+    assert_eq!(paths[0], "Walk.vrma");
+    assert_ne!(paths[1], "Walk.vrma");
+}
+
+#[test]
+fn files_of_long_or_equal_names_are_numbered() {
+    let walk = Motion::with_roles(made(Action::Walk), &Roles::default());
+    let mut conversion = Conversion::new(options(ExportFormat::Npz));
+    let long = "x".repeat(300);
+    for name in [long.as_str(), &long, &long, "a/Walk.bvh", "a/walk.bvh", "conversion.bvh"] {
+        conversion.add_clip(name, &walk, None);
+    }
+    let mut paths: Vec<String> =
+        (conversion.rows().iter()).map(|row| row.output.clone().unwrap().to_lowercase()).collect();
+    assert!(paths.iter().all(|path| path.len() < 120));
+    paths.sort();
+    paths.dedup();
+    assert_eq!(paths.len(), 6);
+}

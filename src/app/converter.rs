@@ -1,0 +1,349 @@
+//! Conversion of many files: one after the other is read and converted by the reader of files, and
+//! what comes back is added to one archive.
+
+use super::Segue;
+use crate::platform::{self, FileBytes, ReadEvent, Reader};
+use crate::ui::{ConvertAction, ConvertShown};
+use segue_session::convert::{Conversion, ConversionRow, ConvertOptions, TargetRig};
+use segue_session::export::ExportOptions;
+use segue_session::reading::{Companion, Content, ReadSetup, ReadTask};
+use segue_session::{Level, Session, Slot};
+use segue_text::{Message, ToMessage as _, msg};
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+/// The number of the first task of a conversion; those of the session are lower.
+const FIRST_TASK: u64 = 1 << 40;
+/// The name of the archive.
+const ARCHIVE: &str = "converted.zip";
+
+/// A file or clip that is to be converted.
+#[derive(Debug)]
+enum Item {
+    File { name: String, bytes: FileBytes },
+    Clip { id: String },
+}
+
+/// The files that wait, and the conversion under way.
+#[derive(Debug, Default)]
+pub(super) struct Converter {
+    waiting: VecDeque<Item>,
+    run: Option<Run>,
+    /// The table of the last conversion, or of the one under way.
+    rows: Arc<Vec<ConversionRow>>,
+    tasks: u64,
+}
+
+/// A conversion under way.
+#[derive(Debug)]
+struct Run {
+    conversion: Conversion,
+    setup: ReadSetup,
+    /// The number of files and clips in all.
+    all: usize,
+    current: Option<Current>,
+}
+
+/// The file that is read now.
+#[derive(Debug)]
+struct Current {
+    task: u64,
+    name: String,
+    size: u64,
+    done: u64,
+}
+
+impl Converter {
+    /// Returns whether a task of the reader is part of a conversion.
+    pub(super) fn is_own(task: u64) -> bool {
+        task >= FIRST_TASK
+    }
+
+    /// Adds a file, also while others are converted.
+    pub(super) fn add_file(&mut self, name: String, bytes: FileBytes) {
+        let bytes = match bytes {
+            // The bytes of a skeleton file go with each task.
+            FileBytes::Here(bytes) if !is_skeleton(&name) => platform::outside_memory(bytes),
+            other => other,
+        };
+        self.add(Item::File { name, bytes });
+    }
+
+    fn add(&mut self, item: Item) {
+        self.waiting.push_back(item);
+        if let Some(run) = &mut self.run {
+            run.all += 1;
+        }
+    }
+
+    /// Takes in an event of the file that is read.
+    pub(super) fn on_read_event(&mut self, task: u64, event: ReadEvent) {
+        let Some(run) = &mut self.run else { return };
+        let Some(current) = run.current.as_mut().filter(|current| current.task == task) else {
+            return;
+        };
+        let report = match event {
+            ReadEvent::Progress(done) => {
+                current.done = done;
+                return;
+            }
+            ReadEvent::NoRoom(_) => Err("there is no room for the file".into()),
+            ReadEvent::Done(report) => report.map_err(|error| error.to_message()),
+        };
+        let name = std::mem::take(&mut current.name);
+        run.current = None;
+        run.conversion.add_report(&name, report);
+    }
+
+    /// Returns what the panel shows.
+    pub(super) fn shown(&self) -> ConvertShown {
+        let progress = self.run.as_ref().map(|run| {
+            let current = run.current.as_ref();
+            let part = current.map_or(0.0, |now| now.done as f32 / now.size.max(1) as f32);
+            let left = self.waiting.len() + usize::from(current.is_some());
+            let done = run.all.saturating_sub(left);
+            let share = (done as f32 + part.min(1.0)) / run.all.max(1) as f32;
+            (share, done, run.all)
+        });
+        ConvertShown { waiting: self.waiting.len(), progress, rows: Arc::clone(&self.rows) }
+    }
+
+    /// Begins with the next file when the one before is done. Returns whether there is more to do
+    /// at once, and the archive after the last file.
+    fn advance(&mut self, session: &Session, reader: &mut Reader) -> (bool, Option<Vec<u8>>) {
+        let Some(run) = &mut self.run else {
+            return (false, None);
+        };
+        if run.conversion.rows().len() != self.rows.len() {
+            self.rows = Arc::new(run.conversion.rows().to_vec());
+        }
+        if run.current.is_some() {
+            return (false, None);
+        }
+        match self.waiting.pop_front() {
+            None => return (false, self.end()),
+            Some(Item::File { name, bytes }) => {
+                self.tasks += 1;
+                let id = FIRST_TASK + self.tasks;
+                let size = match &bytes {
+                    FileBytes::Here(bytes) => bytes.len() as u64,
+                    FileBytes::Large(file) => file.len(),
+                };
+                let content = Content::Outside(String::new());
+                let task =
+                    ReadTask { id, name: name.clone(), content, size, setup: run.setup.clone() };
+                run.current = Some(Current { task: id, name, size, done: 0 });
+                reader.start(task, bytes);
+            }
+            Some(Item::Clip { id }) => {
+                let entry = session.library().find(&id);
+                match entry.and_then(|entry| Some((entry, entry.motion.as_ref()?))) {
+                    Some((entry, motion)) => {
+                        let title = entry.title().to_string();
+                        run.conversion.add_clip(&title, motion, entry.mesh.as_ref());
+                    }
+                    None => run.conversion.fail(&id, "its motion is not loaded".into()),
+                }
+            }
+        }
+        (true, None)
+    }
+
+    /// Stops, and returns the archive of what is done.
+    fn stop(&mut self, reader: &mut Reader) -> Option<Vec<u8>> {
+        let run = self.run.as_mut()?;
+        if let Some(current) = run.current.take() {
+            reader.stop(current.task);
+            run.conversion.fail(&current.name, stopped());
+        }
+        for item in self.waiting.drain(..) {
+            let (Item::File { name, .. } | Item::Clip { id: name }) = item;
+            run.conversion.fail(&name, stopped());
+        }
+        self.end()
+    }
+
+    fn end(&mut self) -> Option<Vec<u8>> {
+        let run = self.run.take()?;
+        self.rows = Arc::new(run.conversion.rows().to_vec());
+        Some(run.conversion.finish())
+    }
+
+    /// Returns the skeleton files among those that wait, and leaves them out where there are
+    /// motions that need them.
+    fn take_skeletons(&mut self) -> Vec<Companion> {
+        let has_motions = self
+            .waiting
+            .iter()
+            .any(|item| matches!(item, Item::File { name, .. } if has_ending(name, "amc")));
+        let mut found = Vec::new();
+        if has_motions {
+            self.waiting.retain(|item| match item {
+                Item::File { name, bytes: FileBytes::Here(bytes) } if is_skeleton(name) => {
+                    found.push(Companion::new(name, bytes));
+                    false
+                }
+                _ => true,
+            });
+        }
+        found
+    }
+}
+
+fn has_ending(name: &str, ending: &str) -> bool {
+    name.rsplit_once('.').is_some_and(|(_, own)| own.eq_ignore_ascii_case(ending))
+}
+
+fn is_skeleton(name: &str) -> bool {
+    has_ending(name, "asf")
+}
+
+impl Segue {
+    /// Carries out a step of a conversion that the user asks for.
+    pub(super) fn run_conversion(&mut self, action: &ConvertAction) {
+        match action {
+            ConvertAction::AddClips(ids) => {
+                for id in ids {
+                    self.converter.add(Item::Clip { id: id.clone() });
+                }
+            }
+            ConvertAction::Start { how, onto_a } => self.start_conversion(how, *onto_a),
+            ConvertAction::Stop => {
+                let archive = self.converter.stop(&mut self.reader);
+                self.save_archive(archive);
+            }
+            ConvertAction::Clear => {
+                self.converter.waiting.clear();
+                self.converter.rows = Arc::default();
+            }
+        }
+    }
+
+    fn start_conversion(&mut self, how: &ExportOptions, onto_a: bool) {
+        if self.converter.run.is_some() || self.converter.waiting.is_empty() {
+            return;
+        }
+        let a = self.session.slot(Slot::A).and_then(|entry| entry.motion.clone());
+        let rig = match (onto_a, a) {
+            (true, None) => {
+                let reason = msg!("A has no skeleton to convert to: choose a clip for A.");
+                return self.session.say(Level::Warning, reason);
+            }
+            (true, Some(a)) => Some(TargetRig::of(&a)),
+            (false, _) => None,
+        };
+        let options = ConvertOptions { export: *how, rig };
+        let mut setup = self.session.setup_for_conversion(&options);
+        setup.companions.extend(self.converter.take_skeletons());
+        let all = self.converter.waiting.len();
+        let conversion = Conversion::new(options);
+        self.converter.run = Some(Run { conversion, setup, all, current: None });
+        self.converter.rows = Arc::default();
+    }
+
+    /// Begins with the next file when the one before is done, and saves the archive after the last.
+    /// Returns whether there is more to do at once.
+    pub(super) fn advance_conversion(&mut self) -> bool {
+        let (more, archive) = self.converter.advance(&self.session, &mut self.reader);
+        self.save_archive(archive);
+        more
+    }
+
+    fn save_archive(&self, archive: Option<Vec<u8>>) {
+        if let Some(bytes) = archive {
+            platform::download(ARCHIVE, "application/zip", &bytes, &self.inbox);
+        }
+    }
+}
+
+fn stopped() -> Message {
+    "the conversion was stopped".into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::platform::{Inbox, Incoming};
+    use segue_session::export::ExportFormat;
+
+    const BVH: &[u8] = b"HIERARCHY ROOT Hips { OFFSET 0 1 0 CHANNELS 1 Yrotation End Site { OFFSET 0 0.7 0 } } MOTION Frames: 2 Frame Time: .1\n1\n2";
+
+    /// Returns an app whose panel of conversions is open.
+    fn app() -> Segue {
+        let mut segue = Segue::new(Inbox::default(), None, "lab=view&play=off".to_owned());
+        while segue.poll() || segue.is_busy() {}
+        segue.panels.convert.is_open = true;
+        segue
+    }
+
+    fn start(segue: &mut Segue) {
+        let how = ExportOptions { format: ExportFormat::Npz, ..ExportOptions::default() };
+        segue.run_conversion(&ConvertAction::Start { how, onto_a: false });
+    }
+
+    /// Returns the archive of the conversion under way.
+    fn archive(segue: &mut Segue) -> Vec<u8> {
+        loop {
+            let (_, archive) = segue.converter.advance(&segue.session, &mut segue.reader);
+            if let Some(bytes) = archive {
+                return bytes;
+            }
+            for incoming in segue.inbox.take() {
+                segue.receive(incoming);
+            }
+            std::thread::yield_now();
+        }
+    }
+
+    #[test]
+    fn files_dropped_on_the_open_panel_are_converted_and_do_not_join_the_library() {
+        let mut segue = app();
+        let before = segue.session.library().entries().len();
+        segue.receive(Incoming::Opening(3));
+        for (name, bytes) in [("a/one.bvh", BVH), ("two.bvh", &BVH[..80]), ("three.bvh", BVH)] {
+            segue.receive(Incoming::File { name: name.into(), bytes: Arc::from(bytes) });
+        }
+        segue.run_conversion(&ConvertAction::AddClips(vec!["walk".into(), "nowhere".into()]));
+        assert_eq!(segue.converter.shown().waiting, 5);
+        start(&mut segue);
+        assert_eq!(segue.converter.shown().progress, Some((0.0, 0, 5)));
+        let bytes = archive(&mut segue);
+        assert!(bytes.starts_with(b"PK"));
+        let shown = segue.converter.shown();
+        assert_eq!((shown.waiting, shown.progress), (0, None));
+        let outputs: Vec<Option<&str>> =
+            shown.rows.iter().map(|row| row.output.as_deref().ok()).collect();
+        let expected = [Some("a/one.npz"), None, Some("three.npz"), Some("Walk.npz"), None];
+        assert_eq!(outputs, expected);
+        assert_eq!(segue.session.library().entries().len(), before);
+        // With the panel closed, a file is for the library again.
+        segue.panels.convert.is_open = false;
+        segue.receive(Incoming::File { name: "one.bvh".into(), bytes: Arc::from(BVH) });
+        assert_eq!(segue.session.library().entries().len(), before + 1);
+    }
+
+    #[test]
+    fn conversion_that_is_stopped_keeps_what_is_done() {
+        let mut segue = app();
+        segue.run_conversion(&ConvertAction::AddClips(vec!["walk".into()]));
+        for index in 0..3 {
+            segue.converter.add_file(format!("{index}.bvh"), FileBytes::Here(Arc::from(BVH)));
+        }
+        start(&mut segue);
+        // The clip is done at once, and the first file has begun.
+        for _ in 0..2 {
+            let (_, archive) = segue.converter.advance(&segue.session, &mut segue.reader);
+            assert_eq!(archive, None);
+        }
+        let archive = segue.converter.stop(&mut segue.reader);
+        assert!(archive.is_some_and(|bytes| bytes.starts_with(b"PK")));
+        let rows = segue.converter.shown().rows;
+        assert!(rows[0].output.is_ok() && rows.len() == 4);
+        assert!(rows[1..].iter().all(|row| row.output.is_err()));
+        // What the stopped file still sends is not taken in.
+        for incoming in segue.inbox.take() {
+            segue.receive(incoming);
+        }
+        assert_eq!(segue.converter.shown().rows.len(), 4);
+    }
+}

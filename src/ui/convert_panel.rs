@@ -1,0 +1,156 @@
+//! The panel in which many files are converted at once.
+
+use super::kit::{self, Button, Icon};
+use super::language::{Text, say};
+use super::out::{Action, ConvertAction, Out};
+use super::rows::format_rows_ui;
+use super::state::UiState;
+use super::text;
+use super::theme::{Type, palette_of, space, theme_of};
+use eframe::egui::{self, Align2, RichText, ScrollArea, Ui};
+use segue_session::convert::ConversionRow;
+use segue_session::export::ExportOptions;
+use segue_session::{Session, Slot};
+use std::sync::Arc;
+
+/// The width of the panel, points.
+const WIDTH: f32 = 460.0;
+/// The lines of the table that are shown; the archive has them all.
+const MAX_LINES: usize = 200;
+
+/// The state of the panel.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ConvertState {
+    /// Whether it is open: files that are dropped are then for it.
+    pub(crate) is_open: bool,
+    /// The format and its options.
+    pub(crate) export: ExportOptions,
+    /// Whether motions are put on the body of A.
+    pub(crate) onto_a: bool,
+    /// The files and the conversion under way.
+    pub(crate) shown: ConvertShown,
+}
+
+/// The files of a conversion as the panel shows them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ConvertShown {
+    /// The number of files that were added.
+    pub(crate) waiting: usize,
+    /// The share that is done, 0 to 1, and the numbers of files done and in all; `None` while
+    /// nothing is converted.
+    pub(crate) progress: Option<(f32, usize, usize)>,
+    /// The table so far.
+    pub(crate) rows: Arc<Vec<ConversionRow>>,
+}
+
+/// Draws the panel, if it is open.
+pub(super) fn convert_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    if !state.convert.is_open {
+        return;
+    }
+    let theme = theme_of(ui);
+    let screen = ui.ctx().content_rect().size();
+    let width = (WIDTH * theme.scale()).min(screen.x - 4.0 * space::L);
+    let most = screen.y - 6.0 * space::L - theme.row_height();
+    let mut open = true;
+    let title = RichText::new(say(text::CONVERT_TITLE, ui)).font(theme.font(Type::Title));
+    egui::Window::new(title)
+        .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
+        .default_size([width, most])
+        .collapsible(false)
+        .resizable(false)
+        .open(&mut open)
+        .show(ui.ctx(), |ui| {
+            ui.set_width(width);
+            ScrollArea::vertical().max_height(most).auto_shrink([false, true]).show(ui, |ui| {
+                content_ui(session, &mut state.convert, out, ui);
+            });
+        });
+    state.convert.is_open &= open;
+}
+
+fn content_ui(session: &Session, state: &mut ConvertState, out: &mut Out, ui: &mut Ui) {
+    let palette = palette_of(ui);
+    kit::note_ui(text::CONVERT_HELP, palette.muted, ui);
+    ui.add_space(space::S);
+    if let Some((share, done, all)) = state.shown.progress {
+        let detail = text::files_done(done, all);
+        if kit::progress_row_ui(text::CONVERTING, Some(share), &detail, ui) {
+            out.actions.push(Action::Convert(ConvertAction::Stop));
+        }
+    } else {
+        start_ui(session, state, out, ui);
+    }
+    table_ui(&state.shown.rows, ui);
+}
+
+/// Draws the options, and the buttons that add files and begin.
+fn start_ui(session: &Session, state: &mut ConvertState, out: &mut Out, ui: &mut Ui) {
+    format_rows_ui(&mut state.export, ui);
+    let bodies = [(false, text::BODY_OWN), (true, text::BODY_OF_A)];
+    let has_a = session.slot(Slot::A).is_some_and(|entry| entry.motion.is_some());
+    state.onto_a &= has_a;
+    if has_a && let Some(onto_a) = kit::choice_row_ui(text::CONVERT_BODY, state.onto_a, &bodies, ui)
+    {
+        state.onto_a = onto_a;
+    }
+    ui.add_space(space::S);
+    let waiting = state.shown.waiting;
+    if waiting > 0 {
+        kit::note_ui(&text::files_waiting(waiting), palette_of(ui).text, ui);
+    }
+    ui.horizontal_wrapped(|ui| {
+        let choose = Button::new(text::CHOOSE_FILES).icon(Icon::Folder);
+        let choose = if waiting == 0 { choose.primary() } else { choose };
+        if kit::button_ui(choose, ui).clicked() {
+            out.actions.push(Action::OpenFiles);
+        }
+        let convert = Button::new(text::CONVERT).primary();
+        if waiting > 0 && kit::button_ui(convert, ui).clicked() {
+            let (how, onto_a) = (state.export, state.onto_a);
+            out.actions.push(Action::Convert(ConvertAction::Start { how, onto_a }));
+        }
+        let can_clear = waiting > 0 || !state.shown.rows.is_empty();
+        if can_clear && kit::button_ui(Button::new(text::CLEAR_FILES), ui).clicked() {
+            out.actions.push(Action::Convert(ConvertAction::Clear));
+        }
+    });
+}
+
+/// Draws what came of the files: first those that failed, then those with oddities.
+fn table_ui(rows: &[ConversionRow], ui: &mut Ui) {
+    if rows.is_empty() {
+        return;
+    }
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    let failed = rows.iter().filter(|row| row.output.is_err()).count();
+    let odd = rows.iter().filter(|row| row.output.is_ok() && !row.odd.is_empty()).count();
+    ui.add_space(space::S);
+    let result = text::conversion_result(rows.len() - failed, odd, failed);
+    kit::note_ui(&result, palette.text, ui);
+    let rank = |row: &&ConversionRow| match (&row.output, row.odd.is_empty()) {
+        (Err(_), _) => 0,
+        (Ok(_), false) => 1,
+        (Ok(_), true) => 2,
+    };
+    let mut ordered: Vec<&ConversionRow> = rows.iter().collect();
+    ordered.sort_by_key(rank);
+    for row in ordered.iter().take(MAX_LINES) {
+        ui.add_space(space::XS);
+        let name = match &row.output {
+            Ok(path) => format!("{} → {path}", row.source),
+            Err(_) => row.source.clone(),
+        };
+        let name = RichText::new(say(Text::Data(&name), ui)).font(theme.font(Type::Small));
+        ui.add(egui::Label::new(name.color(palette.text)).wrap());
+        if let Err(reason) = &row.output {
+            kit::note_ui(reason, palette.bad, ui);
+        }
+        for sentence in &row.odd {
+            kit::note_ui(sentence, palette.warning, ui);
+        }
+    }
+    if rows.len() > MAX_LINES {
+        kit::note_ui(&text::lines_left_out(rows.len() - MAX_LINES), palette.muted, ui);
+    }
+}

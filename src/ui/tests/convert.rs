@@ -1,0 +1,94 @@
+//! The panel in which many files are converted.
+
+use super::*;
+use crate::ui::convert_panel::ConvertShown;
+use crate::ui::out::ConvertAction;
+use segue_session::convert::ConversionRow;
+use std::sync::Arc;
+
+fn row(
+    source: &str,
+    output: Result<&str, &'static str>,
+    odd: &'static [&'static str],
+) -> ConversionRow {
+    ConversionRow {
+        source: source.into(),
+        clip: Some(("walk".into(), 192, 60.0, 22)),
+        output: output.map(str::to_owned).map_err(Into::into),
+        odd: odd.iter().map(|sentence| (*sentence).into()).collect(),
+    }
+}
+
+/// Returns a page whose panel is open, with some files.
+fn opened(size: eframe::egui::Vec2) -> Harness<'static, Page> {
+    let mut page = page("lab=blend&play=off");
+    page.state.convert.is_open = true;
+    page.state.convert.shown.waiting = 12;
+    harness(size, DARK, page)
+}
+
+#[test]
+fn many_files_are_converted_with_the_chosen_options() {
+    let mut harness = opened(DESK);
+    press(text::SAVE_AS.english(), &mut harness);
+    press("FBX", &mut harness);
+    press(text::CONVERT_BODY.english(), &mut harness);
+    press(text::BODY_OF_A.english(), &mut harness);
+    picture("convert-desk-dark", &mut harness);
+    press(text::CHOOSE_FILES.english(), &mut harness);
+    press(text::CONVERT.english(), &mut harness);
+    let actions = &harness.state().out.actions;
+    let [Action::OpenFiles, Action::Convert(ConvertAction::Start { how, onto_a })] =
+        actions.as_slice()
+    else {
+        panic!("{actions:?}")
+    };
+    assert_eq!((how.format, *onto_a), (ExportFormat::Fbx, true));
+}
+
+#[test]
+fn conversion_under_way_can_be_stopped() {
+    let mut harness = opened(DESK);
+    harness.state_mut().state.convert.shown.progress = Some((0.4, 8, 20));
+    harness.run();
+    assert!(harness.query_by_label(text::CONVERT.english()).is_none());
+    picture("convert-under-way-dark", &mut harness);
+    press("Cancel", &mut harness);
+    assert_eq!(harness.state().out.actions, [Action::Convert(ConvertAction::Stop)]);
+}
+
+#[test]
+fn conversion_table_begins_with_what_failed() {
+    for (name, size) in [("convert-done-desk", DESK), ("convert-done-phone", PHONE)] {
+        let mut harness = opened(size);
+        let rows = vec![
+            row("set/walk.fbx", Ok("set/walk.bvh"), &[]),
+            row("set/robot.csv", Ok("set/robot.bvh"), &["the format has no frame rate"]),
+            row("broken/cut.bvh", Err("found the end of the file, expected `}`"), &[]),
+        ];
+        let shown = ConvertShown { waiting: 0, progress: None, rows: Arc::new(rows) };
+        harness.state_mut().state.convert.shown = shown;
+        harness.run();
+        picture(name, &mut harness);
+        let top = |label: &str| harness.get_by_label(label).rect().top();
+        let (failed, odd) = (top("broken/cut.bvh"), top("set/robot.csv → set/robot.bvh"));
+        assert!(failed < odd && odd < top("set/walk.fbx → set/walk.bvh"));
+        harness.get_by_label("2 saved, 1 of them with oddities; 1 failed");
+    }
+}
+
+#[test]
+fn chosen_clips_go_to_the_panel_of_conversions() {
+    let mut harness = harness(DESK, DARK, page("lab=blend&play=off"));
+    harness.state_mut().state.library.picked.insert("walk".into());
+    harness.state_mut().state.library.picked.insert("run".into());
+    harness.run();
+    press(text::CONVERT_CLIPS.english(), &mut harness);
+    let clips = ConvertAction::AddClips(vec!["walk".into(), "run".into()]);
+    assert_eq!(harness.state().out.actions, [Action::Convert(clips)]);
+    assert!(harness.state().state.convert.is_open);
+    // Escape closes the panel.
+    harness.key_press(eframe::egui::Key::Escape);
+    harness.run();
+    assert!(!harness.state().state.convert.is_open);
+}
