@@ -9,6 +9,7 @@
     reason = "a message takes over the parts that it is made of"
 )]
 
+mod clean;
 mod edit;
 mod graph;
 mod lessons;
@@ -22,6 +23,7 @@ mod speed;
 mod stage;
 mod transition;
 
+pub(crate) use clean::*;
 pub(crate) use edit::*;
 pub(crate) use graph::*;
 pub(crate) use lessons::*;

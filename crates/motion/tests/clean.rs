@@ -40,7 +40,7 @@ fn of_kind(faults: &[Fault], kind: FaultKind) -> Vec<&Fault> {
     faults.iter().filter(|fault| fault.kind == kind).collect()
 }
 
-fn mended(motion: &Motion, faults: &[&Fault]) -> Arc<Motion> {
+fn mended(motion: &Arc<Motion>, faults: &[&Fault]) -> Arc<Motion> {
     mend(motion, faults, &MendOptions::default()).unwrap().motion
 }
 
@@ -266,7 +266,7 @@ fn faults_of_another_clip_are_refused() {
     let spoilt = damage(walk.clip(), walk.roles(), 3, 1).unwrap();
     let motion = Arc::new(Motion::analyze(spoilt.clip));
     let faults = find_faults(&motion);
-    let short = Motion::analyze(walk.clip().crop(0..10).unwrap());
+    let short = Arc::new(Motion::analyze(walk.clip().crop(0..10).unwrap()));
     let all: Vec<&Fault> = faults.iter().collect();
     assert!(mend(&short, &all, &MendOptions::default()).is_err());
 }

@@ -70,6 +70,8 @@ fn every_lab_is_in_chinese() {
         ("zh-layers", DESK, DARK, "lab=layers&play=off&t=1&layer_mode=additive"),
         ("zh-register", DESK, LIGHT, "lab=register&play=off&t=1"),
         ("zh-path", DESK, DARK, "lab=path&play=off&t=1"),
+        ("zh-clean", HALL_SIZE, LIGHT, "lab=clean&a=walk&clean_faults=4&play=off&t=1"),
+        ("zh-phone-clean", PHONE, DARK, "lab=clean&a=walk&clean_faults=4&play=off&t=1"),
         ("zh-graph", DESK, LIGHT, rich),
         ("zh-match", DESK, DARK, "lab=match&scenario=left&play=off&t=2"),
         ("zh-hall-blend", HALL_SIZE, HALL, "lab=blend&play=off&t=1"),

@@ -13,7 +13,7 @@ const REFERENCE_HEIGHT_M: f32 = 1.75;
 const MIN_SLIDE_CM: f32 = 2.0;
 /// The least drift: centimetres and degrees per second; and the most, above which the body moves in
 /// place instead.
-const DRIFT_CMPS: [f32; 2] = [1.5, 15.0];
+const DRIFT_CMPS: [f32; 2] = [2.5, 15.0];
 const TURN_DPS: [f32; 2] = [1.5, 15.0];
 /// The least rise of the ground over a take, metres, and the fewest stances that show it.
 const MIN_RISE_M: f32 = 0.04;
@@ -144,7 +144,7 @@ pub(super) fn drift(motion: &Motion) -> Option<Fault> {
     moves.then(|| {
         let form = Form::Drift { velocity_mps: velocity, turn_rps: 0.0 };
         let size = (cmps * scale, SizeUnit::CentimetresPerSecond);
-        let sure = confidence(cmps, DRIFT_CMPS[0] * 1.3);
+        let sure = confidence(cmps, DRIFT_CMPS[0] * 1.8);
         Fault::of_body(FaultKind::Drift, frames, form, size, sure)
     })
 }

@@ -7,7 +7,7 @@ use super::tracks::{Track, Tracks};
 use crate::clip::{Clip, ClipError, Contacts, Motion};
 use crate::math::{Planar, quat, sort::sort_by_key};
 use crate::skeleton::Side;
-use crate::transition::{FootLockError, FootLockOptions, foot_lock, has_legs};
+use crate::transition::{FootLockError, FootLockOptions, FootLocking, has_legs};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -50,71 +50,181 @@ pub struct Mended {
 /// # Errors
 /// [`MendError`] if the faults belong to another clip, or feet cannot be held.
 pub fn mend(
-    source: &Motion,
+    source: &Arc<Motion>,
     faults: &[&Fault],
     options: &MendOptions,
 ) -> Result<Mended, MendError> {
-    let whole = 0..source.clip().frames();
-    let fits = |fault: &&Fault| {
-        fault.frames.end <= whole.end
-            && fault.joints.iter().all(|&joint| joint < source.clip().skeleton().len())
-    };
-    if !faults.iter().all(fits) {
-        return Err(MendError::OtherClip);
-    }
-    if !faults.iter().any(|fault| fault.kind.has_mend()) {
-        return Ok(Mended { motion: Arc::new(source.clone()), frames: whole });
-    }
-    let mut faults = faults.to_vec();
-    sort_by_key(&mut faults, |fault| (fault.kind, fault.frames.start));
-    let mut tracks = None;
-    for fault in faults.iter().filter(|fault| !fault.tracks.is_empty()) {
-        let tracks = tracks.get_or_insert_with(|| Tracks::of(source.clip()));
-        if fault.tracks.iter().any(|part| part.track >= tracks.all.len()) {
+    let mut mending = Mending::new(source, faults, options)?;
+    while mending.advance()? {}
+    Ok(mending.finish())
+}
+
+/// The frames of a foot lock that one slice processes.
+const LOCKED_PER_SLICE: usize = 500;
+
+/// The work of [`mend`] in slices, for long takes.
+#[derive(Debug)]
+pub struct Mending {
+    source: Arc<Motion>,
+    faults: Vec<Fault>,
+    options: MendOptions,
+    stage: Stage,
+}
+
+#[derive(Debug)]
+enum Stage {
+    /// Mends the tracks of one fault after the other.
+    Tracks {
+        tracks: Option<Box<Tracks>>,
+        next: usize,
+    },
+    /// Holds the feet.
+    Feet {
+        motion: Box<Motion>,
+        frames: Range<usize>,
+        locking: Box<FootLocking>,
+    },
+    Done(Mended),
+}
+
+impl Mending {
+    /// Begins to mend. Nothing is computed yet: call [`advance`](Self::advance).
+    ///
+    /// # Errors
+    /// [`MendError::OtherClip`] if the faults do not fit the clip.
+    pub fn new(
+        source: &Arc<Motion>,
+        faults: &[&Fault],
+        options: &MendOptions,
+    ) -> Result<Self, MendError> {
+        let clip = source.clip();
+        let tracks = clip.skeleton().len() + 1 + clip.translations().len();
+        let fits = |fault: &&Fault| {
+            fault.frames.end <= clip.frames()
+                && fault.joints.iter().all(|&joint| joint < clip.skeleton().len())
+                && fault.tracks.iter().all(|part| part.track < tracks)
+        };
+        if !faults.iter().all(fits) {
             return Err(MendError::OtherClip);
         }
-        in_tracks(fault, tracks, options.cutoff_hz);
+        let mut faults: Vec<Fault> = faults
+            .iter()
+            .filter(|fault| fault.kind.has_mend())
+            .map(|&fault| fault.clone())
+            .collect();
+        sort_by_key(&mut faults, |fault| (fault.kind, fault.frames.start));
+        let stage = if faults.is_empty() {
+            Stage::Done(Mended { motion: Arc::clone(source), frames: 0..clip.frames() })
+        } else {
+            Stage::Tracks { tracks: None, next: 0 }
+        };
+        Ok(Self { source: Arc::clone(source), faults, options: *options, stage })
     }
-    let mut clip = match tracks {
-        Some(tracks) => Arc::new(tracks.clip(source.clip())?),
-        None => Arc::clone(source.clip()),
-    };
-    let mut frames = whole;
-    for fault in &faults {
-        match fault.whole {
-            Some(Form::Level { from_m, rise_mps }) => {
-                clip = Arc::new(levelled(&clip, from_m, rise_mps))
+
+    /// Does one part of the work. Returns `false` when all is done.
+    ///
+    /// # Errors
+    /// [`MendError`] if feet cannot be held.
+    pub fn advance(&mut self) -> Result<bool, MendError> {
+        match &mut self.stage {
+            Stage::Tracks { tracks, next } => {
+                let of_tracks = self.faults.iter().filter(|fault| fault.is_in_tracks());
+                if let Some(fault) = of_tracks.clone().nth(*next) {
+                    let tracks =
+                        tracks.get_or_insert_with(|| Box::new(Tracks::of(self.source.clip())));
+                    in_tracks(fault, tracks, self.options.cutoff_hz);
+                    *next += 1;
+                } else {
+                    let tracks = tracks.take();
+                    self.stage = self.whole_body(tracks.as_deref())?;
+                }
             }
-            Some(Form::Drift { velocity_mps, turn_rps }) => {
-                clip = Arc::new(without_drift(&clip, velocity_mps, turn_rps));
+            Stage::Feet { motion, frames, locking } => {
+                if !locking.advance(LOCKED_PER_SLICE) {
+                    let (motion, frames) = (motion.clone(), frames.clone());
+                    let Stage::Feet { locking, .. } = std::mem::replace(
+                        &mut self.stage,
+                        Stage::Tracks { tracks: None, next: usize::MAX },
+                    ) else {
+                        return Ok(false);
+                    };
+                    let places = motion.ground_frames().to_vec();
+                    let motion = Arc::new(motion.with_clip(locking.finish()?, places));
+                    self.stage = Stage::Done(Mended { motion, frames });
+                }
             }
-            Some(Form::Outside) if fault.frames.start == 0 => frames.start = fault.frames.end,
-            Some(Form::Outside) => frames.end = frames.end.min(fault.frames.start),
-            _ => {}
+            Stage::Done(_) => return Ok(false),
         }
+        Ok(true)
     }
-    let mut motion = Motion::with_roles(clip, source.roles())
-        .with_feet(source.feet())
-        .with_contact_corrections(source.contact_corrections().clone());
-    if frames.is_empty() {
-        frames = 0..source.clip().frames();
-    }
-    if frames.len() < source.clip().frames() {
-        motion = motion.cropped(frames.clone())?;
-    }
-    let slides: Vec<(Side, Range<usize>)> = faults
-        .iter()
-        .filter_map(|fault| match fault.whole {
+
+    /// Mends what is wrong with the whole body, and begins to hold the feet where they slide.
+    fn whole_body(&self, tracks: Option<&Tracks>) -> Result<Stage, MendError> {
+        let source = &self.source;
+        let mut clip = match tracks {
+            Some(tracks) => Arc::new(tracks.clip(source.clip())?),
+            None => Arc::clone(source.clip()),
+        };
+        let mut frames = 0..clip.frames();
+        for fault in &self.faults {
+            match fault.whole {
+                Some(Form::Level { from_m, rise_mps }) => {
+                    clip = Arc::new(levelled(&clip, from_m, rise_mps));
+                }
+                Some(Form::Drift { velocity_mps, turn_rps }) => {
+                    clip = Arc::new(without_drift(&clip, velocity_mps, turn_rps));
+                }
+                Some(Form::Outside) if fault.frames.start == 0 => frames.start = fault.frames.end,
+                Some(Form::Outside) => frames.end = frames.end.min(fault.frames.start),
+                _ => {}
+            }
+        }
+        let all = clip.frames();
+        let mut motion = Motion::with_roles(clip, source.roles())
+            .with_feet(source.feet())
+            .with_contact_corrections(source.contact_corrections().clone());
+        if frames.is_empty() {
+            frames = 0..all;
+        }
+        if frames.len() < all {
+            motion = motion.cropped(frames.clone())?;
+        }
+        let slides = self.faults.iter().filter_map(|fault| match fault.whole {
             Some(Form::Slide(side)) => Some((side, within(&fault.frames, &frames))),
             _ => None,
-        })
-        .collect();
-    if !slides.is_empty() && has_legs(motion.clip().skeleton(), motion.roles()) {
-        let held = held_feet(&motion, &slides, &options.foot_lock)?;
-        let places = motion.ground_frames().to_vec();
-        motion = motion.with_clip(held, places);
+        });
+        let slides: Vec<(Side, Range<usize>)> = slides.collect();
+        if slides.is_empty() || !has_legs(motion.clip().skeleton(), motion.roles()) {
+            return Ok(Stage::Done(Mended { motion: Arc::new(motion), frames }));
+        }
+        let contacts = sliding_contacts(&motion, &slides);
+        let options =
+            FootLockOptions { ground_m: Some(motion.ground_m()), ..self.options.foot_lock };
+        let locking =
+            FootLocking::new(Arc::clone(motion.clip()), motion.roles(), &contacts, &options)?;
+        Ok(Stage::Feet { motion: Box::new(motion), frames, locking: Box::new(locking) })
     }
-    Ok(Mended { motion: Arc::new(motion), frames })
+
+    /// Returns the share of the work that is done, 0 to 1.
+    #[must_use]
+    pub fn progress(&self) -> f32 {
+        match &self.stage {
+            Stage::Tracks { next, .. } => {
+                0.5 * (*next).min(self.faults.len()) as f32 / self.faults.len().max(1) as f32
+            }
+            Stage::Feet { locking, .. } => 0.5 + 0.5 * locking.progress() as f32,
+            Stage::Done(_) => 1.0,
+        }
+    }
+
+    /// Returns the mended motion; the source, where the work was not done.
+    #[must_use]
+    pub fn finish(self) -> Mended {
+        match self.stage {
+            Stage::Done(mended) => mended,
+            _ => Mended { frames: 0..self.source.clip().frames(), motion: self.source },
+        }
+    }
 }
 
 /// Returns the frames of a range in a part of the clip, numbered from its start.
@@ -238,12 +348,8 @@ pub(super) fn without_drift(clip: &Clip, velocity_mps: glam::DVec2, turn_rps: f6
     clip.transformed_by_frame(&moves)
 }
 
-/// Returns a clip whose feet stand in the stances that touch some frames.
-fn held_feet(
-    motion: &Motion,
-    slides: &[(Side, Range<usize>)],
-    options: &FootLockOptions,
-) -> Result<Clip, FootLockError> {
+/// Returns the stances that touch some frames.
+fn sliding_contacts(motion: &Motion, slides: &[(Side, Range<usize>)]) -> Contacts {
     let contacts = motion.contacts();
     let flags = Side::BOTH.map(|side| {
         let mut flags = vec![false; contacts.frames()];
@@ -257,6 +363,5 @@ fn held_feet(
         }
         flags
     });
-    let options = FootLockOptions { ground_m: Some(motion.ground_m()), ..*options };
-    foot_lock(motion.clip(), motion.roles(), &Contacts::from_flags(flags), &options)
+    Contacts::from_flags(flags)
 }

@@ -80,4 +80,4 @@ pub use damage::{Damage, Damaged, damage, false_alarms};
 pub use ends::first_frame_is_t_pose;
 pub use fault::{Fault, FaultKind, SizeUnit};
 pub use finder::{FaultSearch, find_faults};
-pub use mend::{MendError, MendOptions, Mended, mend};
+pub use mend::{MendError, MendOptions, Mended, Mending, mend};
