@@ -186,10 +186,11 @@ fn joint_name(found: &FoundFault, outcome: &Outcome) -> Option<Message> {
     Some(text::joints(name, joints.len() - 1))
 }
 
-/// Returns the result of the first pane that has found its faults.
+/// Returns the result whose faults are listed: of the first pane that mends them, or the first one.
 fn main_facts(session: &Session) -> Option<(&Outcome, &CleanFacts)> {
-    let outcome = session.main_outcome()?;
-    Some((outcome, &**outcome.cleaned()?))
+    let outcomes = || session.panes().iter().filter_map(|pane| pane.outcome.as_deref());
+    let facts = || outcomes().filter_map(|outcome| Some((outcome, &**outcome.cleaned()?)));
+    facts().find(|(_, facts)| facts.mends).or_else(|| facts().next())
 }
 
 /// Returns the marks of faults on the timeline: where they are, or were.
@@ -213,9 +214,9 @@ pub(super) fn moments(session: &Session, colors: [Color32; 2]) -> Vec<Moment> {
         .collect()
 }
 
-/// Opens the take beside what is left of it, or goes back to one pane.
+/// Opens the mended take, which is the one that is kept, beside the recorded one, or goes back to one pane.
 fn compare_mends(session: &Session, out: &mut Out) {
     let on = session.compare().is_some_and(|compare| compare.key == Key::CleanMend);
-    let query = if on { "" } else { "clean_mend:off,on" };
+    let query = if on { "" } else { "clean_mend:on,off" };
     out.compare(Compare::parse(query).ok());
 }

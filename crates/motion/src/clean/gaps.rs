@@ -34,12 +34,12 @@ pub(super) fn holds(track: &Track, index: usize, tracks: &Tracks) -> Vec<Hold> {
     let least = tracks.frames_of(MIN_SECS, MIN_FRAMES);
     let mut found = Vec::new();
     let mut at = 0;
-    while at < steps.steps.len() {
-        if steps.steps[at].length() > STILL {
+    while at < steps.ways.len() {
+        if steps.ways[at].length() > STILL {
             at += 1;
             continue;
         }
-        let end = (at..steps.steps.len()).find(|&next| steps.steps[next].length() > STILL);
+        let end = (at..steps.ways.len()).find(|&next| steps.ways[next].length() > STILL);
         let Some(end) = end else {
             break;
         };
@@ -47,7 +47,7 @@ pub(super) fn holds(track: &Track, index: usize, tracks: &Tracks) -> Vec<Hold> {
         if at > 0 && end - at >= least {
             let moved = steps.before(at).length().max(steps.after(end + 1).length());
             let way = moved * (end - at + 1) as f32;
-            let step = steps.steps[end].length();
+            let step = steps.ways[end].length();
             let usual = steps.after(end + 1).length().max(1e-4);
             let missed = if step > MIN_CATCH_UP * way && step > 1.8 * usual { step } else { 0.0 };
             found.push(Hold { track: index, frames: at + 1..end + 1, missed, jump: step / usual });

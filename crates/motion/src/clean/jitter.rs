@@ -108,7 +108,9 @@ pub(super) fn filter(
     let smoothed = |cutoff: f64| {
         let filter = LowPass::new(cutoff, fps)?;
         let mut axes = axes.clone();
-        axes.iter_mut().for_each(|axis| filter.apply(axis));
+        for axis in &mut axes {
+            filter.apply(axis);
+        }
         Some(axes)
     };
     let residual = |smooth: &[Vec<f64>]| -> f64 {
@@ -119,23 +121,22 @@ pub(super) fn filter(
         scale * squares.sum::<f64>() / inside.len().max(1) as f64
     };
     let variance = 3.0 * f64::from(deviation).powi(2);
-    let chosen = match cutoff_hz {
-        Some(cutoff) => smoothed(cutoff),
-        None => {
-            let mut last = None;
-            for cutoff in CUTOFFS_HZ {
-                let Some(smooth) = smoothed(cutoff) else {
-                    break;
-                };
-                let stopped = variance * (1.0 - 2.0 * cutoff / fps).max(0.1);
-                let fits = residual(&smooth) <= 1.2 * stopped;
-                last = Some(smooth);
-                if fits {
-                    break;
-                }
+    let chosen = if let Some(cutoff) = cutoff_hz {
+        smoothed(cutoff)
+    } else {
+        let mut last = None;
+        for cutoff in CUTOFFS_HZ {
+            let Some(smooth) = smoothed(cutoff) else {
+                break;
+            };
+            let stopped = variance * (1.0 - 2.0 * cutoff / fps).max(0.1);
+            let fits = residual(&smooth) <= 1.2 * stopped;
+            last = Some(smooth);
+            if fits {
+                break;
             }
-            last
         }
+        last
     };
     let Some(smooth) = chosen else {
         return;

@@ -212,7 +212,7 @@ impl Mending {
             Stage::Tracks { next, .. } => {
                 0.5 * (*next).min(self.faults.len()) as f32 / self.faults.len().max(1) as f32
             }
-            Stage::Feet { locking, .. } => 0.5 + 0.5 * locking.progress() as f32,
+            Stage::Feet { locking, .. } => 0.5 + 0.5 * locking.progress(),
             Stage::Done(_) => 1.0,
         }
     }

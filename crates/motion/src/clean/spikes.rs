@@ -39,7 +39,7 @@ pub(super) fn of_track(track: &Track, index: usize, tracks: &Tracks) -> Vec<Trac
     let least = MIN_DEPARTURE[usize::from(!track.is_turn())];
     let habit = habit(&steps.departures) * HABIT_RATIO;
     let beyond = habit.min(NO_HABIT[usize::from(!track.is_turn())]);
-    let sudden: Vec<(usize, f32)> = (0..steps.steps.len())
+    let sudden: Vec<(usize, f32)> = (0..steps.ways.len())
         .filter(|&at| steps.departures[at] > least.max(beyond))
         .map(|at| (at, steps.usual(at)))
         .filter(|&(at, usual)| steps.departures[at] > MIN_RATIO * usual)
@@ -186,7 +186,7 @@ fn flips(
         .collect();
     let jump = |at: usize| {
         let usual = (steps.before(at) + steps.after(at + 1)) * 0.5;
-        steps.steps[at] - usual
+        steps.ways[at] - usual
     };
     let longest = tracks.frames_of(MAX_FLIP_SECS, MAX_FRAMES);
     let mut found = Vec::new();

@@ -16,7 +16,7 @@ const USUAL: f32 = 0.6;
 /// The steps of a track with their departures.
 #[derive(Clone, Debug)]
 pub(super) struct Steps {
-    pub(super) steps: Vec<Vec3>,
+    pub(super) ways: Vec<Vec3>,
     /// For each step, its distance from the median of the steps near it.
     pub(super) departures: Vec<f32>,
     near: usize,
@@ -39,7 +39,7 @@ impl Steps {
                 steps[at].distance(median(&others))
             })
             .collect();
-        Self { steps, departures, near, around }
+        Self { ways: steps, departures, near, around }
     }
 
     /// Returns the usual departure around a step.
@@ -51,12 +51,12 @@ impl Steps {
 
     /// Returns the velocity before a frame, per frame: the median of the steps that end there.
     pub(super) fn before(&self, frame: usize) -> Vec3 {
-        median(&self.steps[frame.saturating_sub(self.near)..frame.min(self.steps.len())])
+        median(&self.ways[frame.saturating_sub(self.near)..frame.min(self.ways.len())])
     }
 
     /// Returns the velocity after a frame, per frame: the median of the steps that begin there.
     pub(super) fn after(&self, frame: usize) -> Vec3 {
-        let end = (frame + self.near).min(self.steps.len());
-        median(&self.steps[frame.min(end)..end])
+        let end = (frame + self.near).min(self.ways.len());
+        median(&self.ways[frame.min(end)..end])
     }
 }

@@ -59,7 +59,7 @@ pub(super) fn swaps(limbs: &Limbs, tracks: &Tracks) -> Vec<Fault> {
                 let (a, b) = (&tracks.all[here], &tracks.all[there]);
                 let (before, after) = (own.before(at), other.after(at + 1));
                 sums.0 += (across(a, at, b, at + 1) - (before + after) * 0.5).length();
-                sums.1 += (own.steps[at] - (before + own.after(at + 1)) * 0.5).length();
+                sums.1 += (own.ways[at] - (before + own.after(at + 1)) * 0.5).length();
             }
         }
         sums
