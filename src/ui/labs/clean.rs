@@ -214,7 +214,8 @@ pub(super) fn moments(session: &Session, colors: [Color32; 2]) -> Vec<Moment> {
         .collect()
 }
 
-/// Opens the mended take, which is the one that is kept, beside the recorded one, or goes back to one pane.
+/// Opens the mended take, which is the one that is kept, beside the recorded one, or goes back to
+/// one pane.
 fn compare_mends(session: &Session, out: &mut Out) {
     let on = session.compare().is_some_and(|compare| compare.key == Key::CleanMend);
     let query = if on { "" } else { "clean_mend:on,off" };

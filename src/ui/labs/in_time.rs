@@ -87,8 +87,8 @@ pub(crate) fn part_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     }
 }
 
-/// Returns the marks of a lab's own on the timeline, in the colours of what is mended and of what is
-/// wrong.
+/// Returns the marks of a lab's own on the timeline, in the colours of what is mended and of what
+/// is wrong.
 pub(crate) fn moments(session: &Session, colors: [Color32; 2]) -> Vec<kit::Moment> {
     clean::moments(session, colors)
 }

@@ -45,8 +45,8 @@ pub struct Damaged {
 /// follow from the seed. Faults do not touch each other; those for which there is no place, as a
 /// gap while nothing moves, are left out or replaced by a spike.
 ///
-/// A spike turns one joint by 15° to 60°, or moves the root by 10 to 30 cm, for 1 to 3 frames. A gap
-/// holds the body or a limb for 0.1 to 0.35 s. A swap exchanges legs or arms for 0.1 to 0.5 s.
+/// A spike turns one joint by 15° to 60°, or moves the root by 10 to 30 cm, for 1 to 3 frames. A
+/// gap holds the body or a limb for 0.1 to 0.35 s. A swap exchanges legs or arms for 0.1 to 0.5 s.
 /// Jitter of 1° to 2.5° lasts for 0.5 to 1 s.
 ///
 /// # Errors

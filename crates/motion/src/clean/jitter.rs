@@ -44,9 +44,10 @@ fn noise_in(steps: &[Vec3]) -> Noise {
 
 /// Returns the parts of a track that tremble.
 ///
-/// The fourth differences of white noise with deviation σ have variance 70 σ², its second differences
-/// 6 σ², whereas those of a smooth motion become ever smaller. Medians keep single spikes and
-/// strikes out (difference-based estimates of variance: Gasser, Sroka, Jennen-Steinmetz 1986).
+/// The fourth differences of white noise with deviation σ have variance 70 σ², its second
+/// differences 6 σ², whereas those of a smooth motion become ever smaller. Medians keep single
+/// spikes and strikes out (difference-based estimates of variance: Gasser, Sroka, Jennen-Steinmetz
+/// 1986).
 pub(super) fn of_track(track: &Track, index: usize, tracks: &Tracks) -> Vec<TrackFault> {
     let steps = track.steps();
     let window = tracks.frames_of(WINDOW_SECS, WINDOW_FRAMES);

@@ -2,9 +2,9 @@
 //!
 //! # The idea
 //!
-//! A take is compared with itself. What a joint usually does from one frame to the next says what it
-//! cannot do: a step that departs from the steps around it by many times the usual departure is no
-//! movement. Two such steps with a smooth way between their outer ends are a *spike*; where the
+//! A take is compared with itself. What a joint usually does from one frame to the next says what
+//! it cannot do: a step that departs from the steps around it by many times the usual departure is
+//! no movement. Two such steps with a smooth way between their outer ends are a *spike*; where the
 //! motion goes on, turned, they are a *flip*; where it is the other side's motion, a *swap*; where
 //! nothing moved before the step, a *gap*.
 //!
@@ -20,8 +20,8 @@
 //! | skating | planted feet that slide | foot lock |
 //! | rate | gravity in flights, or the length and frequency of steps | told, not mended |
 //!
-//! Each [`Fault`] has its frames, joints, size and confidence. [`mend`] takes the faults that are to
-//! go and leaves the others.
+//! Each [`Fault`] has its frames, joints, size and confidence. [`mend`] takes the faults that are
+//! to go and leaves the others.
 //!
 //! # Example
 //!
@@ -51,15 +51,16 @@
 //! # What it does not do
 //!
 //! It has no model of the body: a fault that is smooth, as a knee that bends sideways, is not seen.
-//! A swap is an exchange of rotations; rigs whose left and right axes mirror each other show swapped
-//! markers in another way. A swap that lasts for more than half of a take is taken for the truth.
+//! A swap is an exchange of rotations; rigs whose left and right axes mirror each other show
+//! swapped markers in another way. A swap that lasts for more than half of a take is taken for the
+//! truth.
 //!
 //! # Sources
 //!
 //! Zero-phase filter and choice of the cut-off: Winter, "Biomechanics and Motor Control of Human
 //! Movement", 4th ed., section 3.4.4. Noise by differences: Gasser, Sroka, Jennen-Steinmetz,
-//! "Residual variance and residual pattern in nonlinear regression", 1986. Slope of the ground: Sen,
-//! "Estimates of the regression coefficient based on Kendall's tau", 1968. Frequency of steps:
+//! "Residual variance and residual pattern in nonlinear regression", 1986. Slope of the ground:
+//! Sen, "Estimates of the regression coefficient based on Kendall's tau", 1968. Frequency of steps:
 //! Sekiya et al., "The invariant relationship between step length and step rate", 1996.
 
 mod damage;

@@ -170,8 +170,8 @@ impl Bridge {
     }
 }
 
-/// Returns the parts of a track in which a joint is turned over: the step into each is undone by the
-/// step out of it.
+/// Returns the parts of a track in which a joint is turned over: the step into each is undone by
+/// the step out of it.
 fn flips(
     index: usize,
     tracks: &Tracks,

@@ -93,8 +93,8 @@ impl Track {
         }
     }
 
-    /// Returns the frames between `from` and `to`, both excluded, on the cubic with these velocities
-    /// per frame at both ends.
+    /// Returns the frames between `from` and `to`, both excluded, on the cubic with these
+    /// velocities per frame at both ends.
     pub(super) fn bridge(&self, from: usize, to: usize, leave: Vec3, arrive: Vec3) -> Self {
         let length = (to - from) as f32;
         let end = self.way_like(from, to, (leave + arrive) * 0.5 * length);
