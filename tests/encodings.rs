@@ -59,7 +59,7 @@ fn captured() -> Vec<Subject> {
 /// The labs with their methods, as links; the last column is the tolerance for results, metres.
 /// Without mirrored copies: the mirror image of a twist about a bone depends on the rest pose,
 /// which has no meaning where the joints' axes are rotated.
-const LABS: [(&str, f32); 24] = [
+const LABS: [(&str, f32); 25] = [
     ("lab=view", 0.001),
     ("lab=blend", 0.001),
     ("lab=blend&root_blend=off&weight_law=linear", 0.001),

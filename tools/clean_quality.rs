@@ -261,8 +261,8 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
             .map(|at| format!("{:.2} → {:.2} ({:.2})", was[at], now[at], ratio(at)))
             .collect();
         for at in 0..4 {
-            totals.sums[0][at] += was[at];
-            totals.sums[1][at] += now[at];
+            totals.sums[0][at] += was[at].max(UNSEEN[at]);
+            totals.sums[1][at] += now[at].max(UNSEEN[at]);
         }
         totals.own += in_own;
         totals.worst_ratio = (0..4).map(ratio).fold(totals.worst_ratio, f64::max);

@@ -10,9 +10,9 @@ use std::fs;
 const HALL_SIZE: Vec2 = vec2(1280.0, 720.0);
 
 /// Names, units and keys that are the same in Chinese.
-const AS_IT_IS: [&str; 42] = [
+const AS_IT_IS: [&str; 43] = [
     "EN", "Enter", "Segue", "BVH", "ASF", "AMC", "FBX", "NPZ", "GLB", "C3D", "TRC", "CSV", "CMU",
-    "zip", "fps", "cm", "ms", "Aa", "Shift", "Ctrl", "Home", "Esc", "Delete", "Tab", "atan",
+    "zip", "fps", "Hz", "cm", "ms", "Aa", "Shift", "Ctrl", "Home", "Esc", "Delete", "Tab", "atan",
     "atan2", "exp", "json", "JSON", "DOT", "Markdown", "MB", "mocap", "cmu", "edu", "cs", "NSF",
     "EIA", "XYZ", "ZXY", "YXZ", "English",
 ];

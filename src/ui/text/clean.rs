@@ -56,9 +56,10 @@ pub(crate) fn faults_of_kind(kind: FaultKind, count: usize, mended: usize) -> Me
 /// Returns when a fault begins, how large it is, and its joints.
 pub(crate) fn fault_line(fault: &Fault, secs: f64, joint: Option<Message>) -> Message {
     let size = size_of(fault);
-    match joint {
-        Some(joint) => msg!("{secs:.2} s · {size} · {joint}", secs, size, joint),
-        None => msg!("{secs:.2} s · {size}", secs, size),
+    if let Some(joint) = joint {
+        msg!("{secs:.2} s · {size} · {joint}", secs, size, joint)
+    } else {
+        msg!("{secs:.2} s · {size}", secs, size)
     }
 }
 
