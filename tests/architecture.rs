@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The folders of `segue-motion`, each with the others that its code may use.
-const MOTION: [(&str, &str); 14] = [
+const MOTION: [(&str, &str); 15] = [
     ("math", ""),
     ("skeleton", "math"),
     ("clip", "math skeleton"),
@@ -19,6 +19,7 @@ const MOTION: [(&str, &str); 14] = [
     ("blend", "math skeleton clip registration"),
     ("metrics", "math skeleton clip blend"),
     ("gait", "math skeleton clip registration blend transition"),
+    ("clean", "math skeleton clip transition metrics"),
     ("graph", BELOW),
     ("path", BELOW),
     ("matching", BELOW),

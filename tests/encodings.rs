@@ -59,7 +59,7 @@ fn captured() -> Vec<Subject> {
 /// The labs with their methods, as links; the last column is the tolerance for results, metres.
 /// Without mirrored copies: the mirror image of a twist about a bone depends on the rest pose,
 /// which has no meaning where the joints' axes are rotated.
-const LABS: [(&str, f32); 24] = [
+const LABS: [(&str, f32); 25] = [
     ("lab=view", 0.001),
     ("lab=blend", 0.001),
     ("lab=blend&root_blend=off&weight_law=linear", 0.001),
@@ -82,6 +82,7 @@ const LABS: [(&str, f32); 24] = [
     ("lab=match&scenario=left&mirrored=off", 0.001),
     ("lab=match&scenario=spin&mirrored=off", 0.001),
     ("lab=in_place", 0.001),
+    ("lab=clean", 0.001),
     ("lab=in_place&root_way=put_back", 0.005),
     (
         "lab=edit&edit_from=0.3&edit_to=1.5&as_loop=on&reverse=on&resample=48&scale=1.2&turn=30",

@@ -63,13 +63,14 @@ const UNSEEN: [&str; 17] = [
 
 /// Literals that look like sentences and are not: names of files, of joints and of widgets' memory,
 /// and texts that only the tests of a library read.
-const NO_SENTENCE: [&str; 34] = [
+const NO_SENTENCE: [&str; 35] = [
     "Lcl Rotation",
     "Lcl Translation",
     "{} and {}",
     "{} and {} registered",
     "{} loop",
     "{} in place",
+    "{} clean",
     "{} edited",
     "{} with root motion",
     "{} to {}",

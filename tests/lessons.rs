@@ -360,6 +360,8 @@ const QUOTED: &[(&str, &str, usize, &str, &str)] = &[
     ("foot_skate", "leave_a=auto&enter_b=auto", 0, "foot_slide_cm", "9.2 cm"),
     ("foot_skate", "foot_lock=on", 0, "foot_slide_cm", "9.9 cm"),
     ("foot_skate", "leave_a=auto&enter_b=auto&foot_lock=on", 0, "foot_slide_cm", "0.0 cm"),
+    ("clean", "", 0, "pose_jump_deg", "142°"),
+    ("clean", "", 1, "pose_jump_deg", "0.5°"),
 ];
 
 /// Returns whether words such as `3.7 cm` are the rounded value.

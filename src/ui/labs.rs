@@ -3,6 +3,7 @@
 
 mod blend;
 mod break_it;
+mod clean;
 mod edit;
 mod graph;
 mod in_place;
@@ -54,6 +55,7 @@ fn of(lab: LabId) -> &'static LabUi {
         LabId::Match => &match_::LAB,
         LabId::InPlace => &in_place::LAB,
         LabId::Edit => &edit::LAB,
+        LabId::Clean => &clean::LAB,
     }
 }
 

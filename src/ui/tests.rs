@@ -24,6 +24,7 @@ use std::fmt::Write as _;
 use std::sync::Arc;
 
 mod chinese;
+mod clean;
 mod clips;
 mod contacts;
 mod convert;

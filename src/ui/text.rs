@@ -9,6 +9,7 @@
     reason = "a message takes over the parts that it is made of"
 )]
 
+mod clean;
 mod convert;
 mod edit;
 mod graph;
@@ -23,6 +24,7 @@ mod speed;
 mod stage;
 mod transition;
 
+pub(crate) use clean::*;
 pub(crate) use convert::*;
 pub(crate) use edit::*;
 pub(crate) use graph::*;

@@ -127,6 +127,7 @@ pub(crate) fn timeline_panel_ui(
     let curves: Vec<_> = curves.collect();
     let mut seams = seams(outcome, palette.accent);
     seams.extend(hard_turns(outcome, palette.warning));
+    seams.extend(in_time::moments(session, [palette.accent, palette.warning]));
     let feet = feet_names(session, layout);
     // A lab with stripes of registered clips shows none of clips frame by frame.
     let clips = session.contact_clips();

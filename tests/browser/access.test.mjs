@@ -6,7 +6,7 @@ import { fileURLToPath } from "node:url";
 import { onBackend, onBothBackends } from "./harness.mjs";
 import { until } from "./help.mjs";
 
-const LABS = ["view", "make", "blend", "transition", "speed", "loop", "layers", "register", "path", "graph", "match", "in_place", "edit"];
+const LABS = ["view", "make", "blend", "transition", "speed", "loop", "layers", "register", "path", "graph", "match", "in_place", "edit", "clean"];
 const AXE = readFileSync(fileURLToPath(import.meta.resolve("axe-core/axe.min.js")), "utf8");
 
 /** Waits until there are elements and their number no longer changes. */

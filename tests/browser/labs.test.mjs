@@ -43,6 +43,17 @@ onBothBackends("removed root motion is rebuilt from the feet", async ({ open }) 
   assert.ok(apart(start, end) > 0.01, "its body moves");
 });
 
+// Fails when faults that were put in are not found, or stay after the mends.
+onBothBackends("faults of a take are found and mended", async ({ open }) => {
+  const { segue } = await open("lab=clean&a=walk&clean_faults=4&clean_seed=7&compare=clean_mend:on,off&play=off", DESK);
+  await segue("set", {});
+  const [mended, recorded] = await panes(segue, "faults_left");
+  assert.equal(mended, 0);
+  assert.ok(recorded >= 4, `${recorded} found`);
+  const [smooth, rough] = await panes(segue, "pose_jump_deg");
+  assert.ok(rough > 20 && smooth < 0.1 * rough, `${rough}° and ${smooth}°`);
+});
+
 // Fails when an edit of the link is not made, or a kept edit is not made again from its recipe.
 onBothBackends("clip is trimmed, mirrored and kept as its recipe", async ({ open }) => {
   const { segue } = await open("lab=edit&a=walk_left&edit_from=0.5&edit_to=1.5&scale=2&compare=mirror:off,on&play=off", DESK);

@@ -1,5 +1,6 @@
-//! `cargo xtask quality`, `match-quality` and `match-speed`: measurements of every lab on any
-//! motion, of characters driven by recorded input, and of searches.
+//! `cargo xtask quality`, `clean-quality`, `match-quality` and `match-speed`: measurements of every
+//! lab on any motion, of faults found and mended, of characters driven by recorded input, and of
+//! searches.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -24,6 +25,28 @@ pub fn try_labs(args: &[&str]) -> Result<()> {
     }
     if !args.contains(&"--data") && !args.contains(&"--synth") {
         tool.arg("--data").arg(usual_folder()?);
+    }
+    run(&mut tool)
+}
+
+pub fn try_cleaning(args: &[&str]) -> Result<()> {
+    let mut tool = tool("clean_quality", "release");
+    tool.arg("--");
+    let mut words = args.iter();
+    let mut has_folder = false;
+    while let Some(word) = words.next() {
+        has_folder |= *word == "--data";
+        match words.next() {
+            Some(path) if PATHS.contains(word) => tool.arg(word).arg(std::path::absolute(path)?),
+            Some(value) => tool.arg(word).arg(value),
+            None => return fail(format!("{word} is followed by a value")),
+        };
+    }
+    if !has_folder && let Ok(folder) = usual_folder() {
+        // All captured motion, of which subject 16 is a part.
+        if let Some(all) = folder.parent().and_then(std::path::Path::parent) {
+            tool.arg("--data").arg(all);
+        }
     }
     run(&mut tool)
 }

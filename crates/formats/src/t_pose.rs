@@ -2,54 +2,13 @@
 
 use super::raw::RawMotion;
 use glam::Quat;
-use segue_motion::math::quat;
 
-/// Joints that are rotated by less than this are at rest, radians (1°).
-const AT_REST: f32 = 0.017_453_3;
-
-/// The number of frames after the first that are compared.
-const FRAMES: usize = 30;
-
-/// Returns whether the first frame is a T-pose that does not belong to the motion.
-///
-/// Two conditions must hold for the joints that move at all: most are at rest in the first frame
-/// and not in the second, and the step from the first frame to the second is many times larger than
-/// the following ones. A motion that starts in the rest pose and leaves it smoothly fails the
-/// second condition, a cut within a take fails the first.
+/// Returns whether the first frame is a T-pose that does not belong to the motion, as
+/// [`clean`](segue_motion::clean::first_frame_is_t_pose) defines it.
 pub(super) fn first_frame_is_t_pose(raw: &RawMotion) -> bool {
-    let frames = raw.frames().min(FRAMES);
-    if frames < 3 {
-        return false;
-    }
-    let (first, second) = (raw.pose(0), raw.pose(1));
-    let moves = |joint: usize| {
-        let of = |frame: usize| raw.pose(frame).get(joint).copied().unwrap_or(Quat::IDENTITY);
-        (1..frames).any(|frame| quat::angle_between(of(0), of(frame)) > AT_REST)
-    };
-    let moving: Vec<usize> = (0..raw.joints.len()).filter(|&joint| moves(joint)).collect();
-    let resting = |pose: &[Quat]| {
-        let angle = |joint: &usize| {
-            pose.get(*joint).map_or(0.0, |&q| quat::angle_between(Quat::IDENTITY, q))
-        };
-        moving.iter().filter(|joint| angle(joint) < AT_REST).count()
-    };
-    let mostly_at_rest =
-        resting(first) * 10 >= moving.len() * 6 && resting(second) * 10 <= moving.len() * 5;
-    if moving.is_empty() || !mostly_at_rest {
-        return false;
-    }
-    let step = |frame: usize| {
-        let angle =
-            |joint: &usize| match (raw.pose(frame).get(*joint), raw.pose(frame + 1).get(*joint)) {
-                (Some(&a), Some(&b)) => quat::angle_between(a, b),
-                _ => 0.0,
-            };
-        moving.iter().map(angle).sum::<f32>() / moving.len() as f32
-    };
-    let mut later: Vec<f32> = (1..frames - 1).map(step).collect();
-    later.sort_by(f32::total_cmp);
-    let usual = later.get(later.len() / 2).copied().unwrap_or_default();
-    step(0) > (5.0 * usual).max(3.0 * AT_REST)
+    let rotation =
+        |frame: usize, joint: usize| raw.pose(frame).get(joint).copied().unwrap_or(Quat::IDENTITY);
+    segue_motion::clean::first_frame_is_t_pose(raw.frames(), raw.joints.len(), rotation)
 }
 
 #[cfg(test)]

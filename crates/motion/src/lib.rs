@@ -70,7 +70,8 @@
 //! 11. [`path`]: motion along an edited path.
 //! 12. [`matching`]: motion matching for a steered character.
 //! 13. [`points`]: skeletons from points: joint centres, optical markers.
-//! 14. [`skin`]: a smooth mesh around any skeleton; linear blend and dual quaternion skinning.
+//! 14. [`clean`]: faults of captured takes, found and mended.
+//! 15. [`skin`]: a smooth mesh around any skeleton; linear blend and dual quaternion skinning.
 //!
 //! `tests/architecture.rs` in the workspace checks the dependencies between these modules:
 //!
@@ -79,6 +80,7 @@
 //! registration ← blend ← transition ← gait
 //! blend ← metrics
 //! all of these ← graph, path, matching
+//! metrics, transition ← clean
 //! ```
 //!
 //! # Conventions
@@ -103,6 +105,7 @@
 //!   the library panic.
 
 pub mod blend;
+pub mod clean;
 pub mod clip;
 pub mod gait;
 pub mod graph;

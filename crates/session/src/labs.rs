@@ -3,6 +3,7 @@
 mod answer;
 mod artefact_meter;
 mod blend;
+mod clean;
 mod edit;
 mod error;
 mod feet;
@@ -28,6 +29,7 @@ mod view;
 pub(super) use answer::Answer;
 pub(super) use artefact_meter::ArtefactMeter;
 pub use blend::mistake_shows;
+pub use clean::{CleanFacts, FoundFault};
 pub(super) use edit::edit_params;
 pub use edit::{ClipEdit, edits_of};
 pub use error::LabError;

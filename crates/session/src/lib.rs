@@ -111,11 +111,11 @@ pub use labs::{
     BuiltGraph, DistanceField, Distances, FollowedPath, GraphClips, Walk, WalkGhost, WalkMoment,
     WalkStay, check_graph_clips, graph_of,
 };
-pub use labs::{ClipEdit, LabError, Remedy, edits_of};
 pub use labs::{
-    Cycle, CycleMade, LayerFacts, LayerFit, MatchSearch, Outcome, PlacedClip, RetargetReport, Slot,
-    Transition, mistake_shows,
+    CleanFacts, Cycle, CycleMade, FoundFault, LayerFacts, LayerFit, MatchSearch, Outcome,
+    PlacedClip, RetargetReport, Slot, Transition, mistake_shows,
 };
+pub use labs::{ClipEdit, LabError, Remedy, edits_of};
 pub use labs::{
     DistanceMap, DriveHistory, DriveMoment, FittedMotion, FramePair, PathFacts, RegistrationFacts,
     spline_ends,

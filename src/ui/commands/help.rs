@@ -96,7 +96,7 @@ mod tests {
         assert_eq!(keys("redo"), "Ctrl Shift Z");
         assert_eq!(keys("copy the link, when nothing else is selected"), "Ctrl C");
         assert_eq!(keys("this list"), "?");
-        assert_eq!(keys("the labs, in order"), "1 … 9, 0, -, =, \\");
+        assert_eq!(keys("the labs, in order"), "1 … 9, 0, -, =, \\, `");
         assert!(list.iter().all(|(keys, what)| !keys.is_empty() && !what.is_empty()));
     }
 }

@@ -37,7 +37,7 @@ pub(super) const COMMAND: Modifiers = Modifiers::COMMAND;
 pub(super) const COMMAND_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// The keys of the labs, from left to right: the digits and the three keys after them.
-pub(in crate::ui) const LAB_KEYS: [Keyboard; 13] = [
+pub(in crate::ui) const LAB_KEYS: [Keyboard; 14] = [
     Keyboard::Num1,
     Keyboard::Num2,
     Keyboard::Num3,
@@ -51,6 +51,7 @@ pub(in crate::ui) const LAB_KEYS: [Keyboard; 13] = [
     Keyboard::Minus,
     Keyboard::Equals,
     Keyboard::Backslash,
+    Keyboard::Backtick,
 ];
 
 /// The commands that the keyboard gives, besides [`UiCommand::OpenLab`].

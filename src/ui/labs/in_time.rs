@@ -2,12 +2,12 @@
 //! parameters that its handles set.
 
 use super::lab_ui::Edge;
-use super::{blend, edit, graph, loop_, make, match_, register, transition};
+use super::{blend, clean, edit, graph, loop_, make, match_, register, transition};
 use crate::ui::kit;
 use crate::ui::out::Out;
 use crate::ui::state::{Layout, UiState};
 use crate::ui::text;
-use eframe::egui::{Context, Ui};
+use eframe::egui::{Color32, Context, Ui};
 use segue_session::{Command, Key, Kind, Outcome, Params, Session, Slot, Value, Walk};
 use segue_text::Message;
 use std::sync::Arc;
@@ -85,6 +85,12 @@ pub(crate) fn part_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     if is_done {
         out.commands.push(Command::Settle);
     }
+}
+
+/// Returns the marks of a lab's own on the timeline, in the colours of what is mended and of what
+/// is wrong.
+pub(crate) fn moments(session: &Session, colors: [Color32; 2]) -> Vec<kit::Moment> {
+    clean::moments(session, colors)
 }
 
 /// Returns the name of a motion that was made from these parameters alone; `None` for results of

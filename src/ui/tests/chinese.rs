@@ -10,11 +10,11 @@ use std::fs;
 const HALL_SIZE: Vec2 = vec2(1280.0, 720.0);
 
 /// Names, units and keys that are the same in Chinese.
-const AS_IT_IS: [&str; 43] = [
+const AS_IT_IS: [&str; 44] = [
     "EN", "Enter", "Segue", "VRMA", "BVH", "ASF", "AMC", "FBX", "NPZ", "GLB", "C3D", "TRC", "CSV",
-    "CMU", "zip", "fps", "cm", "ms", "Aa", "Shift", "Ctrl", "Home", "Esc", "Delete", "Tab", "atan",
-    "atan2", "exp", "json", "JSON", "DOT", "Markdown", "MB", "mocap", "cmu", "edu", "cs", "NSF",
-    "EIA", "XYZ", "ZXY", "YXZ", "English",
+    "CMU", "zip", "fps", "Hz", "cm", "ms", "Aa", "Shift", "Ctrl", "Home", "Esc", "Delete", "Tab",
+    "atan", "atan2", "exp", "json", "JSON", "DOT", "Markdown", "MB", "mocap", "cmu", "edu", "cs",
+    "NSF", "EIA", "XYZ", "ZXY", "YXZ", "English",
 ];
 
 fn pack() -> LanguagePack {
@@ -70,6 +70,8 @@ fn every_lab_is_in_chinese() {
         ("zh-layers", DESK, DARK, "lab=layers&play=off&t=1&layer_mode=additive"),
         ("zh-register", DESK, LIGHT, "lab=register&play=off&t=1"),
         ("zh-path", DESK, DARK, "lab=path&play=off&t=1"),
+        ("zh-clean", HALL_SIZE, LIGHT, "lab=clean&a=walk&clean_faults=4&play=off&t=1"),
+        ("zh-phone-clean", PHONE, DARK, "lab=clean&a=walk&clean_faults=4&play=off&t=1"),
         ("zh-graph", DESK, LIGHT, rich),
         ("zh-match", DESK, DARK, "lab=match&scenario=left&play=off&t=2"),
         ("zh-hall-blend", HALL_SIZE, HALL, "lab=blend&play=off&t=1"),

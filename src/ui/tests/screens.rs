@@ -7,7 +7,7 @@ const HALL_SIZE: Vec2 = vec2(1280.0, 720.0);
 const CLASSIC: Vec2 = vec2(1024.0, 768.0);
 const FINGERS: Theme = Theme { touch: true, ..DARK };
 
-const LABS: [&str; 12] = [
+const LABS: [&str; 13] = [
     "view",
     "make",
     "blend",
@@ -20,6 +20,7 @@ const LABS: [&str; 12] = [
     "graph",
     "match",
     "in_place",
+    "clean",
 ];
 
 /// Returns the comparison that needs the most room on the timeline of a lab.

@@ -180,6 +180,7 @@ pub(crate) fn under_way(job: &Job) -> Message {
         JobKind::Registering => msg!("Registering the clips {percent:.0} %", percent),
         JobKind::BuildingGraph => msg!("Building the graph {percent:.0} %", percent),
         JobKind::HoldingFeet => msg!("Locking feet {percent:.0} %", percent),
+        JobKind::Cleaning => msg!("Looking for faults {percent:.0} %", percent),
         JobKind::Driving => msg!("Simulating {percent:.0} %", percent),
         JobKind::BuildingDatabase => msg!("Building the database {percent:.0} %", percent),
         JobKind::Reading(file) => msg!("{file} {percent:.0} %", file = file.clone(), percent),

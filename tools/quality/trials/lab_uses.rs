@@ -104,6 +104,7 @@ pub(super) fn lab_uses(draw: Draw, path_code: Option<&str>) -> Vec<LabUse> {
     // Without root motion feet slide by design: only the rebuilt motion is bound by its source.
     let (rebuilt, query) = ("put_back".to_owned(), "root_way=put_back".to_owned());
     add("in_place", LabTakes::First, rebuilt, query, false);
+    add("clean", LabTakes::First, "mended".to_owned(), "clean_mend=on".to_owned(), false);
     let edits = "edit_from=0.2&reverse=on&mirror=on&scale=1.3&turn=40";
     add("edit", LabTakes::First, "reversed, mirrored".to_owned(), edits.to_owned(), false);
     for mode in LAYERS {

@@ -73,6 +73,7 @@
 
 pub mod curve;
 mod decay;
+mod lowpass;
 mod monotone;
 mod planar;
 pub mod quat;
@@ -82,6 +83,7 @@ pub mod spring;
 pub mod stats;
 
 pub use decay::Decay;
+pub use lowpass::LowPass;
 pub use monotone::MonotoneCurve;
 pub(crate) use planar::unwrap_near;
 pub use planar::{Planar, wrap_angle};

@@ -3,6 +3,7 @@
 use super::outcome::Slot;
 use segue_formats::ImportError;
 use segue_motion::blend::{BlendError, LayerError};
+use segue_motion::clean::MendError;
 use segue_motion::clip::{ClipError, MirrorError, RetargetError, RootMotionError};
 use segue_motion::gait::GaitError;
 use segue_motion::graph::GraphError;
@@ -231,6 +232,9 @@ pub enum LabError {
     /// An error of extracting root motion.
     #[error(transparent)]
     RootWay(#[from] RootMotionError),
+    /// An error of mending faults.
+    #[error(transparent)]
+    Mend(#[from] MendError),
     /// An error of finding gaits.
     #[error(transparent)]
     Gait(#[from] GaitError),

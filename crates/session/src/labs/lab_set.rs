@@ -2,6 +2,7 @@
 
 use super::artefact_meter::ArtefactMeter;
 use super::blend::{self, BlendCache};
+use super::clean::{self, CleanCache};
 use super::graph::{self, GraphScheduler};
 use super::lab::{HasPart, Lab};
 use super::layers::{self, LayerCache};
@@ -33,6 +34,7 @@ pub(crate) fn lab_of(lab: LabId) -> &'static dyn Lab<LabSet> {
         LabId::Match => &match_::MatchLab,
         LabId::InPlace => &in_place::InPlaceLab,
         LabId::Edit => &edit::EditLab,
+        LabId::Clean => &clean::CleanLab,
     }
 }
 
@@ -48,6 +50,7 @@ pub(crate) struct LabSet {
     paths: Paths,
     pub(crate) graphs: GraphScheduler,
     views: ViewCache,
+    cleaned: CleanCache,
     pub(crate) drives: DriveScheduler,
     pub(crate) meter: ArtefactMeter,
     /// Clips whose feet are read with options other than the defaults.
@@ -56,11 +59,12 @@ pub(crate) struct LabSet {
 
 impl LabSet {
     /// Returns all sliced work, in the order of scheduling.
-    fn sliced(&self) -> [&dyn Sliced; 7] {
+    fn sliced(&self) -> [&dyn Sliced; 8] {
         [
             &self.blends,
             &self.registrations,
             &self.views,
+            &self.cleaned,
             &self.paths,
             &self.drives,
             &self.meter,
@@ -68,11 +72,12 @@ impl LabSet {
         ]
     }
 
-    fn sliced_mut(&mut self) -> [&mut dyn Sliced; 7] {
+    fn sliced_mut(&mut self) -> [&mut dyn Sliced; 8] {
         [
             &mut self.blends,
             &mut self.registrations,
             &mut self.views,
+            &mut self.cleaned,
             &mut self.paths,
             &mut self.drives,
             &mut self.meter,
@@ -131,5 +136,6 @@ has_parts! {
     Paths, paths;
     GraphScheduler, graphs;
     ViewCache, views;
+    CleanCache, cleaned;
     DriveScheduler, drives;
 }

@@ -11,6 +11,8 @@ pub enum JobKind {
     BuildingGraph,
     /// The locking of planted feet.
     HoldingFeet,
+    /// The search for faults of a take, and their mends.
+    Cleaning,
     /// The computation of features for motion matching.
     BuildingDatabase,
     /// The playback of recorded input.
@@ -28,6 +30,7 @@ impl JobKind {
             Self::Registering => "registering",
             Self::BuildingGraph => "graphing",
             Self::HoldingFeet => "holding feet",
+            Self::Cleaning => "cleaning",
             Self::BuildingDatabase => "building the database",
             Self::Driving => "driving",
             Self::Reading(file) => file,

@@ -4,7 +4,7 @@ use crate::outside::short;
 use segue_text::{Message, msg};
 
 /// The bundled lessons, in order.
-pub const LESSONS: [&str; 14] = [
+pub const LESSONS: [&str; 15] = [
     "alignment",
     "slerp",
     "blend_window",
@@ -19,6 +19,7 @@ pub const LESSONS: [&str; 14] = [
     "path_editing",
     "motion_matching",
     "foot_skate",
+    "clean",
 ];
 
 /// The name of the table of contents, in place of a lesson.

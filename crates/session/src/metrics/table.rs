@@ -112,6 +112,13 @@ metrics! {
     HardTurns "hard_turns" "Hard turns", Bends, Lower by 1.0,
         "Places where curvature times speed is beyond what the original does.",
         "0 is best. Widen the bend or slow down where the path turns too hard.";
+    // One fault more is visible.
+    FaultsLeft "faults_left" "Faults", Count, Lower by 1.0,
+        "The number of certain faults that were found and not mended.",
+        "0 is best. What is left is in the list of faults.";
+    FaultsMended "faults_mended" "Mends", Count, Neutral,
+        "The number of faults that were mended.",
+        "Neither is better: fewer mends leave more of the recording as it is.";
     Distance "root_way_m" "Distance travelled" or "Distance", Metres, Neutral,
         "The distance that the body travels over the ground: what is removed, or rebuilt.",
         "A rebuilt distance should be that of the recording.";

@@ -4,7 +4,7 @@ use super::{Better, Ends, METRICS, MetricId};
 use std::collections::BTreeSet;
 
 /// The metrics of results, by their names in the page's API.
-const PUBLISHED: [(&str, &str, &str, Better); 49] = [
+const PUBLISHED: [(&str, &str, &str, Better); 51] = [
     ("apart_cm", "Pose distance", "cm", Better::Lower),
     ("cadence_spm", "Cadence", "steps/min", Better::Neutral),
     ("clip_frames", "Frames", "frames", Better::Neutral),
@@ -15,6 +15,8 @@ const PUBLISHED: [(&str, &str, &str, Better); 49] = [
     ("cycle_m", "Cycle distance", "m", Better::Neutral),
     ("cycle_s", "Cycle time", "s", Better::Neutral),
     ("cycle_turn_deg", "Turn per cycle", "°", Better::Neutral),
+    ("faults_left", "Faults", "", Better::Lower),
+    ("faults_mended", "Mends", "", Better::Neutral),
     ("fit_most_cm", "Largest fit error", "cm", Better::Neutral),
     ("fit_rms_cm", "Fit error", "cm", Better::Neutral),
     ("flashes", "Flashes", "", Better::Lower),

@@ -94,6 +94,7 @@ choices! {
         Match "match" "Match",
         InPlace "in_place" "In place",
         Edit "edit" "Edit",
+        Clean "clean" "Clean",
     }
 
     /// The law by which the weight moves from A to B inside a blend window.
@@ -395,6 +396,12 @@ choices! {
         Turn "turn" "turn rate",
     }
 
+    /// Whether the Clean lab shows the take without its faults, or as it is.
+    Mending of CleanMend {
+        Mended "on" "mended",
+        Recorded "off" "as recorded",
+    }
+
     /// The motions whose curves the timeline draws.
     CurvesOf of CurvesOf {
         All "all" "A, B and result",
@@ -429,6 +436,7 @@ pub(super) const OF_A: &[LabId] = &[
     LabId::Path,
     LabId::InPlace,
     LabId::Edit,
+    LabId::Clean,
 ];
 
 /// The labs that make a result from the clip in B.

@@ -9,6 +9,7 @@ mod clip_ids;
 mod contact_edits;
 mod curve_list;
 mod edited_path;
+mod fault_places;
 mod frame_pairs;
 mod ground_path;
 mod jump;
@@ -30,6 +31,7 @@ pub use weighted_clips::MAX_WEIGHTED_CLIPS;
 use super::choices::Curve;
 use crate::outside::short;
 use glam::DVec2;
+use segue_motion::clean::FaultKind;
 use segue_motion::graph::Place;
 use segue_motion::matching::{Recording, RecordingError};
 use segue_motion::path::{GroundSpline, PathEditError};
@@ -169,6 +171,8 @@ lists! {
     Tags(Vec<HandTag>) in tags, else Vec::new();
     /// Contacts of clips that are corrected by hand, as in `walk:L12-30;-R40-52`.
     ContactEdits(Vec<ClipContacts>) in contact_edits, else Vec::new();
+    /// Faults that are left alone: kind and first frame, as in `spike-34,gap-120`.
+    FaultPlaces(Vec<(FaultKind, usize)>) in fault_places, else Vec::new();
     /// Quantities that are plotted below the first, as in `height,angle`.
     Curves(Vec<Curve>) in curve_list, else Vec::new();
     /// Addresses of files on the web, separated by spaces.
@@ -180,7 +184,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    const KINDS: [ListKind; 13] = [
+    const KINDS: [ListKind; 14] = [
+        ListKind::FaultPlaces,
         ListKind::ClipIds,
         ListKind::WeightedClips,
         ListKind::WeightCurve,

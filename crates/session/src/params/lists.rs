@@ -6,6 +6,7 @@ use super::grammar::{ClipContacts, HandTag, List};
 use super::key::Key;
 use super::value::Value;
 use glam::DVec2;
+use segue_motion::clean::FaultKind;
 use segue_motion::graph::Place;
 use segue_motion::matching::Recording;
 use segue_motion::path::GroundSpline;
@@ -43,6 +44,15 @@ impl Params {
     pub fn pins(&self) -> &[(usize, usize)] {
         match self.get(Key::Pins) {
             Value::List(List::Pins(pins)) => pins,
+            _ => &[],
+        }
+    }
+
+    /// Returns the faults that are left alone: the kind and the first frame of each.
+    #[must_use]
+    pub fn faults_left_alone(&self) -> &[(FaultKind, usize)] {
+        match self.get(Key::CleanSkip) {
+            Value::List(List::FaultPlaces(places)) => places,
             _ => &[],
         }
     }

@@ -14,7 +14,7 @@ use std::collections::BTreeSet;
 use std::f32::consts::PI;
 
 /// A clean result of every lab.
-const LABS: [&str; 15] = [
+const LABS: [&str; 16] = [
     "lab=view",
     "lab=make",
     "lab=blend",
@@ -27,6 +27,7 @@ const LABS: [&str; 15] = [
     "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20",
     "lab=match&scenario=straight&mirrored=off&match_clips=idle,walk,walk_left,walk_right",
     "lab=match&mirrored=off&match_clips=idle,walk,walk_left,walk_right",
+    "lab=clean",
     "lab=in_place",
     "lab=in_place&root_way=put_back",
     "lab=edit&edit_from=0.5&as_loop=on&mirror=on",
