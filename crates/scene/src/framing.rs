@@ -23,7 +23,7 @@ pub fn shown_size(session: &Session, motion: &Motion) -> f32 {
     character.unwrap_or(1.0) * figure_height(session.params())
 }
 
-/// The heights of figures that the distance of the parameters is meant for, metres: those of people.
+/// The heights of figures that the distance of the parameters is meant for, metres: people.
 const USUAL_HEIGHTS: RangeInclusive<f32> = 1.1..=2.2;
 /// The share of a standing figure's height that is above the picture's centre.
 const SHARE_ABOVE: f32 = 0.6;
