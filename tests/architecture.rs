@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The folders of `segue-motion`, each with the others that its code may use.
-const MOTION: [(&str, &str); 15] = [
+const MOTION: [(&str, &str); 16] = [
     ("math", ""),
     ("skeleton", "math"),
     ("clip", "math skeleton"),
@@ -20,12 +20,13 @@ const MOTION: [(&str, &str); 15] = [
     ("metrics", "math skeleton clip blend"),
     ("gait", "math skeleton clip registration blend transition"),
     ("clean", "math skeleton clip transition metrics"),
+    ("retarget", "math skeleton clip registration transition metrics"),
     ("graph", BELOW),
     ("path", BELOW),
     ("matching", BELOW),
 ];
 
-const BELOW: &str = "math skeleton clip synth registration transition gait blend metrics";
+const BELOW: &str = "math skeleton clip synth registration transition gait blend metrics retarget";
 
 /// The folders of the app, and the worker that reads files, with the folders and crates that each
 /// may use.

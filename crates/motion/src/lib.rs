@@ -63,24 +63,24 @@
 //! 7. [`transition`]: inertialization, dead blending, loops, foot locking.
 //! 8. [`gait`]: every speed between a walk and a run.
 //! 9. [`metrics`]: artefacts, as numbers with a unit.
+//! 10. [`retarget`]: motions on other bodies, with the places of feet and hands.
 //!
 //! Applications:
 //!
-//! 10. [`graph`]: motion graphs, and walks through them.
-//! 11. [`path`]: motion along an edited path.
-//! 12. [`matching`]: motion matching for a steered character.
-//! 13. [`points`]: skeletons from points: joint centres, optical markers.
-//! 14. [`clean`]: faults of captured takes, found and mended.
-//! 15. [`skin`]: a smooth mesh around any skeleton; linear blend and dual quaternion skinning.
+//! 11. [`graph`]: motion graphs, and walks through them.
+//! 12. [`path`]: motion along an edited path.
+//! 13. [`matching`]: motion matching for a steered character.
+//! 14. [`points`]: skeletons from points: joint centres, optical markers.
+//! 15. [`clean`]: faults of captured takes, found and mended.
+//! 16. [`skin`]: a smooth mesh around any skeleton; linear blend and dual quaternion skinning.
 //!
 //! `tests/architecture.rs` in the workspace checks the dependencies between these modules:
 //!
 //! ```text
 //! math ← skeleton ← clip ← synth, registration, points, skin
 //! registration ← blend ← transition ← gait
-//! blend ← metrics
+//! blend ← metrics; metrics, transition ← retarget, clean
 //! all of these ← graph, path, matching
-//! metrics, transition ← clean
 //! ```
 //!
 //! # Conventions
@@ -115,6 +115,7 @@ pub mod metrics;
 pub mod path;
 pub mod points;
 pub mod registration;
+pub mod retarget;
 pub mod skeleton;
 pub mod skin;
 pub mod synth;

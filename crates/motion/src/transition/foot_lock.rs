@@ -1,17 +1,17 @@
 //! Foot lock: planted feet are held in place by two-bone inverse kinematics.
 
+use super::limb::{Limb, LimbPose, usual_axis};
 use crate::blend::MAX_SECS;
 use crate::clip::{Clip, ClipError, Contacts};
-use crate::math::{curve, quat};
 use crate::registration::REFERENCE_HEIGHT_M;
-use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose, two_bone_ik};
-use glam::{Mat3, Quat, Vec3};
+use crate::skeleton::{Roles, Side, Skeleton, WorldPose};
+use glam::{Quat, Vec3};
 use std::ops::Range;
 use std::sync::Arc;
 
-mod anchor;
-mod envelope;
-mod hips;
+pub(crate) mod anchor;
+pub(crate) mod envelope;
+pub(crate) mod hips;
 
 /// Options of the foot lock. Lengths are those of a character 1.75 m tall and are scaled to the
 /// clip's character.
@@ -73,15 +73,6 @@ pub enum FootLockError {
     Clip(#[from] ClipError),
 }
 
-/// The least flexion of the knee to which a leg is stretched, unless the clip itself stretches it
-/// further: near full stretch the knee would snap. A leg of bones `a` and `b` and length `l` that
-/// becomes longer by `d` turns its knee by `d l / (a b sin φ)`: at this limit 1.2° per millimetre
-/// on a leg of 0.85 m, with the hips 5 mm lower than for a straight leg.
-const MIN_FLEXION_RADIANS: f32 = 0.22;
-/// Sine of the flexion below which the knee's own plane is uncertain, and the leg's usual plane is
-/// used.
-const PLANE_SINE: f32 = 0.2;
-
 /// Plants the feet: a foot does not slide while it is planted according to `contacts`.
 ///
 /// *Planted feet.* In every step between two planted frames the point of the foot (ball, tip, or
@@ -100,9 +91,10 @@ const PLANE_SINE: f32 = 0.2;
 /// than in either.
 ///
 /// *Legs.* Thigh and shin are rotated about the knee's own axis to bring the ankle to its target,
-/// then the leg is swung the shortest way ([`two_bone_ik`]); joints between hip, knee and ankle
-/// keep their local rotations. Only the *difference* to the solution for the unchanged ankle is
-/// applied, so that the knee keeps its plane, also when it is nearly straight.
+/// then the leg is swung the shortest way ([`two_bone_ik`](crate::skeleton::two_bone_ik)); joints
+/// between hip, knee and ankle keep their local rotations. Only the *difference* to the solution
+/// for the unchanged ankle is applied, so that the knee keeps its plane, also when it is nearly
+/// straight.
 ///
 /// *Hips.* A nearly straight leg has to bend a lot to become a little shorter, and cannot become
 /// longer. The hips are raised or lowered to the height at which both knees change least (least
@@ -130,7 +122,7 @@ pub fn foot_lock(
 /// lock needs.
 #[must_use]
 pub fn has_legs(skeleton: &Skeleton, roles: &Roles) -> bool {
-    Side::BOTH.into_iter().any(|side| Leg::find(skeleton, roles, side).is_some())
+    Side::BOTH.into_iter().any(|side| Limb::leg(skeleton, roles, side).is_some())
 }
 
 /// The computation of [`foot_lock`] in slices, for long clips.
@@ -196,9 +188,9 @@ struct State {
     options: FootLockOptions,
     scale: f32,
     stances: Vec<Vec<Range<usize>>>,
-    legs: Vec<Leg>,
+    legs: Vec<Limb>,
     feet: Vec<anchor::Foot>,
-    posed: Vec<Vec<LegPose>>,
+    posed: Vec<Vec<LimbPose>>,
     body_yaws: Vec<f64>,
     /// Computed when all frames are posed.
     plan: Option<Plan>,
@@ -234,8 +226,8 @@ impl State {
         check("largest shift (m)", f64::from(options.max_shift_m), 10.0)?;
         check("clearance (m)", f64::from(options.clearance_m.unwrap_or(0.0)), 1.0)?;
         let sides = Side::BOTH.into_iter();
-        let (sides, legs): (Vec<Side>, Vec<Leg>) =
-            sides.filter_map(|side| Some((side, Leg::find(clip.skeleton(), roles, side)?))).unzip();
+        let (sides, legs): (Vec<Side>, Vec<Limb>) =
+            sides.filter_map(|side| Some((side, Limb::leg(clip.skeleton(), roles, side)?))).unzip();
         if legs.is_empty() {
             return Err(FootLockError::NoLegs);
         }
@@ -248,7 +240,7 @@ impl State {
             scale: roles.body_height(clip.skeleton()) / REFERENCE_HEIGHT_M as f32,
             stances: sides.iter().map(|side| contacts.intervals(*side)).collect(),
             feet: (sides.iter().zip(&legs))
-                .map(|(side, leg)| anchor::Foot::new(clip, roles, *side, leg.joints[2]))
+                .map(|(side, leg)| anchor::Foot::new(clip, roles, *side, leg.joints()[2]))
                 .collect(),
             posed: legs.iter().map(|_| Vec::with_capacity(clip.frames())).collect(),
             body_yaws: Vec::new(),
@@ -345,159 +337,6 @@ impl State {
             .with_translations(clip.translations().to_vec())?
             .with_provenance(clip.provenance()))
     }
-}
-
-/// The joints of a leg, and their parents.
-#[derive(Clone, Debug)]
-pub(crate) struct Leg {
-    joints: [usize; 3],
-    parents: [usize; 3],
-}
-
-/// The world pose of a leg in one frame of the clip.
-#[derive(Clone, Copy, Debug)]
-struct LegPose {
-    /// Hip to knee, and knee to ankle.
-    thigh: Vec3,
-    shin: Vec3,
-    rotations: [Quat; 3],
-    parents: [Quat; 3],
-}
-
-impl Leg {
-    /// Returns the leg of a side; `None` where thigh, shin and foot are not one below the other.
-    pub(crate) fn find(skeleton: &Skeleton, roles: &Roles, side: Side) -> Option<Self> {
-        let [thigh, shin, foot, _] =
-            Role::leg(side).map(|role| roles.get_within(role, skeleton.len()));
-        let joints = [thigh?, shin?, foot?];
-        let above = |joint: usize, wanted: usize| {
-            std::iter::successors(skeleton.parent(joint), |&j| skeleton.parent(j))
-                .any(|j| j == wanted)
-        };
-        let [Some(a), Some(b), Some(c)] = joints.map(|joint| skeleton.parent(joint)) else {
-            return None;
-        };
-        let chain = above(joints[1], joints[0]) && above(joints[2], joints[1]);
-        let rest = skeleton.rest_positions();
-        let bones = [0, 1].map(|bone| rest[joints[bone]].distance(rest[joints[bone + 1]]));
-        (chain && bones.iter().all(|length| *length > 1e-3))
-            .then_some(Self { joints, parents: [a, b, c] })
-    }
-
-    /// Returns thigh, shin and foot.
-    pub(crate) fn joints(&self) -> [usize; 3] {
-        self.joints
-    }
-
-    /// Returns the axis about which this knee bends over some poses, in the thigh's frame.
-    pub(crate) fn usual_axis<'a>(&self, worlds: impl Iterator<Item = &'a WorldPose>) -> Vec3 {
-        usual_axis(&worlds.map(|world| self.pose(world)).collect::<Vec<_>>())
-    }
-
-    /// Moves the ankle by `shift` (metres, world) as [`foot_lock`] does, with the hips fixed:
-    /// writes the local rotations of thigh, shin and foot. `world` is the pose before; it may hold
-    /// these joints and their ancestors alone.
-    pub(crate) fn move_ankle(
-        &self,
-        world: &WorldPose,
-        shift: Vec3,
-        usual_axis: Vec3,
-        local: &mut [Quat],
-    ) {
-        let posed = self.pose(world);
-        let [upper, lower] = posed.turned(shift, usual_axis);
-        self.write(&posed, [upper, lower, Quat::IDENTITY], local);
-    }
-
-    /// Returns by how much the hips are too high for this leg when its ankle is moved by `shift`,
-    /// metres.
-    pub(crate) fn too_high(&self, world: &WorldPose, shift: Vec3) -> f32 {
-        hips::too_high(std::iter::once((&self.pose(world), shift)), 0.0)
-    }
-
-    fn pose(&self, world: &WorldPose) -> LegPose {
-        let [hip, knee, ankle] = self.joints.map(|joint| world.positions[joint]);
-        LegPose {
-            thigh: knee - hip,
-            shin: ankle - knee,
-            rotations: self.joints.map(|joint| world.rotations[joint]),
-            parents: self.parents.map(|joint| world.rotations[joint]),
-        }
-    }
-
-    /// Writes local rotations after thigh, shin and foot were each rotated in the world.
-    fn write(&self, posed: &LegPose, [upper, lower, own]: [Quat; 3], local: &mut [Quat]) {
-        let [thigh, shin, foot] = self.joints;
-        let (rotations, parents) = (posed.rotations, posed.parents);
-        local[thigh] = quat::renormalize(parents[0].conjugate() * upper * rotations[0]);
-        local[shin] = quat::renormalize((upper * parents[1]).conjugate() * lower * rotations[1]);
-        local[foot] = quat::renormalize((lower * parents[2]).conjugate() * own * rotations[2]);
-    }
-}
-
-impl LegPose {
-    fn line(&self) -> Vec3 {
-        self.thigh + self.shin
-    }
-
-    /// Returns the cross product of the bones over the product of their lengths: it points along
-    /// the axis about which the knee is bent, and its length is the sine of the flexion.
-    fn bend(&self) -> Vec3 {
-        self.thigh.cross(self.shin) / (self.thigh.length() * self.shin.length()).max(1e-9)
-    }
-
-    /// Returns the greatest length of this leg.
-    fn reach(&self) -> f32 {
-        let (a, b) = (self.thigh.length(), self.shin.length());
-        let reach = (a * a + b * b + 2.0 * a * b * MIN_FLEXION_RADIANS.cos()).sqrt();
-        reach.max(self.line().length())
-    }
-
-    /// Returns world rotations of thigh and shin that move the ankle by `shift` relative to the
-    /// hip.
-    ///
-    /// `usual_axis` is the axis of the knee in the thigh's frame. Where the leg is not bent in one
-    /// plane about the axis used, or the knee is bent the wrong way, a difference of angles does
-    /// not quite reach; the remainder is then solved for once more.
-    fn turned(&self, shift: Vec3, usual_axis: Vec3) -> [Quat; 2] {
-        let (a, b) = (self.thigh.length(), self.shin.length());
-        let bend = self.bend();
-        let usual = self.rotations[0] * usual_axis;
-        // A knee that is bent the wrong way has no plane of its own either.
-        let own = curve::smoothstep(bend.dot(usual) / PLANE_SINE);
-        let line = self.line();
-        let axis = bend * own + usual * PLANE_SINE * (1.0 - own);
-        let from = two_bone_ik(line, a, b, axis);
-        let wanted = (line + shift).clamp_length_max(self.reach());
-        let mut asked = wanted;
-        let mut turns = [Quat::IDENTITY; 2];
-        for _ in 0..3 {
-            let swing = quat::between_directions(line, asked);
-            let to = two_bone_ik(asked, a, b, swing * from.hinge);
-            turns = [(from.upper, to.upper), (from.lower, to.lower)].map(|(bone, turned)| {
-                quat::renormalize(basis(turned, to.hinge) * basis(bone, from.hinge).conjugate())
-            });
-            let missing = wanted - (turns[0] * self.thigh + turns[1] * self.shin);
-            if missing.length_squared() < 1e-10 {
-                break;
-            }
-            asked = (asked + missing).clamp_length_max(self.reach());
-        }
-        turns
-    }
-}
-
-/// Returns the rotation from X to `hinge` and from Y to `bone`, perpendicular unit vectors.
-fn basis(bone: Vec3, hinge: Vec3) -> Quat {
-    Quat::from_mat3(&Mat3::from_cols(hinge, bone, hinge.cross(bone)))
-}
-
-/// Returns the axis about which a knee bends over the whole clip, in the thigh's frame; bent frames
-/// count more.
-fn usual_axis(posed: &[LegPose]) -> Vec3 {
-    let sum: Vec3 = posed.iter().map(|posed| posed.rotations[0].conjugate() * posed.bend()).sum();
-    // In a clip of straight legs: the lateral axis of the body, which faces +Z at rest.
-    sum.try_normalize().unwrap_or(Vec3::X)
 }
 
 #[cfg(test)]

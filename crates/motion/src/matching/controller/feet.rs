@@ -7,7 +7,7 @@ use crate::math::curve::smoothstep;
 use crate::math::{quat, spring};
 use crate::registration::REFERENCE_HEIGHT_M;
 use crate::skeleton::{Pose, Side, Skeleton, WorldPose, world_pose_of};
-use crate::transition::Leg;
+use crate::transition::Limb;
 use glam::{Quat, Vec3};
 
 /// Foot planting during playback, tick by tick: like [`crate::transition::foot_lock`] for a whole
@@ -109,7 +109,7 @@ fn clearance(speed_mps: f32) -> f32 {
 #[derive(Clone, Debug)]
 struct Foot {
     side: Side,
-    leg: Leg,
+    leg: Limb,
     axis: Vec3,
     points: Vec<(usize, Vec3)>,
     before: Vec<Vec3>,
@@ -138,7 +138,7 @@ impl Feet {
             .filter_map(|place| Some(database.motion(place.motion)?.clip().world_pose(place.frame)))
             .collect();
         let foot = |side: Side| {
-            let leg = Leg::find(skeleton, roles, side)?;
+            let leg = Limb::leg(skeleton, roles, side)?;
             Some(Foot {
                 side,
                 axis: leg.usual_axis(examples.iter()),
@@ -388,7 +388,7 @@ mod tests {
         let fastest = |usual: &[f32]| {
             let poses = played(&database, usual, stance.start..motion.frames(), own, |_, _| {});
             let legs = Side::BOTH.map(|side| {
-                Leg::find(database.skeleton(), database.roles(), side).unwrap().joints()
+                Limb::leg(database.skeleton(), database.roles(), side).unwrap().joints()
             });
             let speed = |joint: usize, pair: &[Pose]| {
                 quat::angle_between(pair[0].rotations[joint], pair[1].rotations[joint])

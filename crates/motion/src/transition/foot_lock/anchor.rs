@@ -32,7 +32,7 @@ const MAX_TURN_RADIANS: f32 = 0.52;
 
 /// The track of one foot through the clip.
 #[derive(Debug)]
-pub(super) struct Foot {
+pub(crate) struct Foot {
     ankle: usize,
     points: Vec<(usize, Vec3)>,
     /// World positions of the ankle, frame by frame.
@@ -50,6 +50,13 @@ impl Foot {
             track: Vec::with_capacity(points.len() * clip.frames()),
             points,
         }
+    }
+
+    /// Returns a foot that moves as given: the positions of the ankle, and, frame by frame, those
+    /// of the points.
+    pub(crate) fn moving(ankles: Vec<Vec3>, points: usize, track: Vec<Vec3>) -> Self {
+        // Only the number of points is used once they are placed.
+        Self { ankle: 0, points: vec![(0, Vec3::ZERO); points], ankles, track }
     }
 
     pub(super) fn push(&mut self, world: &WorldPose) {
@@ -112,7 +119,7 @@ impl Foot {
 
     /// Returns the correction of the foot's position in every frame, metres; the stances are
     /// [`merged`](Self::merged).
-    pub(super) fn shifts(
+    pub(crate) fn shifts(
         &self,
         stances: &[Range<usize>],
         fps: f64,
@@ -192,7 +199,7 @@ impl Foot {
 
     /// Merges stances with a short time between them. Where the foot moves far in that time it
     /// needs longer: both stances are shortened.
-    pub(super) fn merged(
+    pub(crate) fn merged(
         &self,
         stances: &[Range<usize>],
         fps: f64,

@@ -2,7 +2,7 @@
 
 /// Returns means over `reach` values to either side with the weights of a raised cosine; at the
 /// ends over the existing ones.
-pub(super) fn smoothed(values: &[f32], reach: usize) -> Vec<f32> {
+pub(crate) fn smoothed(values: &[f32], reach: usize) -> Vec<f32> {
     let weight = |off: isize| 1.0 + (std::f32::consts::PI * off as f32 / (reach + 1) as f32).cos();
     let weights: Vec<f32> = (-(reach as isize)..=reach as isize).map(weight).collect();
     let mean = |at: usize| {
@@ -19,7 +19,7 @@ pub(super) fn smoothed(values: &[f32], reach: usize) -> Vec<f32> {
 }
 
 /// Returns the largest of the values within `reach`; 0 where none is positive.
-pub(super) fn largest_around(values: &[f32], reach: usize) -> Vec<f32> {
+pub(crate) fn largest_around(values: &[f32], reach: usize) -> Vec<f32> {
     let largest = |at: usize| {
         values[at.saturating_sub(reach)..(at + reach + 1).min(values.len())]
             .iter()

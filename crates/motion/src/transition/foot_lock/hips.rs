@@ -1,7 +1,7 @@
 //! The height of the hips for planted feet.
 
-use super::LegPose;
 use super::envelope::{largest_around, smoothed};
+use crate::transition::limb::LimbPose;
 use glam::Vec3;
 
 /// Time to either side over which the height of the hips is smoothed, seconds.
@@ -13,7 +13,7 @@ const MIN_SINE: f32 = 0.1;
 const HIP_SINE: f32 = 0.7;
 
 /// Returns the change of the hips' height in every frame, metres.
-pub(super) fn heights(posed: &[Vec<LegPose>], shifts: &[Vec<Vec3>], fps: f64) -> Vec<f32> {
+pub(crate) fn heights(posed: &[Vec<LimbPose>], shifts: &[Vec<Vec3>], fps: f64) -> Vec<f32> {
     let frames = shifts.iter().map(Vec::len).min().unwrap_or(0);
     let legs = |frame: usize| {
         posed.iter().zip(shifts).map(move |(posed, shifts)| (&posed[frame], shifts[frame]))
@@ -37,7 +37,7 @@ pub(super) fn heights(posed: &[Vec<LegPose>], shifts: &[Vec<Vec3>], fps: f64) ->
 /// Returns the height at which both knees change least. A leg's length changes by `Δ + h cos θ`
 /// when its ankle is moved and the hips are raised by `h`, and its knee by `d / (a b sin φ)` times
 /// that; the result minimizes the sum of the squares of these and of the cost of the hips.
-fn height_of_least_change<'a>(legs: impl Iterator<Item = (&'a LegPose, Vec3)>) -> f32 {
+fn height_of_least_change<'a>(legs: impl Iterator<Item = (&'a LimbPose, Vec3)>) -> f32 {
     let (mut above, mut below) = (0.0, 0.0);
     for (leg, shift) in legs {
         let line = leg.line();
@@ -53,8 +53,8 @@ fn height_of_least_change<'a>(legs: impl Iterator<Item = (&'a LegPose, Vec3)>) -
 }
 
 /// Returns by how much the hips would be too high for the legs to reach, metres.
-pub(super) fn too_high<'a>(legs: impl Iterator<Item = (&'a LegPose, Vec3)>, height: f32) -> f32 {
-    let too_high = |(leg, shift): (&LegPose, Vec3)| {
+pub(crate) fn too_high<'a>(legs: impl Iterator<Item = (&'a LimbPose, Vec3)>, height: f32) -> f32 {
+    let too_high = |(leg, shift): (&LimbPose, Vec3)| {
         let asked = leg.line() + shift;
         let (reach, aside) = (leg.reach(), Vec3::new(asked.x, 0.0, asked.z).length());
         // Beyond the reach sideways no height helps: the hips are not lowered below the ankle.

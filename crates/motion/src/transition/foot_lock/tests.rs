@@ -3,10 +3,12 @@
 use super::*;
 use crate::clip::fixtures::wander_by;
 use crate::clip::{ContactOptions, stillest_step};
+use crate::math::quat;
 use crate::math::{Planar, wrap_angle};
 use crate::registration::fixtures::Walk;
-use crate::skeleton::{Joint, Skeleton, fixtures};
+use crate::skeleton::{Joint, Role, Skeleton, fixtures};
 use crate::synth::{Action, Params, synthesize};
+use crate::transition::limb::LimbPose;
 use proptest::prelude::*;
 use std::sync::Arc;
 
@@ -322,7 +324,7 @@ proptest! {
         turn in -3.0f32..3.0,
     ) {
         let world = Quat::from_rotation_y(turn) * Quat::from_rotation_x(tilt);
-        let leg = LegPose {
+        let leg = LimbPose {
             thigh: world * Vec3::NEG_Y * 0.43,
             shin: world * Quat::from_rotation_x(flexion) * Vec3::NEG_Y * 0.42,
             rotations: [world; 3],
@@ -355,7 +357,7 @@ fn foot_lock_never_flips_knees() {
     let mut before: Option<f32> = None;
     for step in 0..=40 {
         let flexion = 0.1 - 0.005 * step as f32;
-        let leg = LegPose {
+        let leg = LimbPose {
             thigh: Vec3::NEG_Y * 0.43,
             shin: Quat::from_rotation_x(flexion) * Vec3::NEG_Y * 0.42,
             rotations: [Quat::IDENTITY; 3],
@@ -374,7 +376,7 @@ fn foot_lock_never_flips_knees() {
 /// The leg is stretched evenly, as before the heel of a long step comes down.
 #[test]
 fn foot_lock_of_a_stretched_leg_does_not_snap() {
-    let leg = LegPose {
+    let leg = LimbPose {
         thigh: Vec3::NEG_Y * 0.43,
         shin: Quat::from_rotation_x(0.6) * Vec3::NEG_Y * 0.42,
         rotations: [Quat::IDENTITY; 3],

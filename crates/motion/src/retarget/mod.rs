@@ -1,0 +1,209 @@
+//! Retargeting of whole motions by inverse kinematics: any motion on any body.
+//!
+//! [`crate::clip::retarget`] gives every bone of a body the direction that it has in another one.
+//! Where the proportions differ, feet then slide and sink in, and hands miss. [`retarget_motion`]
+//! begins with these directions and moves feet and hands to where the source has them, at the scale
+//! of the new body.
+//!
+//! # The picture
+//!
+//! 1. *Directions.* As in [`crate::clip::retarget`]: roles level the rest poses, hips travel at the
+//!    scale of the legs.
+//! 2. *Feet.* An ankle goes over the ground where the source's goes, times the ratio of the legs'
+//!    lengths. Its height is such that the lowest point of the foot is as far above the level that
+//!    it has on a flat sole as in the source, in proportion.
+//! 3. *Hands.* A wrist goes where the source's is relative to its shoulder, times the ratio of the
+//!    arms' lengths, so that an arm is stretched as far as the source's. Hands that are near each
+//!    other in the source keep their distance instead.
+//! 4. *Stances.* In the source's contacts the point of the foot that stands is held, as in the
+//!    [foot lock](crate::transition::foot_lock()). A foot that slides on purpose, by more than
+//!    [`SLIDE_ON_PURPOSE_M`], slides as far as the source's. Feet that sink in are lifted smoothly.
+//! 5. *Hips.* They are raised or lowered, smoothly, to where the knees change least and both feet
+//!    are in reach.
+//! 6. *Limbs.* Each is solved in closed form ([`crate::skeleton::two_bone_ik`]) in the plane that
+//!    its knee or elbow has, never bent backwards, with a smooth limit near full stretch.
+//! 7. *Twist.* The twist of hands, feet, upper arms and thighs is spread over the joints that a rig
+//!    has for it.
+//!
+//! ```
+//! use segue_motion::clip::Motion;
+//! use segue_motion::retarget::{RetargetOptions, TargetBody, retarget_motion};
+//! use segue_motion::skeleton::Roles;
+//! use segue_motion::synth::{Action, Params, synthesize};
+//! use std::sync::Arc;
+//!
+//! let walk = Motion::analyze(synthesize(&Params::new(Action::Walk))?.clip);
+//! let child = Arc::new(walk.clip().skeleton().scaled(0.6));
+//! let roles = Roles::detect(&child);
+//! let body = TargetBody { skeleton: &child, roles: &roles, model: None };
+//! let made = retarget_motion(&walk, &body, &RetargetOptions::default())?;
+//! assert!(made.report.skating.result.worst_cm < made.report.source_skating.worst_cm + 0.3);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # What it does not do
+//!
+//! The ground is one plane. Hands are held by shoulders and by each other, not by the ground, by
+//! the body or by props. Bodies without legs, or on four of them, get directions alone.
+//!
+//! # Sources
+//!
+//! Gleicher, "Retargetting Motion to New Characters", SIGGRAPH 1998 (the motion is kept where the
+//! constraints allow it; foot plants are constraints). Choi and Ko, "Online Motion Retargetting",
+//! The Journal of Visualization and Computer Animation 10, 1999 (end effectors at the scale of the
+//! limbs, joint angles as the second goal). Kovar, Schreiner and Gleicher, "Footskate Cleanup for
+//! Motion Capture Editing", SCA 2002 (plants, ramps at their edges, the root follows). Tolani,
+//! Goswami and Badler, "Real-Time Inverse Kinematics Techniques for Anthropomorphic Limbs",
+//! Graphical Models 62, 2000 (the limb in closed form, with the plane of its elbow as a parameter).
+
+mod feet;
+mod hands;
+mod report;
+mod solve;
+#[cfg(test)]
+mod tests;
+mod tracks;
+mod twist;
+
+pub use report::{Compared, LimbReach, RetargetErrors, SkatingValues};
+
+use crate::clip::{Clip, Motion, RetargetError, retarget, retarget_onto};
+use crate::skeleton::{Retargeting, Role, Roles, Side, Skeleton};
+use glam::Vec3;
+use std::sync::Arc;
+
+/// A foot of a body 1.75 m tall that slides farther than this in one stance does so on purpose, and
+/// does so on the other body, too, metres. By the points of a foot, which is round at its heel,
+/// captured walks slide by up to 8 cm.
+pub const SLIDE_ON_PURPOSE_M: f32 = 0.15;
+
+/// Options of [`retarget_motion`]. Weights run from 0 (the bones' directions alone) to 1 (the limb
+/// reaches its goal); other numbers count as the nearest of these, and NaN as 0.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct RetargetOptions {
+    /// The weights of the left and the right foot.
+    pub feet: [f32; 2],
+    /// The weights of the left and the right hand.
+    pub hands: [f32; 2],
+}
+
+impl Default for RetargetOptions {
+    fn default() -> Self {
+        Self { feet: [1.0; 2], hands: [1.0; 2] }
+    }
+}
+
+impl RetargetOptions {
+    /// The options under which only directions are kept.
+    pub const DIRECTIONS: Self = Self { feet: [0.0; 2], hands: [0.0; 2] };
+
+    /// Returns options with one weight for both feet and one for both hands.
+    #[must_use]
+    pub const fn weights(feet: f32, hands: f32) -> Self {
+        Self { feet: [feet; 2], hands: [hands; 2] }
+    }
+
+    /// Returns the same options with every weight from 0 to 1.
+    fn clamped(self) -> Self {
+        let share = |weight: f32| if weight > 0.0 { weight.min(1.0) } else { 0.0 };
+        let clamp = |weights: [f32; 2]| weights.map(share);
+        Self { feet: clamp(self.feet), hands: clamp(self.hands) }
+    }
+}
+
+/// The body that a motion is moved to.
+#[derive(Clone, Copy, Debug)]
+pub struct TargetBody<'a> {
+    /// Its skeleton.
+    pub skeleton: &'a Arc<Skeleton>,
+    /// The roles of its joints.
+    pub roles: &'a Roles,
+    /// A clip of this body, from which its stance is taken if its rest pose is implausible.
+    pub model: Option<&'a Clip>,
+}
+
+impl<'a> TargetBody<'a> {
+    /// Returns the body of a motion.
+    #[must_use]
+    pub fn of(motion: &'a Motion) -> Self {
+        let model = motion.clip();
+        Self { skeleton: model.skeleton(), roles: motion.roles(), model: Some(model) }
+    }
+}
+
+/// A motion on another body.
+#[derive(Clone, Debug)]
+pub struct RetargetedMotion {
+    /// The motion.
+    pub clip: Clip,
+    /// The errors that remain.
+    pub report: RetargetErrors,
+}
+
+/// Retargets a motion to another body: directions of bones first, then the places of feet and
+/// hands; see the [module](self).
+///
+/// On the same skeleton the clip is returned unchanged, on the same rig with its joints in another
+/// order every shared joint keeps its position. Time: O(frames × joints), five passes of forward
+/// kinematics.
+///
+/// # Errors
+/// [`RetargetError::NothingInCommon`] when no joint of the body corresponds to one of the motion's.
+pub fn retarget_motion(
+    source: &Motion,
+    target: &TargetBody,
+    options: &RetargetOptions,
+) -> Result<RetargetedMotion, RetargetError> {
+    let (clip, roles) = (source.clip(), source.roles());
+    let plain = match target.model {
+        Some(model) if model.skeleton() == target.skeleton => {
+            retarget_onto(clip, roles, model, target.roles)?
+        }
+        _ => retarget(clip, roles, target.skeleton, target.roles)?,
+    };
+    let way = Retargeting::new(clip.skeleton(), roles, target.skeleton, target.roles);
+    let scale = way.filter(|way| !way.is_same_rig()).map(|way| way.scale());
+    let Some(scale) = scale.filter(|_| clip.skeleton() != target.skeleton) else {
+        return Ok(RetargetedMotion { clip: plain, report: RetargetErrors::default() });
+    };
+    let task = Task { source, plain: &plain, target, scale, options: options.clamped() };
+    let solved = solve::solve(&task)?;
+    let report = report::measure(&task, &solved);
+    let clip = twist::spread(solved.clip, target)?;
+    Ok(RetargetedMotion { clip, report })
+}
+
+/// What is to be solved.
+struct Task<'a> {
+    source: &'a Motion,
+    /// The directions of the source's bones on the target.
+    plain: &'a Clip,
+    target: &'a TargetBody<'a>,
+    /// The ratio of the legs' lengths.
+    scale: f32,
+    options: RetargetOptions,
+}
+
+impl Task<'_> {
+    /// Returns the height of the ground under the result, metres.
+    fn ground_m(&self) -> f32 {
+        self.source.ground_m() * self.scale
+    }
+
+    /// Returns the height of the target's body as a share of 1.75 m, for lengths that are given for
+    /// such a body.
+    fn size(&self) -> f32 {
+        self.target.roles.body_height(self.target.skeleton)
+            / crate::registration::REFERENCE_HEIGHT_M as f32
+    }
+}
+
+/// Returns ankle, ball and tip of a foot, each as a joint and a point in its frame; `None` for
+/// those that the skeleton does not have.
+fn foot_points(skeleton: &Skeleton, roles: &Roles, side: Side) -> [Option<(usize, Vec3)>; 3] {
+    let joint = |role| roles.get_within(role, skeleton.len());
+    let (ankle, ball) = (joint(Role::foot(side)), joint(Role::toe(side)));
+    // The tip of a foot without toes is its own end site.
+    let tip = ball.or(ankle).and_then(|last| Some((last, skeleton.joints()[last].end_site?)));
+    [ankle.map(|joint| (joint, Vec3::ZERO)), ball.map(|joint| (joint, Vec3::ZERO)), tip]
+}

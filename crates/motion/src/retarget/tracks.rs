@@ -1,0 +1,174 @@
+//! The limbs of both bodies, frame by frame.
+
+use super::{Task, foot_points};
+use crate::clip::Clip;
+use crate::clip::reference_pose;
+use crate::skeleton::{Roles, Side, Skeleton, WorldPose, canonical_stance};
+use crate::transition::{Limb, LimbPose};
+use glam::Vec3;
+
+/// The mean sine of the flexion over a clip from which on the motion is believed about the axis of
+/// a knee, even if that contradicts the body at rest: the hind legs of animals bend the other way.
+const OWN_AXIS_SINE: f32 = 0.2;
+/// The weight of the axis at rest beside that of the motion.
+const REST_AXIS_SINE: f32 = 0.02;
+
+/// A leg or an arm of both bodies.
+pub(super) struct LimbTrack {
+    pub(super) limb: Limb,
+    /// The target's limb with the directions of the source's, frame by frame.
+    pub(super) posed: Vec<LimbPose>,
+    /// The axis of its knee or elbow, in the frame of the upper bone.
+    pub(super) axis: Vec3,
+    /// The source's limb: its start, its end, and the sum of its bones, metres.
+    pub(super) source: Vec<(Vec3, Vec3, f32)>,
+    /// The start of the target's limb.
+    pub(super) starts: Vec<Vec3>,
+}
+
+/// The feet of both bodies: ankle, ball and tip in each frame.
+pub(super) struct FootTrack {
+    /// The kinds of points that the source has, and the target.
+    pub(super) has: [[bool; 3]; 2],
+    pub(super) source: Vec<[Vec3; 3]>,
+    pub(super) target: Vec<[Vec3; 3]>,
+}
+
+/// Everything that is read of both clips.
+pub(super) struct Tracks {
+    /// Legs with their feet, and arms; left, then right.
+    pub(super) legs: [Option<(LimbTrack, FootTrack)>; 2],
+    pub(super) arms: [Option<LimbTrack>; 2],
+}
+
+/// The limbs of one body.
+struct Limbs {
+    legs: [Option<Limb>; 2],
+    arms: [Option<Limb>; 2],
+    feet: [[Option<(usize, Vec3)>; 3]; 2],
+}
+
+impl Limbs {
+    fn of(skeleton: &Skeleton, roles: &Roles) -> Self {
+        Self {
+            legs: Side::BOTH.map(|side| Limb::leg(skeleton, roles, side)),
+            arms: Side::BOTH.map(|side| Limb::arm(skeleton, roles, side)),
+            feet: Side::BOTH.map(|side| foot_points(skeleton, roles, side)),
+        }
+    }
+
+    fn joints(&self) -> impl Iterator<Item = usize> {
+        let limbs = self.legs.iter().chain(&self.arms).flatten().flat_map(Limb::joints);
+        limbs.chain(self.feet.iter().flatten().flatten().map(|(joint, _)| *joint))
+    }
+}
+
+impl Tracks {
+    /// Reads the limbs that both bodies have.
+    pub(super) fn of(task: &Task) -> Self {
+        let (clip, target) = (task.source.clip(), task.target);
+        let mut ours = Limbs::of(target.skeleton, target.roles);
+        let mut theirs = Limbs::of(clip.skeleton(), task.source.roles());
+        for side in 0..2 {
+            if ours.legs[side].is_none() || theirs.legs[side].is_none() {
+                (ours.legs[side], theirs.legs[side]) = (None, None);
+            }
+            if ours.arms[side].is_none() || theirs.arms[side].is_none() {
+                (ours.arms[side], theirs.arms[side]) = (None, None);
+            }
+        }
+        let frames = clip.frames();
+        let track = |limb: &Option<Limb>| {
+            limb.clone().map(|limb| LimbTrack {
+                limb,
+                posed: Vec::with_capacity(frames),
+                axis: Vec3::X,
+                source: Vec::with_capacity(frames),
+                starts: Vec::with_capacity(frames),
+            })
+        };
+        let foot = |side: usize| FootTrack {
+            has: [theirs.feet[side].map(|p| p.is_some()), ours.feet[side].map(|p| p.is_some())],
+            source: Vec::with_capacity(frames),
+            target: Vec::with_capacity(frames),
+        };
+        let mut made = Self {
+            legs: [0, 1].map(|side| Some((track(&ours.legs[side])?, foot(side)))),
+            arms: [0, 1].map(|side| track(&ours.arms[side])),
+        };
+        made.read_source(clip, &theirs);
+        made.read_target(task.plain, &ours);
+        made.find_axes(task);
+        made
+    }
+
+    fn read_source(&mut self, clip: &Clip, limbs: &Limbs) {
+        let needed = clip.skeleton().with_ancestors(limbs.joints());
+        let mut world = WorldPose::default();
+        for frame in 0..clip.frames() {
+            clip.world_pose_of(frame, &needed, &mut world);
+            let read = |limb: &Limb| {
+                let [start, middle, end] = limb.joints().map(|joint| world.positions[joint]);
+                (start, end, start.distance(middle) + middle.distance(end))
+            };
+            for side in 0..2 {
+                if let (Some((leg, foot)), Some(limb)) = (&mut self.legs[side], &limbs.legs[side]) {
+                    leg.source.push(read(limb));
+                    foot.source.push(points(&world, &limbs.feet[side]));
+                }
+                if let (Some(arm), Some(limb)) = (&mut self.arms[side], &limbs.arms[side]) {
+                    arm.source.push(read(limb));
+                }
+            }
+        }
+    }
+
+    fn read_target(&mut self, clip: &Clip, limbs: &Limbs) {
+        let needed = clip.skeleton().with_ancestors(limbs.joints());
+        let mut world = WorldPose::default();
+        for frame in 0..clip.frames() {
+            clip.world_pose_of(frame, &needed, &mut world);
+            let push = |track: &mut LimbTrack| {
+                track.posed.push(track.limb.pose(&world));
+                track.starts.push(world.positions[track.limb.joints()[0]]);
+            };
+            for side in 0..2 {
+                if let Some((leg, foot)) = &mut self.legs[side] {
+                    push(leg);
+                    foot.target.push(points(&world, &limbs.feet[side]));
+                }
+                if let Some(arm) = &mut self.arms[side] {
+                    push(arm);
+                }
+            }
+        }
+    }
+
+    /// Finds the axes of knees and elbows: that about which the motion bends them, with the sign
+    /// that the body at rest says where the motion hardly bends them.
+    fn find_axes(&mut self, task: &Task) {
+        let target = task.target;
+        let rest = match target.model {
+            Some(model) => reference_pose(model, target.roles),
+            None => target.skeleton.rest_pose(),
+        };
+        let stance = canonical_stance(target.skeleton, target.roles, &rest);
+        // A knee bends backwards, an elbow forwards.
+        let legs = self.legs.iter_mut().flatten().map(|(leg, _)| (leg, Vec3::NEG_Z));
+        let arms = self.arms.iter_mut().flatten().map(|arm| (arm, Vec3::Z));
+        for (track, bends_to) in legs.chain(arms) {
+            let at_rest = track.limb.pose(&stance);
+            let hinge = at_rest.thigh.cross(bends_to).normalize_or(Vec3::X);
+            let at_rest = at_rest.rotations[0].conjugate() * hinge;
+            let bends = track.posed.iter().map(|p| p.rotations[0].conjugate() * p.bend());
+            let moving = bends.sum::<Vec3>() / track.posed.len().max(1) as f32;
+            let agrees = moving.dot(at_rest) > 0.0 || moving.length() > OWN_AXIS_SINE;
+            let axis = if agrees { moving + at_rest * REST_AXIS_SINE } else { at_rest };
+            track.axis = axis.normalize_or(at_rest);
+        }
+    }
+}
+
+fn points(world: &WorldPose, foot: &[Option<(usize, Vec3)>; 3]) -> [Vec3; 3] {
+    foot.map(|point| point.map_or(Vec3::ZERO, |(joint, point)| world.point(joint, point)))
+}
