@@ -1,6 +1,9 @@
 //! The roles of a skeleton's joints: found by name, otherwise by shape, and corrected by hand.
 
 mod names;
+mod numbers;
+#[cfg(test)]
+mod rig_tests;
 mod shape;
 #[cfg(test)]
 mod tests;
@@ -85,12 +88,14 @@ impl Roles {
     ///
     /// Names: whole words are compared, without regard to case, after side (`left`, `L_`, `.L`,
     /// `lFemur`, …), name space (`mixamorig:`) and numbers are removed; CMU (ASF and BVH), Mixamo,
-    /// `LaFAN1`, Bandai-Namco, Biped, SMPL, `OptiTrack`, Rokoko, Xsens and Unreal rigs are covered.
+    /// `LaFAN1`, Bandai-Namco, Biped, SMPL, SOMA, `OptiTrack`, Rokoko, Xsens, Vicon, Perception
+    /// Neuron, Unreal, Unity, VRM, Rigify, DAZ, Character Creator and Unitree rigs are covered; the
+    /// joints of SMPL by their numbers, too.
     /// Shape: needs Y up and arms that are not folded over the legs; left and right follow from the
     /// toes, which point forward.
     #[must_use]
     pub fn detect(skeleton: &Skeleton) -> Self {
-        let mut roles = names::detect(skeleton);
+        let mut roles = Self::by_name(skeleton);
         if roles.count() < Role::COUNT {
             roles.fill(skeleton, &shape::detect(skeleton));
         }
@@ -100,7 +105,8 @@ impl Roles {
     /// Finds roles by the names of joints alone, whatever the rest pose. See [`Self::detect`].
     #[must_use]
     pub fn by_name(skeleton: &Skeleton) -> Self {
-        names::detect(skeleton)
+        let roles = names::detect(skeleton);
+        if roles.count() == 0 { numbers::detect(skeleton) } else { roles }
     }
 
     /// Returns the roles that a file states, and where it states none, those that [`Self::detect`]

@@ -1,8 +1,8 @@
 //! Roles by the names of joints.
 
-use super::tokens::{self, Tokens};
+use super::tokens::{self, Hinge, Tokens};
 use super::{RoleSource, Roles, is_below};
-use crate::skeleton::{Role, Side, Skeleton};
+use crate::skeleton::{Joint, Role, Side, Skeleton};
 
 /// The words for a part of the body, in groups: a word of an earlier group takes precedence over
 /// those of later ones.
@@ -47,15 +47,15 @@ const HAND: Vocabulary = &[&["wrist"], &["hand"]];
 /// second one may be a control without a telling name.
 const MAX_EQUAL_LIMBS: usize = 2;
 
+/// The fewest joints named as those that deform the body (`DEF-spine`) for which all others are
+/// controls.
+const MIN_DEFORMING: usize = 8;
+/// The fewest bones of the back above the arms of which the last one is the head.
+const MIN_NECK: usize = 2;
+
 pub(super) fn detect(skeleton: &Skeleton) -> Roles {
-    let names: Vec<Tokens> = skeleton.joints().iter().map(|j| tokens::read(&j.name)).collect();
-    let search = Search { skeleton, names: &names, depths: depths(skeleton) };
-    let mut roles = Roles::default();
-    let hips = search.best(HIPS, None, None);
-    roles.assign(Role::Hips, hips, RoleSource::ByName);
-    let spine = search.best(SPINE, None, hips).or_else(|| search.lumbar(hips));
-    roles.assign(Role::Spine, spine, RoleSource::ByName);
-    roles.assign(Role::Head, search.best(HEAD, None, spine.or(hips)), RoleSource::ByName);
+    let search = Search::of(skeleton);
+    let mut limbs = Roles::default();
     for side in Side::BOTH {
         let leg = Role::leg(side).into_iter().zip([THIGH, SHIN, FOOT, TOE]);
         let arm = Role::arm(side).into_iter().zip([UPPER_ARM, FOREARM, HAND]);
@@ -67,21 +67,62 @@ pub(super) fn detect(skeleton: &Skeleton) -> Roles {
             }
             for (role, words) in limb {
                 let joint = search.best(words, Some(side), above);
-                roles.assign(role, joint, RoleSource::ByName);
+                let joint = joint.map(|joint| search.last_hinge(joint));
+                limbs.assign(role, joint, RoleSource::ByName);
                 above = joint.or(above);
             }
         }
     }
+    let mut roles = limbs;
+    let hips = search.hips(&roles);
+    roles.assign(Role::Hips, hips, RoleSource::ByName);
+    let spine = search.best(SPINE, None, hips).or_else(|| search.lumbar(hips));
+    roles.assign(Role::Spine, spine, RoleSource::ByName);
+    let head = search.best(HEAD, None, spine.or(hips)).or_else(|| search.end_of_back(&roles));
+    roles.assign(Role::Head, head, RoleSource::ByName);
     roles
 }
 
 struct Search<'a> {
     skeleton: &'a Skeleton,
-    names: &'a [Tokens],
+    /// The parts of the names; `None` for joints that are no parts of the body.
+    names: Vec<Option<Tokens>>,
     depths: Vec<usize>,
+    /// Whether the joints are a robot's, which has a hinge for each axis.
+    is_hinged: bool,
 }
 
-impl Search<'_> {
+impl<'a> Search<'a> {
+    fn of(skeleton: &'a Skeleton) -> Self {
+        let mut names: Vec<Option<Tokens>> =
+            skeleton.joints().iter().map(|joint| Some(tokens::read(&joint.name))).collect();
+        let deforms = |joint: &Joint| {
+            let prefix = joint.name.rsplit(':').next().and_then(|name| name.split_at_checked(4));
+            prefix.is_some_and(|(prefix, _)| {
+                prefix.to_ascii_lowercase().starts_with("def")
+                    && !prefix.ends_with(char::is_alphanumeric)
+            })
+        };
+        if skeleton.joints().iter().filter(|joint| deforms(joint)).count() >= MIN_DEFORMING {
+            for (name, joint) in names.iter_mut().zip(skeleton.joints()) {
+                *name = name.take().filter(|_| deforms(joint));
+            }
+        }
+        let has = |hinge| names.iter().flatten().any(|name| name.hinge == Some(hinge));
+        let is_hinged = [Hinge::Roll, Hinge::Pitch, Hinge::Yaw].into_iter().all(has);
+        if is_hinged {
+            for name in names.iter_mut().flatten().filter(|name| name.hinge.is_some()) {
+                name.helper = false;
+                for word in ["pitch", "yaw"] {
+                    if let Some(part) = name.core.strip_suffix(word) {
+                        name.core = part.to_owned();
+                    }
+                }
+            }
+        }
+        Self { skeleton, names, depths: depths(skeleton), is_hinged }
+    }
+
     /// Returns the joint of that side, below `above`, with the best word; of several the one
     /// nearest the root.
     fn best(&self, words: Vocabulary, side: Option<Side>, above: Option<usize>) -> Option<usize> {
@@ -116,17 +157,75 @@ impl Search<'_> {
             group(&tokens.core).or_else(|| group(&tokens.last).map(|g| g + words.len()))
         };
         self.names.iter().enumerate().filter_map(move |(joint, tokens)| {
-            Some((rank(joint, tokens)?, self.depths[joint], joint))
+            Some((rank(joint, tokens.as_ref()?)?, self.depths[joint], joint))
         })
+    }
+
+    /// Returns the hips. Where no joint is called so, or only a root is, they are the bone of the
+    /// back from which both legs hang, as `DEF-spine` of Rigify.
+    fn hips(&self, limbs: &Roles) -> Option<usize> {
+        let best = self.ranked(HIPS, None, None).min();
+        if let Some((0, _, hips)) = best {
+            return Some(hips);
+        }
+        let of_legs = self.meeting(limbs, Role::thigh).filter(|&joint| self.is_of_back(joint));
+        of_legs.or(best.map(|(_, _, joint)| joint))
+    }
+
+    /// Returns the last bone of the back above the arms, which is the head where none is called so:
+    /// `DEF-spine.006` of Rigify.
+    fn end_of_back(&self, limbs: &Roles) -> Option<usize> {
+        let chest = self.meeting(limbs, Role::upper_arm)?;
+        let above =
+            |&joint: &usize| self.is_of_back(joint) && is_below(self.skeleton, joint, chest);
+        let neck: Vec<usize> = (0..self.names.len()).filter(above).collect();
+        let last = neck.iter().copied().max_by_key(|&joint| self.depths[joint]);
+        last.filter(|_| neck.len() >= MIN_NECK)
+    }
+
+    /// Returns whether a joint is named as those of the back.
+    fn is_of_back(&self, joint: usize) -> bool {
+        self.names[joint].as_ref().is_some_and(|name| {
+            !name.helper && name.side.is_none() && SPINE[0].contains(&name.core.as_str())
+        })
+    }
+
+    /// Returns the lowest joint that is above the limbs of both sides.
+    fn meeting(&self, limbs: &Roles, role: impl Fn(Side) -> Role) -> Option<usize> {
+        let [left, right] = Side::BOTH.map(|side| limbs.get(role(side)));
+        let (left, right) = (left?, right?);
+        std::iter::successors(self.skeleton.parent(left), |&joint| self.skeleton.parent(joint))
+            .find(|&joint| is_below(self.skeleton, right, joint))
+    }
+
+    /// Returns the last of a robot's hinges that turn the same part of the body, which has the
+    /// rotation of all of them; the joint itself in other skeletons.
+    fn last_hinge(&self, joint: usize) -> usize {
+        let is_same_part = |one: usize, other: usize| {
+            let [Some(one), Some(other)] = [&self.names[one], &self.names[other]] else {
+                return false;
+            };
+            one.hinge.is_some()
+                && other.hinge.is_some()
+                && (one.side, &one.core) == (other.side, &other.core)
+        };
+        let mut last = joint;
+        while self.is_hinged
+            && let Some(next) = self.skeleton.children(last).find(|&next| is_same_part(last, next))
+        {
+            last = next;
+        }
+        last
     }
 
     /// Returns the lowest joint of the back in Xsens files, which is named after its vertebra:
     /// `L5`.
     fn lumbar(&self, hips: Option<usize>) -> Option<usize> {
-        self.names.iter().enumerate().find_map(|(joint, t)| {
-            let is = t.core.is_empty()
-                && t.side == Some(Side::Left)
-                && matches!(t.numbers.as_slice(), [n] if n == "5");
+        self.names.iter().enumerate().find_map(|(joint, name)| {
+            let name = name.as_ref()?;
+            let is = name.core.is_empty()
+                && name.side == Some(Side::Left)
+                && matches!(name.numbers.as_slice(), [n] if n == "5");
             (is && hips.is_none_or(|hips| is_below(self.skeleton, joint, hips))).then_some(joint)
         })
     }

@@ -32,6 +32,7 @@ const NOISE: &[&str] = &[
     "jnt",
     "joint",
     "jt",
+    "link",
     "m",
     "mixamorig",
     "mot",
@@ -39,6 +40,8 @@ const NOISE: &[&str] = &[
     "rig",
     "sk",
     "skel",
+    "stretch",
+    "x",
 ];
 
 /// Words of joints that move no part of the body.
@@ -73,6 +76,16 @@ pub(crate) struct Tokens {
     pub(crate) numbers: Vec<String>,
     /// Whether the name is that of an end site, a twist joint or an IK target.
     pub(crate) helper: bool,
+    /// The axis of a hinge, where the name tells nothing else against a part of the body.
+    pub(super) hinge: Option<Hinge>,
+}
+
+/// The axis of a hinge by which robots name their joints: `left_hip_pitch`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Hinge {
+    Roll,
+    Pitch,
+    Yaw,
 }
 
 /// Returns whether two names differ only in the side: `LeftHandIndex1` and `RightHandIndex1`.
@@ -90,7 +103,7 @@ pub(crate) fn read(name: &str) -> Tokens {
     let name = name.rsplit(':').next().unwrap_or(name);
     let mut sides = Vec::new();
     let (mut core, mut last) = (String::new(), String::new());
-    let (mut numbers, mut helper) = (Vec::new(), false);
+    let (mut numbers, mut helper, mut rolls, mut hinge) = (Vec::new(), false, false, None);
     for part in name.split(|c: char| !c.is_alphanumeric()).filter(|part| !part.is_empty()) {
         let mut of_part = String::new();
         for run in split_by_case(part) {
@@ -102,9 +115,20 @@ pub(crate) fn read(name: &str) -> Tokens {
                 match word.as_str() {
                     "l" | "left" => sides.push(Side::Left),
                     "r" | "right" => sides.push(Side::Right),
+                    "roll" => {
+                        rolls = true;
+                        hinge = Some(Hinge::Roll);
+                    }
                     w if HELPERS.contains(&w) => helper = true,
                     w if NOISE.contains(&w) => {}
-                    w => of_part.push_str(w),
+                    w => {
+                        match w {
+                            "pitch" => hinge = Some(Hinge::Pitch),
+                            "yaw" => hinge = Some(Hinge::Yaw),
+                            _ => {}
+                        }
+                        of_part.push_str(w);
+                    }
                 }
             }
         }
@@ -114,7 +138,10 @@ pub(crate) fn read(name: &str) -> Tokens {
         }
     }
     let side = sides.first().copied().filter(|first| sides.iter().all(|s| s == first));
-    Tokens { side, core, last, numbers, helper }
+    let hinge = hinge.filter(|_| !helper);
+    // A bone that rolls carries a share of a limb's twist, unless it is one of a robot's hinges.
+    let helper = helper || rolls;
+    Tokens { side, core, last, numbers, helper, hinge }
 }
 
 /// Splits `LeftUpLeg1` into `left`, `up`, `leg`, `1`, and `LHipJoint` into `l`, `hip`, `joint`.
