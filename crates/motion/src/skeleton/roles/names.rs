@@ -67,7 +67,9 @@ pub(super) fn detect(skeleton: &Skeleton) -> Roles {
             }
             for (role, words) in limb {
                 let joint = search.best(words, Some(side), above);
-                let joint = joint.map(|joint| search.last_hinge(joint));
+                // The hinges of a hip are apart: the leg is as long as from the first one.
+                let is_hip = role == Role::thigh(side);
+                let joint = joint.map(|at| if is_hip { at } else { search.last_hinge(at) });
                 limbs.assign(role, joint, RoleSource::ByName);
                 above = joint.or(above);
             }
