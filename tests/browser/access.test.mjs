@@ -1,12 +1,13 @@
 // Tests of access: screen readers, reduced motion, and reports.
 
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
+import { readdirSync, readFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
 import { onBackend, onBothBackends } from "./harness.mjs";
 import { until } from "./help.mjs";
 
 const LABS = ["view", "make", "blend", "transition", "speed", "loop", "layers", "register", "path", "graph", "match", "in_place", "edit", "clean"];
+const LESSONS = readdirSync(new URL("../../assets/lessons/en", import.meta.url)).filter((name) => /^\d/.test(name)).length;
 const AXE = readFileSync(fileURLToPath(import.meta.resolve("axe-core/axe.min.js")), "utf8");
 
 /** Waits until there are elements and their number no longer changes. */
@@ -66,7 +67,7 @@ onBackend("webgl2", "menus, help and contents are elements as the page is", asyn
   const { page, segue } = await open("lab=blend&lesson=contents&play=off", { viewport: [1280, 800] });
   await elements(page);
   assert.deepEqual(await faults(page), [], "contents");
-  assert.equal(await page.getByRole("button", { name: /^\d+\. / }).count(), 14);
+  assert.equal(await page.getByRole("button", { name: /^\d+\. / }).count(), LESSONS);
   await segue("set", { lesson: "" });
   await page.getByRole("combobox", { name: "A: Walk" }).focus();
   await page.keyboard.press("Enter");
@@ -168,7 +169,7 @@ onBothBackends("lessons are read from start to end by keyboard alone", async ({ 
     await page.keyboard.press("Enter");
     await until("the page is turned", async () => (await segue("params")).lesson !== lesson);
   }
-  assert.equal(read.size, 14, [...read].join());
+  assert.equal(read.size, LESSONS, [...read].join());
 });
 
 // Fails when the page moves by itself although the system is set to little motion.
