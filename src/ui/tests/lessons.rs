@@ -43,7 +43,7 @@ fn lesson_is_read_tried_and_left() {
     go(text::LESSONS.english(), &mut harness);
     picture("lessons-contents", &mut harness);
     go("3. The blend window", &mut harness);
-    harness.get_by_label("3 of 14");
+    harness.get_by_label("3 of 15");
     let params = |harness: &Harness<'_, Page>, key: Key| {
         key.param().format(harness.state().session.params().get(key))
     };
@@ -65,10 +65,10 @@ fn lesson_is_read_tried_and_left() {
     harness.get_by_label_contains("four times the acceleration");
     picture("lessons-answer", &mut harness);
     go(text::NEXT.english(), &mut harness);
-    harness.get_by_label("4 of 14");
+    harness.get_by_label("4 of 15");
     harness.get_by_label(text::SHOW_ANSWER.english());
     go(text::PREVIOUS_PAGE.english(), &mut harness);
-    harness.get_by_label("3 of 14");
+    harness.get_by_label("3 of 15");
     harness.key_press(Keyboard::Escape);
     harness.run();
     assert!(harness.state().session.lesson().is_none());

@@ -334,7 +334,7 @@ fn bar_of_the_presenter_comes_with_the_pointer_and_leaves() {
     harness.hover_at(pos2(400.0, 300.0));
     harness.run_steps(2);
     assert!(is_shown(&harness));
-    harness.get_by_label_contains("3 / 14 · ");
+    harness.get_by_label_contains("3 / 15 · ");
     picture("presenter-bar", &mut harness);
     harness.run_steps(40);
     assert!(!is_shown(&harness));
