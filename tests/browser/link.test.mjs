@@ -13,7 +13,7 @@ const CHOSEN = {
   warp_curve: "0-0,100-100", warp_also: "0.3:walk", pins: "12-30,50-71", path: "AAUAAADIAfAByAF3yAF3rAI", others: "walk,run",
   prefer_clip: "walk", clips: "walk,run(turn_rate:20,lean:2)", go_to: "12.5:1,40:0", walk_path: "0:0,1.5:4", jump: "0:52-1:14",
   character: "somebody~0a1b2c3d", match_clips: "walk,run", tags: "walk:0.2-1.5:exclude", ask_tag: "walk", forbid_tag: "turn", contact_edits: "idle:L2-9;-R4-6", drive: "3c.0.s_1o.0.0",
-  more_curves: "height,angle",
+  more_curves: "height,angle", clean_skip: "spike-34,gap-7",
   compare: "blend_window:60,20", lesson: "slerp", src: "https://example.org/one.bvh?x=1&y=2 https://example.org/two.bvh",
 };
 
