@@ -59,7 +59,7 @@ onBackend("webgl2", "browser set to Chinese shows Chinese, and the link does not
   await linkStored(page, "lang=en");
   await page.goto(page.url().replace(/\?.*/, "?lab=blend"), { waitUntil: "commit" });
   await ready();
-  assert.equal((await segue("params")).lang, "en");
+  await until("the choice is restored", async () => (await segue("params")).lang === "en");
   await spoken(page, "en");
 });
 

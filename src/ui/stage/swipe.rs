@@ -16,7 +16,7 @@ const WAY: f32 = 36.0;
 /// The time within which a finger goes that far, seconds. A slower one turns the camera.
 const SECS: f64 = 0.15;
 /// The frames that it may take where they are longer.
-const FRAMES: f64 = 2.5;
+const FRAMES: f64 = 3.5;
 
 /// A finger on the stage of several panes.
 #[derive(Clone, Copy, Debug, PartialEq)]
