@@ -7,7 +7,7 @@ use super::rows::format_rows_ui;
 use super::state::UiState;
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
-use eframe::egui::{self, Align2, RichText, ScrollArea, Ui};
+use eframe::egui::{self, RichText, Ui};
 use segue_session::convert::ConversionRow;
 use segue_session::export::ExportOptions;
 use segue_session::{Session, Slot};
@@ -48,24 +48,9 @@ pub(super) fn convert_ui(session: &Session, state: &mut UiState, out: &mut Out, 
     if !state.convert.is_open {
         return;
     }
-    let theme = theme_of(ui);
-    let screen = ui.ctx().content_rect().size();
-    let width = (WIDTH * theme.scale()).min(screen.x - 4.0 * space::L);
-    let most = screen.y - 6.0 * space::L - theme.row_height();
-    let mut open = true;
-    let title = RichText::new(say(text::CONVERT_TITLE, ui)).font(theme.font(Type::Title));
-    egui::Window::new(title)
-        .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
-        .default_size([width, most])
-        .collapsible(false)
-        .resizable(false)
-        .open(&mut open)
-        .show(ui.ctx(), |ui| {
-            ui.set_width(width);
-            ScrollArea::vertical().max_height(most).auto_shrink([false, true]).show(ui, |ui| {
-                content_ui(session, &mut state.convert, out, ui);
-            });
-        });
+    let width = WIDTH * theme_of(ui).scale();
+    let contents = |ui: &mut Ui| content_ui(session, &mut state.convert, out, ui);
+    let open = kit::dialog_ui(text::CONVERT_TITLE, width, contents, ui);
     state.convert.is_open &= open;
 }
 

@@ -11,9 +11,7 @@ use super::out::Out;
 use super::state::UiState;
 use super::text;
 use super::theme::{Type, palette_of, radius, space, theme_of};
-use eframe::egui::{
-    self, Align, Align2, Layout, RichText, ScrollArea, Stroke, StrokeKind, Ui, vec2,
-};
+use eframe::egui::{self, Align, Align2, Layout, RichText, Stroke, StrokeKind, Ui, vec2};
 use segue_session::Session;
 
 /// Draws the overlays.
@@ -39,38 +37,27 @@ fn help_ui(state: &mut UiState, ui: &mut Ui) {
     let widest = |widths: Vec<f32>| widths.into_iter().fold(0.0, f32::max);
     let keys = widest(rows.iter().map(|row| width_of(&row.0, Type::Strong, ui)).collect());
     let what = widest(rows.iter().map(|row| width_of(&row.1, Type::Body, ui)).collect());
-    let screen = ui.ctx().content_rect().size();
-    let width = (keys + space::L + what + space::L).min(screen.x - 4.0 * space::L);
-    let most = screen.y - 6.0 * space::L - theme.row_height();
+    let width = (keys + space::L + what + space::L).min(kit::max_dialog_width(ui));
     // On a phone the keys take more lines, too.
     let keys = keys.min((0.4 * width).round());
-    let mut open = true;
-    egui::Window::new(RichText::new(say(text::HELP, ui)).font(theme.font(Type::Title)))
-        .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
-        .default_size([width, most])
-        .collapsible(false)
-        .resizable(false)
-        .open(&mut open)
-        .show(ui.ctx(), |ui| {
-            ui.set_width(width);
-            ScrollArea::vertical().max_height(most).auto_shrink([false, true]).show(ui, |ui| {
-                ui.spacing_mut().item_spacing = vec2(space::L, space::XS);
-                for (key, sentence) in &rows {
-                    ui.horizontal_top(|ui| {
-                        let column = vec2(keys, 0.0);
-                        ui.allocate_ui_with_layout(column, Layout::top_down(Align::Min), |ui| {
-                            ui.set_width(keys);
-                            let key = RichText::new(say(Text::Data(key), ui))
-                                .font(theme.font(Type::Strong));
-                            ui.add(egui::Label::new(key.color(palette.text)).wrap());
-                        });
-                        let words = RichText::new(say(Text::Data(sentence), ui))
-                            .font(theme.font(Type::Body));
-                        ui.add(egui::Label::new(words.color(palette.muted)).wrap());
-                    });
-                }
+    let contents = |ui: &mut Ui| {
+        ui.spacing_mut().item_spacing = vec2(space::L, space::XS);
+        for (key, sentence) in &rows {
+            ui.horizontal_top(|ui| {
+                let column = vec2(keys, 0.0);
+                ui.allocate_ui_with_layout(column, Layout::top_down(Align::Min), |ui| {
+                    ui.set_width(keys);
+                    let key = RichText::new(say(Text::Data(key), ui));
+                    let key = key.font(theme.font(Type::Strong)).color(palette.text);
+                    ui.add(egui::Label::new(key).wrap());
+                });
+                let words = RichText::new(say(Text::Data(sentence), ui));
+                let words = words.font(theme.font(Type::Body)).color(palette.muted);
+                ui.add(egui::Label::new(words).wrap());
             });
-        });
+        }
+    };
+    let open = kit::dialog_ui(text::HELP, width, contents, ui);
     state.help_open &= open;
 }
 
