@@ -19,7 +19,7 @@ const MOTION: [(&str, &str); 16] = [
     ("blend", "math skeleton clip registration"),
     ("metrics", "math skeleton clip blend"),
     ("gait", "math skeleton clip registration blend transition"),
-    ("clean", "math skeleton clip transition metrics"),
+    ("clean", "math skeleton clip registration transition metrics"),
     ("retarget", "math skeleton clip registration transition metrics"),
     ("graph", BELOW),
     ("path", BELOW),

@@ -2,7 +2,7 @@
 
 use super::trial::Numbers;
 use segue_motion::clip::{Clip, Motion};
-use segue_motion::math::stats;
+use segue_motion::math::stats::median;
 use segue_motion::metrics::{Artefacts, MotionTrace};
 use segue_session::{CycleMade, Outcome};
 
@@ -72,11 +72,4 @@ pub(super) fn cut_part(outcome: &Outcome, a: &Motion) -> Option<MotionTrace> {
     let frame = |secs: f64| (secs * a.clip().fps()).round() as usize;
     let part = a.clip().crop(frame(from_secs)..(frame(to_secs) + 1).min(a.clip().frames())).ok()?;
     Some(MotionTrace::new(&part, a.roles()))
-}
-
-/// Returns the median.
-#[must_use]
-pub fn median(values: &[f64]) -> Option<f64> {
-    let values: Vec<f32> = values.iter().map(|value| *value as f32).collect();
-    stats::percentile(&values, 0.5).map(f64::from)
 }

@@ -1,8 +1,8 @@
 //! The outcomes of the trials, in Markdown and as JSON.
 
 use super::folder::Motions;
-use super::measured::median;
 use super::trial::{Draw, Numbers, Trial, TrialResult};
+use segue_motion::math::stats::median;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 

@@ -3,12 +3,12 @@
 use super::fault::{Fault, FaultKind, Form, SizeUnit, confidence};
 use super::mend::levelled;
 use crate::clip::{Clip, Contacts, Motion, estimate_ground, stillest_point};
-use crate::metrics::SlideMeter;
+use crate::math::stats;
+use crate::metrics::foot_slides;
+use crate::registration::REFERENCE_HEIGHT_M;
 use crate::skeleton::{Roles, Side, WorldPose};
 use glam::{DVec2, Vec3};
 
-/// The height of the character to which lengths apply, metres.
-const REFERENCE_HEIGHT_M: f32 = 1.75;
 /// The least slide of a foot in a stance, centimetres.
 const MIN_SLIDE_CM: f32 = 2.0;
 /// The least drift: centimetres and degrees per second; and the most, above which the body moves in
@@ -36,13 +36,14 @@ struct Stance {
     turn_rps: f64,
 }
 
-fn middle(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    match values.len() {
-        0 => 0.0,
-        n if n % 2 == 1 => values[n / 2],
-        n => (values[n / 2 - 1] + values[n / 2]) * 0.5,
-    }
+/// Returns the median; 0 of nothing.
+fn median(values: &[f64]) -> f64 {
+    stats::median(values).unwrap_or(0.0)
+}
+
+/// Returns the height of a body as a share of the one to which lengths apply.
+fn relative_height(height_m: f32) -> f32 {
+    height_m / REFERENCE_HEIGHT_M as f32
 }
 
 fn stances(motion: &Motion) -> Vec<Stance> {
@@ -86,19 +87,18 @@ fn stances(motion: &Motion) -> Vec<Stance> {
             found.push(Stance {
                 side: side.index(),
                 secs: (inner.start + inner.end) as f64 / 2.0 / fps,
-                height_m: middle(heights) as f32,
-                velocity: DVec2::new(middle(x), middle(z)),
-                place: DVec2::new(middle(px), middle(pz)),
-                turn_rps: middle(turns),
+                height_m: median(&heights) as f32,
+                velocity: DVec2::new(median(&x), median(&z)),
+                place: DVec2::new(median(&px), median(&pz)),
+                turn_rps: median(&turns),
             });
         }
     }
     found
 }
 
-/// Returns the heading of a joint by the axis of it that lies flattest.
+/// Returns the turn of a joint about the vertical, radians: the twist of its rotation about Y.
 fn yaw_of(world: &WorldPose, joint: usize) -> f64 {
-    // A twist about the vertical: that of the quaternion's part about Y.
     let q = world.rotations[joint];
     2.0 * f64::from(q.y).atan2(f64::from(q.w))
 }
@@ -108,7 +108,7 @@ pub(super) fn drift(motion: &Motion) -> Option<Fault> {
     let stances = stances(motion);
     let clip = motion.clip();
     let frames = 0..clip.frames();
-    let scale = motion.body_height() / REFERENCE_HEIGHT_M;
+    let scale = relative_height(motion.body_height());
     let planted: f64 = Side::BOTH
         .iter()
         .flat_map(|&side| motion.contacts().intervals(side))
@@ -120,19 +120,19 @@ pub(super) fn drift(motion: &Motion) -> Option<Fault> {
     let of_side = |side: usize| -> Vec<f64> {
         stances.iter().filter(|s| s.side == side).map(|s| s.turn_rps).collect()
     };
-    let sides = [of_side(0), of_side(1)].map(middle);
-    let turn = middle(stances.iter().map(|s| s.turn_rps).collect());
-    let spread = middle(stances.iter().map(|s| (s.turn_rps - turn).abs()).collect());
+    let sides = [of_side(0), of_side(1)].map(|turns| median(&turns));
+    let turn = median(&stances.iter().map(|s| s.turn_rps).collect::<Vec<_>>());
+    let spread = median(&stances.iter().map(|s| (s.turn_rps - turn).abs()).collect::<Vec<_>>());
     let agrees = sides.iter().all(|own| own * turn > 0.0 && (own / turn - 1.0).abs() < 0.5);
     let turn_dps = turn.to_degrees().abs() as f32;
     let turns = agrees && spread < 0.35 * turn.abs() && is_between(turn_dps, TURN_DPS);
     let turn_rps = if turns { turn } else { 0.0 };
     let rest = |s: &Stance| s.velocity - turn_rps * DVec2::new(s.place.y, -s.place.x);
     let velocity = DVec2::new(
-        middle(stances.iter().map(|s| rest(s).x).collect()),
-        middle(stances.iter().map(|s| rest(s).y).collect()),
+        median(&stances.iter().map(|s| rest(s).x).collect::<Vec<_>>()),
+        median(&stances.iter().map(|s| rest(s).y).collect::<Vec<_>>()),
     );
-    let off = middle(stances.iter().map(|s| (rest(s) - velocity).length()).collect());
+    let off = median(&stances.iter().map(|s| (rest(s) - velocity).length()).collect::<Vec<_>>());
     let cmps = velocity.length() as f32 * 100.0 / scale;
     let moves = off < 0.35 * velocity.length() && is_between(cmps, DRIFT_CMPS);
     if turns {
@@ -160,7 +160,7 @@ pub(super) fn ground(motion: &Motion) -> Option<Fault> {
         return None;
     }
     let clip = motion.clip();
-    let scale = motion.body_height() / REFERENCE_HEIGHT_M;
+    let scale = relative_height(motion.body_height());
     let rise_mps = rise(&stances(motion), clip, scale);
     let flat = if rise_mps == 0.0 { None } else { Some(levelled(clip, 0.0, rise_mps)) };
     let flat_clip: &Clip = flat.as_ref().unwrap_or(clip);
@@ -191,38 +191,29 @@ fn rise(stances: &[Stance], clip: &Clip, scale: f32) -> f32 {
         let later = some[at + 1..].iter().filter(|b| (b.secs - a.secs).abs() > 0.2);
         slopes.extend(later.map(|b| f64::from(b.height_m - a.height_m) / (b.secs - a.secs)));
     }
-    let slope = middle(slopes);
-    let level = middle(some.iter().map(|s| f64::from(s.height_m) - slope * s.secs).collect());
+    let slope = median(&slopes);
+    let level =
+        median(&some.iter().map(|s| f64::from(s.height_m) - slope * s.secs).collect::<Vec<_>>());
     let off = |s: &&Stance| (f64::from(s.height_m) - level - slope * s.secs).abs();
-    let spread = middle(some.iter().map(off).collect());
+    let spread = median(&some.iter().map(off).collect::<Vec<_>>());
     let whole = slope.abs() * clip.duration_secs();
     if whole > f64::from(MIN_RISE_M * scale) && spread < 0.1 * whole { slope as f32 } else { 0.0 }
 }
 
 /// Returns the stances in which a foot slides.
 pub(super) fn skating(clip: &Clip, roles: &Roles, contacts: &Contacts) -> Vec<Fault> {
-    let scale = roles.body_height(clip.skeleton()) / REFERENCE_HEIGHT_M;
+    let scale = relative_height(roles.body_height(clip.skeleton()));
     let mut found = Vec::new();
-    for side in Side::BOTH {
-        // One side at a time: a stance does not say whose it is.
-        let none = vec![false; contacts.frames()];
-        let own = (0..contacts.frames()).map(|frame| contacts.planted(side, frame)).collect();
-        let mut flags = [none.clone(), none];
-        flags[side.index()] = own;
-        let contacts = Contacts::from_flags(flags);
-        let mut meter = SlideMeter::new(clip, roles);
-        while meter.advance(clip, &contacts, clip.frames()) {}
-        for stance in meter.finish() {
-            let cm = stance.slide_cm as f32;
-            if cm > MIN_SLIDE_CM * scale {
-                let form = Form::Slide(side);
-                let size = (cm, SizeUnit::Centimetres);
-                let sure = confidence(cm / scale, 3.0);
-                let mut fault = Fault::of_body(FaultKind::Skating, stance.frames, form, size, sure);
-                let points = roles.foot_points(clip.skeleton(), side);
-                fault.joints = points.first().map(|&(joint, _)| joint).into_iter().collect();
-                found.push(fault);
-            }
+    for stance in foot_slides(clip, roles, contacts) {
+        let cm = stance.slide_cm as f32;
+        if cm > MIN_SLIDE_CM * scale {
+            let form = Form::Slide(stance.side);
+            let size = (cm, SizeUnit::Centimetres);
+            let sure = confidence(cm / scale, 3.0);
+            let mut fault = Fault::of_body(FaultKind::Skating, stance.frames, form, size, sure);
+            let points = roles.foot_points(clip.skeleton(), stance.side);
+            fault.joints = points.first().map(|&(joint, _)| joint).into_iter().collect();
+            found.push(fault);
         }
     }
     found

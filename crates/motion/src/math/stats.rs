@@ -16,9 +16,32 @@ pub fn percentile(values: &[f32], p: f32) -> Option<f32> {
     Some(below + (above - below) * at.fract())
 }
 
+/// Returns the median, with the mean of the middle two of an even number of values. `None` for an
+/// empty list; NaN sorts last.
+#[must_use]
+pub fn median(values: &[f64]) -> Option<f64> {
+    let mut values = values.to_vec();
+    let middle = values.len() / 2;
+    let is_odd = values.len() % 2 == 1;
+    if values.is_empty() {
+        return None;
+    }
+    let (below, &mut upper, _) = values.select_nth_unstable_by(middle, f64::total_cmp);
+    let lower = below.iter().copied().max_by(f64::total_cmp).filter(|_| !is_odd);
+    Some((lower.unwrap_or(upper) + upper) * 0.5)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn median_of_an_even_number_is_the_mean_of_the_middle_two() {
+        assert_eq!(median(&[]), None);
+        assert_eq!(median(&[7.0]), Some(7.0));
+        assert_eq!(median(&[9.0, 1.0, 4.0]), Some(4.0));
+        assert_eq!(median(&[9.0, 1.0, 4.0, 2.0]), Some(3.0));
+    }
 
     #[test]
     fn percentile_interpolates_linearly() {

@@ -40,6 +40,8 @@ pub fn foot_slides(clip: &Clip, roles: &Roles, contacts: &Contacts) -> Vec<Stanc
 pub struct StanceSlide {
     /// The frames of the stance.
     pub frames: Range<usize>,
+    /// The foot.
+    pub side: Side,
     /// The slide, centimetres, as defined by [`foot_slide_cm`].
     pub slide_cm: f64,
     /// The frame in which the foot slides fastest.
@@ -106,6 +108,7 @@ impl SlideMeter {
                     self.slid[index] += step;
                     let stance = self.stances[index].get_or_insert(StanceSlide {
                         frames: frame - 1..frame,
+                        side,
                         slide_cm: 0.0,
                         fastest: frame,
                         largest_step_m: 0.0,
