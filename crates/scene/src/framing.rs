@@ -56,7 +56,8 @@ pub(crate) fn height_in_view(motion: &Motion, reach: f32) -> f32 {
 /// Returns how far a mesh reaches above the ground, or to a side where that is farther, metres. It
 /// is bound in a pose that stands.
 pub(crate) fn reach_of(mesh: &SkinnedMesh) -> f32 {
-    mesh.positions.iter().map(|at| at.y.max(at.x.abs())).fold(0.0, f32::max)
+    let reach = |at: &Vec3| at.y.max(at.x.abs()).max(at.z.abs());
+    mesh.positions.iter().map(reach).fold(0.0, f32::max)
 }
 
 /// Returns the ratio of the height set in the parameters to the figure's own.
