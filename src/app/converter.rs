@@ -340,7 +340,7 @@ mod tests {
         let rows = segue.converter.shown().rows;
         assert!(rows[0].output.is_ok() && rows.len() == 4);
         assert!(rows[1..].iter().all(|row| row.output.is_err()));
-        // What the stopped file still sends is not taken in.
+        // Late answers for the file that was stopped are ignored.
         for incoming in segue.inbox.take() {
             segue.receive(incoming);
         }

@@ -152,7 +152,7 @@ pub(crate) fn convert_file(mut file: ReadFile, options: &ConvertOptions) -> Vec<
         }
         made.converted = Some(converted);
         files.push(made);
-        // What was odd is told once.
+        // Each warning is told once.
         if let Ok(read) = &mut file.result {
             read.warnings.clear();
         }

@@ -84,7 +84,7 @@ pub(super) enum Form {
     Rate(f64),
 }
 
-/// What is wrong with a track of a clip.
+/// A fault of one track: a joint's rotation, or a translation.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct TrackFault {
     /// The index among all tracks.
@@ -103,11 +103,11 @@ pub struct Fault {
     pub kind: FaultKind,
     /// The frames of the take that are wrong.
     pub frames: Range<usize>,
-    /// What is wrong with single tracks of the clip; empty where it is the whole body.
+    /// The faults of single tracks; empty for a fault of the whole body.
     pub(super) tracks: Vec<TrackFault>,
-    /// What is wrong with the whole body.
+    /// The form of a fault of the whole body; `None` for a fault of single tracks.
     pub(super) whole: Option<Form>,
-    /// The joints that are wrong, in their order; empty where it is the whole body.
+    /// The joints that are wrong, in their order; empty for a fault of the whole body.
     pub joints: Vec<usize>,
     /// How large it is, in the unit of [`unit`](Self::unit).
     pub size: f32,

@@ -11,8 +11,9 @@ use std::ops::Range;
 const MIN_DEPARTURE: [f32; 2] = [0.09, 0.025];
 /// The least ratio of a departure to the usual one around it.
 const MIN_RATIO: f32 = 6.0;
-/// What a joint does at every strike of a foot is no fault: its departures are compared with the
-/// one of this rank, or of this share of all if that is larger, by this ratio.
+/// A departure that recurs, as at every strike of a foot, is no fault. A fault exceeds the largest
+/// departures of its joint by a ratio: the one of this rank, or at this share of all of them if
+/// that is a later rank.
 const HABIT_RANK: usize = 6;
 const HABIT_SHARE: f32 = 0.012;
 const HABIT_RATIO: f32 = 2.0;
@@ -20,8 +21,8 @@ const HABIT_RATIO: f32 = 2.0;
 const NO_HABIT: [f32; 2] = [0.6, 0.2];
 /// A spike of this size is as likely as not a fault, radians and metres.
 const HALF_SURE: [f32; 2] = [0.19, 0.05];
-/// What moves with a spike belongs to it from this share of the least departure on, and from this
-/// ratio to the usual.
+/// A joint that departs in the same frames as a spike belongs to it if its departure is at least
+/// this share of `MIN_DEPARTURE`, and this multiple of the usual departure.
 const ALONG_SHARE: f32 = 0.25;
 const ALONG_RATIO: f32 = 4.5;
 /// The longest spike, seconds, and the least number of frames for which it is allowed.
@@ -30,7 +31,7 @@ const MAX_FRAMES: usize = 4;
 /// The longest time for which a joint turns over, seconds, and the least angle of that, radians.
 const MAX_FLIP_SECS: f64 = 3.0;
 const MIN_FLIP: f32 = 0.8;
-/// What a bridge over a spike departs from both sides, as a share of the spike.
+/// The largest bend where a bridge over a spike meets the motion, as a share of the spike.
 const MAX_BEND: f32 = 0.4;
 
 /// Returns the spikes of a track.

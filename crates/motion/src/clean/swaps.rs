@@ -50,7 +50,7 @@ pub(super) fn swaps(limbs: &Limbs, tracks: &Tracks) -> Vec<Fault> {
     };
     let usual =
         |at: usize| -> f32 { measured.iter().map(|(l, r)| l.usual(at) + r.usual(at)).sum() };
-    // What the exchange leaves of a step, and what there is without it.
+    // The departures of a step from the motion around it: with the sides exchanged, and as it is.
     let explained = |at: usize| -> (f32, f32) {
         let mut sums = (0.0, 0.0);
         for (&(left, right), (l, r)) in limbs.iter().zip(&measured) {

@@ -173,7 +173,7 @@ pub fn retarget_motion(
     Ok(RetargetedMotion { clip, report })
 }
 
-/// What is to be solved.
+/// The motion, the body and the options of one retargeting.
 struct Task<'a> {
     source: &'a Motion,
     /// The directions of the source's bones on the target.

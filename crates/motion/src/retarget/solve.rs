@@ -20,7 +20,7 @@ pub(super) struct Goals {
     pub(super) hands: [Vec<Vec3>; 2],
 }
 
-/// What is known of both bodies.
+/// The solved clip, with the goals and the tracks from which its errors are measured.
 pub(super) struct Solved {
     pub(super) clip: Clip,
     pub(super) goals: Goals,
