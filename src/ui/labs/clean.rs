@@ -37,7 +37,8 @@ fn title(shown: &Shown<'_>) -> Title {
     let mended = facts.map(|facts| facts.faults.iter().filter(|found| found.is_chosen).count());
     let secondary = match mended {
         Some(count) if is_on && count > 0 => text::mended(count),
-        _ if is_on => text::CLEANED.into(),
+        Some(_) if is_on => text::NOTHING_MENDED.into(),
+        None if is_on => text::CLEANED.into(),
         _ => text::AS_RECORDED.into(),
     };
     Title { strong: shown.name(Key::A), secondary, ..Title::default() }
@@ -126,7 +127,7 @@ fn fault_ui(
                 toggle(found, session, out);
             }
         }
-        let hint = text::certainty(fault);
+        let hint = text::confidence(fault);
         if kit::button_ui(Button::new(&line).quiet().hint(&hint), ui).clicked() {
             let frame = facts.frame_in_result(fault.frames.start);
             out.commands.push(Command::Set(vec![(Key::Play, Value::Switch(false))]));
@@ -135,7 +136,7 @@ fn fault_ui(
     });
 }
 
-/// Leaves a fault alone, or mends it after all: its kind is switched on, and the certainty that is
+/// Leaves a fault alone, or mends it after all: its kind is switched on, and the confidence that is
 /// asked for lowered to its own.
 fn toggle(found: &FoundFault, session: &Session, out: &mut Out) {
     let params = session.params();

@@ -30,20 +30,22 @@ pub(crate) const CLEAN_ALL_HINT: Word =
 pub(crate) const AS_RECORDED: Word = Word::new("with its faults");
 /// The title of a cleaned pane.
 pub(crate) const CLEANED: Word = Word::new("cleaned");
+/// The title of a pane in which nothing had to be mended, or may be.
+pub(crate) const NOTHING_MENDED: Word = Word::new("nothing mended");
 /// The name of a mark of a fault on the timeline.
 pub(crate) const FAULT: Word = Word::new("fault");
 
 /// Returns the name of a kind of fault on screen.
 pub(crate) const fn fault_kind(kind: FaultKind) -> Word {
     Word::new(match kind {
-        FaultKind::Swap => "Exchanged sides",
+        FaultKind::Swap => "Swapped sides",
         FaultKind::Gap => "Gaps",
         FaultKind::Spike => "Spikes",
         FaultKind::Jitter => "Jitter",
         FaultKind::Drift => "Drift",
         FaultKind::Ground => "Ground height",
         FaultKind::Ends => "Ends",
-        FaultKind::Skating => "Sliding feet",
+        FaultKind::Skating => "Foot skating",
         FaultKind::Rate => "Frame rate",
     })
 }
@@ -64,9 +66,9 @@ pub(crate) fn fault_line(fault: &Fault, secs: f64, joint: Option<Message>) -> Me
 }
 
 /// Returns how sure a fault is.
-pub(crate) fn certainty(fault: &Fault) -> Message {
+pub(crate) fn confidence(fault: &Fault) -> Message {
     let percent = 100.0 * f64::from(fault.confidence);
-    msg!("{percent:.0} % certain: show it", percent)
+    msg!("{percent:.0} % confidence: show it", percent)
 }
 
 fn size_of(fault: &Fault) -> Message {

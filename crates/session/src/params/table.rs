@@ -165,8 +165,8 @@ macro_rules! parameters {
     MoveZ "move_z" "Move along z" Lab(Edit), number(-100.0, 100.0, 0.01), Start::Number(0.0), "m", "Larger: the whole clip lies farther along z.";
 
     CleanMend "clean_mend" "Show" Lab(Clean), Kind::Choice(Mending::CHOICES), Start::Choice(Mending::Mended.word()), "", "Mended: without the faults that are switched on. As recorded: with them.";
-    CleanSure "clean_sure" "Least certainty" Lab(Clean), number(0.0, 95.0, 5.0), Start::Number(50.0), "%", "Faults that are less certain than this are listed, and left alone. Higher: fewer mends.";
-    CleanSwaps "clean_swaps" "Exchanged sides" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Exchanges left and right back where they are exchanged.";
+    CleanSure "clean_sure" "Minimum confidence" Lab(Clean), number(0.0, 95.0, 5.0), Start::Number(50.0), "%", "Faults that are less certain than this are listed, and left alone. Higher: fewer mends.";
+    CleanSwaps "clean_swaps" "Swapped sides" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Swaps left and right back where they are swapped.";
     CleanGaps "clean_gaps" "Gaps" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Fills frames in which a limb or the body holds still between moving frames.";
     CleanSpikes "clean_spikes" "Spikes" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Draws frames anew in which a joint leaves its way, and turns joints back that turned over.";
     CleanJitter "clean_jitter" "Jitter" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Filters noise, only where there is some.";
@@ -174,9 +174,9 @@ macro_rules! parameters {
     CleanDrift "clean_drift" "Drift" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Moves the body back where it drifts or turns evenly over planted feet.";
     CleanGround "clean_ground" "Ground height" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Brings planted feet to height 0, also where the ground rises evenly.";
     CleanEnds "clean_ends" "Ends" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Cuts off a T-pose in front of the motion, and standing still at the ends.";
-    CleanSkating "clean_skating" "Sliding feet" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Holds planted feet that slide in place.";
+    CleanSkating "clean_skating" "Foot skating" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Holds planted feet that slide in place.";
     CleanSkip "clean_skip" "Left alone" Lab(Clean), Kind::List(ListKind::FaultPlaces), Start::Text(""), "", "Faults that are not mended although their kind is: the kind and the first frame of each, as in spike-34,gap-120." [PlaceInA];
-    CleanFaults "clean_faults" "Faults put in" Lab(Clean), number(0.0, 20.0, 1.0), Start::Number(0.0), "", "Puts this number of faults into the clip, to see how they are found: spikes, gaps, exchanged sides and jitter by turns.";
+    CleanFaults "clean_faults" "Faults put in" Lab(Clean), number(0.0, 20.0, 1.0), Start::Number(0.0), "", "Puts this number of faults into the clip, to see how they are found: spikes, gaps, swapped sides and jitter by turns.";
     CleanSeed "clean_seed" "Seed of the faults" Lab(Clean), number(0.0, 999.0, 1.0), Start::Number(1.0), "", "Chooses where the faults are put in; the same seed puts them in the same places.";
 
     Gait "gait" "Motion" Lab(Make), Kind::Choice(MadeAction::CHOICES), Start::Choice(MadeAction::Walk.word()), "", "The action to synthesise.";
