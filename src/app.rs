@@ -285,6 +285,12 @@ impl Segue {
             .is_some_and(|progress| progress != StorageState::Done || self.session.is_reading_new())
     }
 
+    /// Returns whether all files are stored; `None` without a storage.
+    #[cfg(target_arch = "wasm32")]
+    pub(crate) fn is_stored(&self) -> Option<bool> {
+        self.autosave.files_stored().map(|_| !self.has_unstored_files())
+    }
+
     /// Returns whether files with one of these SHA-256 are being stored.
     #[cfg(target_arch = "wasm32")]
     pub(crate) fn is_storing(&self, files: &[String]) -> bool {

@@ -1,29 +1,29 @@
 //! The object by which the page's JavaScript drives the app. `web/js/boot.js` lists the methods
 //! that the page needs.
 
+mod graphics;
+
 use crate::app::api::{self, ApiError};
-use crate::app::{Event, Segue, Shared, View};
+use crate::app::{Event, Segue, Shared};
 use crate::outline::{Deed, Outline};
 use crate::platform::{
     Area, FileBytes, Inbox, LargeFile, area_of, confirm_leaving_while, inline_picture,
-    js_error_text, listen, next_frame, next_turn, now_ms, requested_backend, set_worker_factory,
-    sleep, snapshot, wasm_memory_bytes, watch_folders, watch_hiding,
+    js_error_text, next_frame, next_turn, now_ms, set_worker_factory, sleep, snapshot,
+    wasm_memory_bytes, watch_folders, watch_hiding,
 };
+use eframe::WebRunner;
 use eframe::egui::Modifiers;
-use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
-use eframe::wgpu::Backends;
-use eframe::{WebOptions, WebRunner};
-use js_sys::{Error, Function, Object, Reflect, Uint8Array};
+use js_sys::{Error, Function, Uint8Array};
 use segue_session::reading::LARGE_BYTES;
 use serde::Serialize;
 use serde_wasm_bindgen::Serializer;
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 use std::sync::Arc;
+use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
-use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::spawn_local;
-use web_sys::{Blob, HtmlCanvasElement, WebGl2RenderingContext};
+use web_sys::{Blob, HtmlCanvasElement};
 
 /// The page's handle of the running app.
 ///
@@ -57,10 +57,8 @@ fn show_outline(changes: &str) {
     }
 }
 
-/// The shortest life of a WebGPU device that replaced a lost one, milliseconds from its first
-/// frame. After a shorter one, the app draws with WebGL 2. The start does not count, because its
-/// duration depends on the machine.
-const MIN_DEVICE_LIFE_MS: f64 = 10_000.0;
+/// The longest wait for files to be stored before the page is loaded again, milliseconds.
+const MAX_STORING_MS: f64 = 10_000.0;
 
 fn error(text: impl std::fmt::Display) -> JsValue {
     Error::new(&text.to_string()).into()
@@ -110,30 +108,24 @@ impl SegueHandle {
 
     /// Continues on a new canvas after the graphics device was lost. The document is unchanged.
     /// After a failure, it can be called again with another canvas.
-    pub async fn restart(&self, canvas: HtmlCanvasElement) -> Result<(), JsValue> {
-        let backend = {
-            let mut segue = self.borrow_mut()?;
-            segue.detach();
-            segue.backend()
-        };
-        if backend == "webgl2" {
-            return self.run_on(canvas, Backends::GL).await;
+    ///
+    /// Returns false without having tried where only WebGL 2 is left, and this module lacks it.
+    pub async fn restart(&self, canvas: HtmlCanvasElement) -> Result<bool, JsValue> {
+        self.continue_on(canvas).await
+    }
+
+    /// Waits until all files are stored, at most 10 seconds, and returns whether they are. Without
+    /// a storage, they are not.
+    pub async fn stored(&self) -> Result<bool, JsValue> {
+        self.borrow_mut()?.save_on_exit();
+        let until_ms = now_ms() + MAX_STORING_MS;
+        loop {
+            match self.borrow()?.is_stored() {
+                Some(false) if now_ms() < until_ms => {}
+                outcome => return Ok(outcome == Some(true)),
+            }
+            sleep(20).await;
         }
-        // The time is taken out, so that the attempt after a failure of WebGL 2 is like the first.
-        let lived_shortly = self
-            .replaced_ms
-            .take()
-            .is_some_and(|since_ms| now_ms() - since_ms < MIN_DEVICE_LIFE_MS);
-        if !lived_shortly || requested_backend().as_deref() == Some("webgpu") {
-            self.run(canvas).await?;
-            self.replaced_ms.set(Some(now_ms()));
-            return Ok(());
-        }
-        self.run_on(canvas, Backends::GL).await?;
-        self.change(|segue| {
-            segue.show_error("The graphics device was lost twice within 10 seconds, so Segue draws with WebGL 2 now. Reload the page to try WebGPU again.");
-            Ok(())
-        })
     }
 
     /// Waits until the first frame is on screen.
@@ -425,71 +417,6 @@ impl SegueHandle {
             .map_err(|_| error("Segue is in the middle of something; ask again in a moment"))
     }
 
-    /// Runs the app on a canvas, with the graphics backend that the address selects.
-    async fn run(&self, canvas: HtmlCanvasElement) -> Result<(), JsValue> {
-        let both = Backends::BROWSER_WEBGPU | Backends::GL;
-        match requested_backend().as_deref() {
-            Some("webgl2") => return self.run_on(canvas, Backends::GL).await,
-            Some("webgpu") => return self.run_on(canvas, Backends::BROWSER_WEBGPU).await,
-            None | Some("auto") => {}
-            Some(other) => log::warn!("backend: found `{other}`, expected webgpu or webgl2"),
-        }
-        let Err(reason) = self.run_on(canvas.clone(), both).await else {
-            return Ok(());
-        };
-        // An adapter may give no device, and WebGL 2 may still work. A canvas keeps the kind of its
-        // first context, so WebGL 2 needs a new one.
-        log::warn!(
-            "the graphics could not be set up, trying WebGL 2 alone: {}",
-            js_error_text(&reason)
-        );
-        let fresh: HtmlCanvasElement =
-            canvas.clone_node()?.dyn_into().map_err(|_| reason.clone())?;
-        canvas.replace_with_with_node_1(&fresh)?;
-        let listener = Rc::clone(&self.listener);
-        // The page listens only to its own canvas, so the loss of this one is reported here.
-        listen(Some(&fresh), "webglcontextlost", move |event| {
-            event.prevent_default();
-            report_events(
-                &listener,
-                vec![Event::Lost { message: "the WebGL context was lost".to_owned() }],
-            );
-        });
-        let both_reasons = |second: JsValue| {
-            error(format!(
-                "WebGPU: {}. WebGL 2: {}",
-                js_error_text(&reason),
-                js_error_text(&second)
-            ))
-        };
-        self.run_on(fresh, Backends::GL).await.map_err(both_reasons)
-    }
-
-    async fn run_on(&self, canvas: HtmlCanvasElement, backends: Backends) -> Result<(), JsValue> {
-        if backends == Backends::GL && is_lost(&canvas) {
-            return Err(error("the browser provides no working WebGL context"));
-        }
-        let mut setup = WgpuSetupCreateNew::without_display_handle();
-        setup.instance_descriptor.backends = backends;
-        let options = WebOptions {
-            wgpu_options: WgpuConfiguration {
-                wgpu_setup: WgpuSetup::CreateNew(setup),
-                ..WgpuConfiguration::default()
-            },
-            // The panels have no gradients, and the stage must be copied unchanged.
-            dithering: false,
-            ..WebOptions::default()
-        };
-        let (segue, listener) = (Rc::clone(&self.segue), Rc::clone(&self.listener));
-        let outline = self.outline.clone();
-        let create: eframe::AppCreator<'static> = Box::new(move |cc| {
-            outline.install(&cc.egui_ctx, show_outline);
-            Ok(Box::new(View::new(segue, cc, move |events| report_events(&listener, events))))
-        });
-        self.canvas.replace(canvas.clone());
-        self.runner.start(canvas, options, create).await
-    }
-
     fn change(
         &self,
         change: impl FnOnce(&mut Segue) -> Result<(), ApiError>,
@@ -530,18 +457,6 @@ impl SegueHandle {
             next_turn().await;
         }
     }
-}
-
-/// Returns whether the canvas has a lost WebGL context. wgpu panics on one, because it has no
-/// version.
-fn is_lost(canvas: &HtmlCanvasElement) -> bool {
-    let options = Object::new();
-    // The same options as wgpu's, which then gets this context.
-    let asked = Reflect::set(&options, &"antialias".into(), &JsValue::FALSE)
-        .and_then(|_| canvas.get_context_with_context_options("webgl2", &options));
-    let context =
-        asked.ok().flatten().and_then(|context| context.dyn_into::<WebGl2RenderingContext>().ok());
-    context.is_some_and(|context| context.is_context_lost())
 }
 
 /// Reports events to the page's listener after the current call, because the listener may call the

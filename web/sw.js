@@ -9,8 +9,15 @@
 // pages of the host are not handled.
 
 const BUILD = "BUILD";
-/** The files that the page starts with. */
+/**
+ * The files that the page starts with, of the module that boot.js has chosen: with WebGL 2, or with
+ * WebGPU alone.
+ */
 const FILES = [/* FILES */];
+const MODULES = {
+  webgl2: [/* WEBGL2 */],
+  webgpu: [/* WEBGPU */],
+};
 /** The files that are fetched on request, and cached from then on. */
 const LATER = [/* LATER */];
 
@@ -22,7 +29,7 @@ const BESIDE = `${PREFIX}beside`;
 
 const addressOf = (name) => new URL(name, BASE).href;
 const PAGE = addressOf("index.html");
-const OF_BUILD = new Set([...FILES, ...LATER].map(addressOf));
+const OF_BUILD = new Set([...FILES, ...LATER, ...Object.values(MODULES).flat()].map(addressOf));
 
 self.addEventListener("install", (event) => event.waitUntil(install()));
 self.addEventListener("activate", (event) => event.waitUntil(activate()));
@@ -38,7 +45,7 @@ self.addEventListener("fetch", (event) => {
     if (isPage(request.url)) event.respondWith(page(request));
   } else if (OF_BUILD.has(address)) {
     event.respondWith(file(request));
-  } else if (address.startsWith(BASE.href) && !address.endsWith("/sw.js")) {
+  } else if (address.startsWith(BASE.href) && !new URL(address).pathname.endsWith("/sw.js")) {
     event.respondWith(beside(event));
   }
 });
@@ -55,7 +62,8 @@ function isPage(url) {
 async function install() {
   const cache = await caches.open(CACHE);
   // Files are revalidated, because those in the browser's cache may be of another build.
-  await cache.addAll(FILES.map((name) => new Request(addressOf(name), { cache: "no-cache" })));
+  const module = MODULES[new URLSearchParams(self.location.search).get("module")] ?? MODULES.webgl2;
+  await cache.addAll([...FILES, ...module].map((name) => new Request(addressOf(name), { cache: "no-cache" })));
   const html = await (await cache.match(PAGE)).text();
   // The names of all other files change with their content. A page of another build means that the
   // host is being updated.

@@ -6,6 +6,9 @@ use segue_session::outside;
 
 /// The key in a query that selects the graphics backend. It belongs to the page, not to the state.
 const BACKEND: &str = "backend";
+/// The value of `backend=` with which the page loads itself again when WebGPU has failed: it draws
+/// with WebGL 2, and the address does not keep it.
+const FALLBACK: &str = "backend=fallback";
 
 /// Returns the value of `backend=` in a query.
 #[cfg_attr(
@@ -18,14 +21,14 @@ pub(super) fn backend_of(query: &str) -> Option<String> {
         .map(|(_, value)| value.into_owned())
 }
 
-/// Returns `query` with the `backend=` of `old`.
+/// Returns `query` with the `backend=` of `old`, except [`FALLBACK`].
 #[cfg_attr(
     not(target_arch = "wasm32"),
     expect(dead_code, reason = "a window has no address to keep it in")
 )]
 pub(super) fn with_backend_of(query: &str, old: &str) -> String {
     let kept = bare(old).split('&').find(|pair| pair.split('=').next() == Some(BACKEND));
-    match kept {
+    match kept.filter(|&pair| pair != FALLBACK) {
         Some(pair) if query.is_empty() => pair.to_owned(),
         Some(pair) => format!("{query}&{pair}"),
         None => query.to_owned(),
@@ -65,6 +68,14 @@ mod tests {
         assert_eq!(state_of("?lab=blend&backend=webgl2&t=1"), "lab=blend&t=1");
         assert_eq!(state_of(""), "");
         assert_eq!(state_of("?backend=webgpu"), "");
+    }
+
+    #[test]
+    fn backend_of_an_address_is_kept_unless_it_is_a_fallback() {
+        assert_eq!(with_backend_of("lab=loop", "?backend=webgl2&t=1"), "lab=loop&backend=webgl2");
+        assert_eq!(with_backend_of("", "?t=1&backend=webgpu"), "backend=webgpu");
+        assert_eq!(with_backend_of("lab=loop", "?t=1&backend=fallback"), "lab=loop");
+        assert_eq!(with_backend_of("", "?backend=fallback"), "");
     }
 
     #[test]

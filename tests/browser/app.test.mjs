@@ -147,6 +147,7 @@ onBackend("webgl2", "work after a reload is restored, with the files of the libr
   // Without a query, everything is restored from storage.
   await page.goto(page.url().split("?")[0]);
   await opened.ready();
+  await until("both clips are restored", async () => brought(await segue("clips")).length === 2);
   assert.deepEqual(brought(await segue("clips")).sort(), ["also", "kept"]);
   assert.equal((await segue("params")).blend_window, 33);
   assert.match((await segue("params")).a, /^kept~/);
@@ -155,7 +156,7 @@ onBackend("webgl2", "work after a reload is restored, with the files of the libr
   await page.goto(`${page.url().split("?")[0]}?blend_window=5`);
   await opened.ready();
   assert.equal((await segue("params")).blend_window, 5);
-  assert.equal(brought(await segue("clips")).length, 2);
+  await until("both clips are restored again", async () => brought(await segue("clips")).length === 2);
 
   // A framed page neither shows nor overwrites the stored work.
   await page.goto(`${page.url().split("?")[0]}?embed=1&blend_window=6`);
@@ -260,9 +261,9 @@ onBackend("webgl2", "bundled take is in the library once set() has resolved", as
 
 onBackend("webgl2", "WebGL 2 draws where WebGPU has an adapter and no device", async ({ open }) => {
   const prepare = (page) => page.addInitScript(() => {
-    // An adapter that is found, and gives no device.
+    // An adapter that is found, and gives no device: neither to the page nor to the app.
     let asked = 0;
-    GPU.prototype.requestAdapter = async () => (asked++ ? null : {});
+    GPU.prototype.requestAdapter = async () => (asked++ < 2 ? {} : null);
   });
   const { page, segue, pixels } = await open("play=off", { prepare });
   assert.equal((await segue("stats")).backend, "webgl2");

@@ -27,6 +27,27 @@ const prepare = (page) => page.addInitScript(() => {
 });
 
 /**
+ * Returns the page with calls that are made again when it was loaded again meanwhile: with WebGL 2,
+ * after two lost WebGPU devices.
+ */
+function surviving(opened) {
+  let loads = 0;
+  opened.page.on("framenavigated", () => { loads += 1; });
+  const again = (call) => async (...args) => {
+    for (;;) {
+      const before = loads;
+      try {
+        return await call(...args);
+      } catch (reason) {
+        if (loads === before) throw reason;
+        await opened.ready();
+      }
+    }
+  };
+  return { ...opened, segue: again(opened.segue), load: again(opened.load), evaluate: again((...args) => opened.page.evaluate(...args)) };
+}
+
+/**
  * Plays, drags the blend window and loads files while `body` runs. Returns the ids of the files.
  */
 async function whileBusy({ page, segue, load }, body) {
@@ -56,8 +77,12 @@ async function isAlive({ page, segue }, ids) {
   const { frames } = await segue("stats");
   await until("it draws", async () => (await segue("stats")).frames > frames + 3);
   assert.equal(await page.locator(".veil").count(), 0, "nothing has stopped");
-  const there = (await segue("clips")).map(({ id }) => id);
-  assert.ok(ids.length > 0 && ids.every((id) => there.includes(id)), `${ids.length} files`);
+  assert.ok(ids.length > 0);
+  // A page that was loaded again lists them as it restores them.
+  await until(`all ${ids.length} files are there`, async () => {
+    const there = (await segue("clips")).map(({ id }) => id);
+    return ids.every((id) => there.includes(id));
+  });
 }
 
 onBackend("webgl2", `${LOSSES} lost WebGL contexts at any moment`, async ({ open }) => {
@@ -91,15 +116,15 @@ onBackend("webgl2", `${BURSTS} bursts of lost WebGL contexts`, async ({ open }) 
 
 for (let index = 1; index <= WEBGPU_PAGES; index++) {
   onBackend("both", `two WebGPU devices destroyed at any moment, page ${index} of ${WEBGPU_PAGES}`, async ({ open }) => {
-    const opened = await open("lab=blend", { ...SMALL, prepare });
-    const { page, segue } = opened;
+    const opened = surviving(await open("lab=blend", { ...SMALL, prepare }));
+    const { page, segue, evaluate } = opened;
     assert.equal((await segue("stats")).backend, "webgpu");
     const next = random(100 + index);
     const ids = await whileBusy(opened, async () => {
       for (let loss = 0; loss < 2; loss++) {
-        await until("there is a device", () => page.evaluate(() => window.device !== window.dead));
+        await until("there is a device", () => evaluate(() => window.device !== window.dead));
         await page.waitForTimeout(1500 * next());
-        await page.evaluate(() => {
+        await evaluate(() => {
           window.dead = window.device;
           window.lose("webgpu");
         });
@@ -111,21 +136,18 @@ for (let index = 1; index <= WEBGPU_PAGES; index++) {
 
 onBackend("both", "WebGL 2 draws after two lost WebGPU devices within 10 s", async ({ open }) => {
   // The page plays, so that every device keeps drawing. A still page may end after one frame.
-  const opened = await open("lab=blend", { ...SMALL, prepare });
-  const { page, segue } = opened;
-  await page.evaluate(() => {
-    window.errors = [];
-    window.segue.on("error", ({ message }) => window.errors.push(message));
-  });
+  const { page, segue, load, evaluate } = surviving(await open("lab=blend", { ...SMALL, prepare }));
+  const { clips: [own] } = await load("own.bvh", striding({ frames: 40 }));
+  await segue("set", { a: own.id, blend_window: 23 });
   let [losses, drawn] = [0, 0];
   await until("WebGL 2 draws", async () => {
     const { backend, frames } = await segue("stats");
     if (backend === "webgl2") return true;
-    const isFresh = await page.evaluate(() => window.device !== window.dead);
+    const isFresh = await evaluate(() => window.device !== window.dead);
     if (!isFresh) drawn = frames; // frames may still be counted on the device that is gone
     else if (losses < 2 && frames > drawn + 1) {
       losses += 1;
-      await page.evaluate(() => {
+      await evaluate(() => {
         window.dead = window.device;
         window.lose("webgpu");
       });
@@ -134,5 +156,25 @@ onBackend("both", "WebGL 2 draws after two lost WebGPU devices within 10 s", asy
   });
   assert.equal(losses, 2);
   assert.equal(await page.locator(".veil").count(), 0);
-  await until("it is said", () => page.evaluate(() => window.errors.some((message) => message.includes("WebGL 2"))));
+  await until("it is said", async () => (await evaluate(() => document.body.textContent)).includes("so Segue draws with WebGL 2 now"));
+  const { a, blend_window } = await segue("params");
+  assert.deepEqual({ a, blend_window }, { a: own.id, blend_window: 23 });
+  assert.doesNotMatch(page.url(), /backend=/, "the next visit tries WebGPU again");
+});
+
+onBackend("both", "embedded page without WebGPU offers to go on with WebGL 2", async ({ open }) => {
+  const { page, segue, ready } = await open("lab=blend&embed=1&blend_window=23", { ...SMALL, prepare });
+  for (let loss = 0; loss < 2; loss++) {
+    const { frames } = await segue("stats");
+    await until("a device draws", async () => (await page.evaluate(() => window.device !== window.dead)) && (await segue("stats")).frames > frames + 1);
+    await page.evaluate(() => {
+      window.dead = window.device;
+      window.lose("webgpu");
+    });
+  }
+  await page.getByRole("button", { name: "Reload with this state" }).click();
+  await page.waitForFunction(() => !document.querySelector(".veil"));
+  await ready();
+  assert.equal((await segue("stats")).backend, "webgl2");
+  assert.equal((await segue("params")).blend_window, 23);
 });

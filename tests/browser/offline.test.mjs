@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { createServer } from "node:http";
 import { fileURLToPath } from "node:url";
-import { onBackend } from "./harness.mjs";
+import { onBackend, onBothBackends } from "./harness.mjs";
 import { until } from "./help.mjs";
 
 const SMALL = { viewport: [640, 480], keeps: true };
@@ -42,10 +42,17 @@ async function host(t) {
   return { now, base: `http://127.0.0.1:${server.address().port}/somewhere/` };
 }
 
-// Fails when a file of the first visit is not cached, and when the cached page uses the network.
-onBackend("webgl2", "second visit needs no network", async ({ open }) => {
-  const { page, ready, segue } = await open("lab=make&gait_speed=1.2", SMALL);
+// Fails when a file of the first visit is not cached, when the cached page uses the network, and
+// when a module is downloaded that the browser's graphics do not need.
+onBothBackends("second visit needs no network", async ({ open, backend }) => {
+  const modules = new Set();
+  const prepare = (page) => page.context().on("request", (request) => {
+    const [module] = request.url().match(/[^/]*\.wasm$/) ?? [];
+    if (module) modules.add(module.replace(/-.*/, ""));
+  });
+  const { page, ready, segue } = await open("lab=make&gait_speed=1.2", { ...SMALL, prepare });
   await isKept(page);
+  assert.deepEqual([...modules], [backend === "webgpu" ? "webgpu" : "segue", "reader_bg.wasm"], "the modules of a visit");
   await page.context().setOffline(true);
   await page.goto(page.url().replace("1.2", "1.4"), { waitUntil: "commit" });
   await ready();

@@ -1,10 +1,12 @@
-// Starts the app: downloads and compiles the WebAssembly, hands it the canvas, and settles
-// `window.segueReady`.
+// Starts the app: compiles the WebAssembly that first.js downloads, hands it the canvas, and
+// settles `window.segueReady`.
 //
 // The app (the wasm-bindgen module) must have a class `SegueHandle` with
 //   static start(canvas, newReader) -> Promise<SegueHandle>   the app runs on this canvas; newReader makes a worker for files
 //   firstFrame() -> Promise                        its first frame is on screen
-//   restart(canvas) -> Promise                     continues on a new canvas after the graphics context was lost
+//   restart(canvas) -> Promise                     continues on a new canvas after the graphics context was lost; false: only a
+//                                                  module with WebGL 2 can
+//   stored() -> Promise                            waits until all files are stored; false: they cannot be
 //   isEmbedded()                                   whether the link says so; the page then answers the one around it, and
 //                                                  stores nothing
 //   hasPanicked(), panicSummary()                  callable at any time, also in the middle of another call
@@ -27,7 +29,10 @@ const MIN_EXHAUSTED_BYTES = 1 << 30;
  */
 const REPLACE_AFTER_MS = [0, 100, 300, 1000, 3000];
 
-async function start(jsUrl, wasmUrl) {
+/** The reason why a module without WebGL 2 does not go on. */
+const NEEDS_WEBGL2 = new Error("WebGPU was lost twice within 10 seconds.");
+
+async function start() {
   // Only a cheap test precedes the start. The graphics are tested thoroughly when the start has
   // failed.
   if (!navigator.gpu && !window.WebGL2RenderingContext) {
@@ -35,11 +40,12 @@ async function start(jsUrl, wasmUrl) {
     throw new Error("Neither WebGPU nor WebGL2 is available");
   }
 
+  const chosen = await chosenModule();
   let bindings;
   let memory;
   try {
-    const module = import(new URL(jsUrl, document.baseURI)); // relative to the page, not to this module
-    const compiled = await WebAssembly.compileStreaming(download(wasmUrl));
+    const module = import(new URL(chosen.js, document.baseURI)); // relative to the page, not to this module
+    const compiled = await WebAssembly.compileStreaming(download(chosen));
     bindings = await module;
     ({ memory } = (await bindings.default({ module_or_path: compiled })) ?? {});
   } catch (reason) {
@@ -63,6 +69,10 @@ async function start(jsUrl, wasmUrl) {
     const text = app.handle ? app.panicText(reason) : String(reason?.message ?? reason);
     if (reason instanceof WebAssembly.RuntimeError) {
       showPanic(text, app.facts());
+    } else if (!chosen.hasWebgl2 && !isAsked("webgpu")) {
+      console.warn(text);
+      reloadWithWebgl2();
+      return new Promise(() => {}); // the next page settles its own
     } else if (!(await hasGraphics())) {
       showUnsupported();
     } else {
@@ -75,7 +85,7 @@ async function start(jsUrl, wasmUrl) {
   const api = makeApi(app.handle, { stopped: () => app.stopped, onLost: () => app.rebuild() });
   window.segue = api;
   answerParent(api, app.handle.isEmbedded());
-  registerServiceWorker();
+  registerServiceWorker(chosen);
   // After the first frame, so that nothing waits for it.
   import("./outline.js").then(({ Outline }) => new Outline(app.handle, canvas), (reason) => console.error(reason));
   return api;
@@ -85,24 +95,58 @@ async function start(jsUrl, wasmUrl) {
  * Registers sw.js, which serves the page without a network. A development build has no name, and
  * registers nothing.
  */
-function registerServiceWorker() {
+function registerServiceWorker({ hasWebgl2 }) {
   if (!document.querySelector('meta[name="build"]')) return;
   // After the start of the page, because all files are requested again, from the browser's cache
   // where it has them.
-  const register = () => navigator.serviceWorker?.register(new URL("sw.js", document.baseURI)).catch((reason) => console.info(reason));
+  const worker = new URL(`sw.js?module=${hasWebgl2 ? "webgl2" : "webgpu"}`, document.baseURI);
+  const register = () => navigator.serviceWorker?.register(worker).catch((reason) => console.info(reason));
   (window.requestIdleCallback ?? setTimeout)(register);
 }
 
 /** Makes a worker that reads files; see reader.js. */
 const newReader = () => new Worker(new URL("./reader.js", import.meta.url), { type: "module" });
 
-/** Fetches the module, and moves the progress bar as its bytes arrive. */
-async function download(url) {
-  const response = await fetch(url);
-  if (!response.ok) throw new Error(`${url} answered ${response.status}`);
+/**
+ * Returns the module that first.js downloads, or the one with WebGL 2 where that has WebGPU alone
+ * and the browser has no device for it.
+ */
+async function chosenModule() {
+  const { module, withWebgl2 } = window.segueDownload;
+  if (module.hasWebgl2 || isAsked("webgpu") || (await hasWebgpu())) return module;
+  module.stop();
+  return withWebgl2();
+}
+
+/** Returns whether `backend=` in the page's address has this value. */
+const isAsked = (backend) => new URLSearchParams(location.search).get("backend") === backend;
+
+/** Returns whether there is a WebGPU device. An adapter alone may have none. */
+async function hasWebgpu() {
+  try {
+    const adapter = await navigator.gpu.requestAdapter();
+    const device = await adapter?.requestDevice();
+    device?.destroy();
+    return Boolean(device);
+  } catch {
+    return false;
+  }
+}
+
+/** Loads the page again with the module that has WebGL 2; the address forgets that. */
+function reloadWithWebgl2() {
+  const others = location.search.slice(1).split("&").filter((pair) => pair && !pair.startsWith("backend="));
+  history.replaceState(history.state, "", `${location.pathname}?${[...others, "backend=fallback"].join("&")}${location.hash}`);
+  location.reload();
+}
+
+/** Waits for the response of a module, and moves the progress bar as its bytes arrive. */
+async function download({ wasm, response: asked }) {
+  const response = await asked;
+  if (!response.ok) throw new Error(`${wasm} answered ${response.status}`);
   // The stated length is that of the compressed bytes, and the bytes read are uncompressed. These
   // are the ratios for this module.
-  const packed = { br: 3.6, gzip: 2.9 }[response.headers.get("content-encoding")] ?? 1;
+  const packed = { br: 3.3, gzip: 2.5 }[response.headers.get("content-encoding")] ?? 1;
   const total = Number(response.headers.get("content-length")) * packed || 8e6;
   // A clone is read to count the bytes, because the browser caches compiled code only of a response
   // that it reads itself.
@@ -239,6 +283,7 @@ class RunningApp {
       if (this.stopped) break;
       this.#lostMeanwhile = false;
       last = await this.#replace().catch((reason) => reason);
+      if (last === NEEDS_WEBGL2) return this.#moveToWebgl2();
       if (last) console.warn(last);
       if (!last && !this.#lostMeanwhile) break;
     }
@@ -252,16 +297,21 @@ class RunningApp {
     const fresh = old.cloneNode(false);
     old.replaceWith(fresh);
     this.#watchContext(fresh);
-    await this.handle.restart(fresh);
+    if ((await this.handle.restart(fresh)) === false) throw NEEDS_WEBGL2;
     canvas().focus();
+  }
+
+  /** Goes on in a new page, which restores everything from the storage. */
+  async #moveToWebgl2() {
+    // A page in a frame stores nothing.
+    if (await this.handle.stored()) reloadWithWebgl2();
+    else showLost(NEEDS_WEBGL2.message, this.facts(), reloadWithWebgl2);
   }
 }
 
 if (document.documentElement.lang === "zh-Hant") document.getElementById("loading").setAttribute("aria-label", "Segue 載入中");
 
-// Trunk.toml writes the names of the app's two files into this script's element.
-const { js, wasm } = document.querySelector("script[data-wasm]").dataset;
-start(js, wasm).then(window.segueSettle.resolve, (reason) => {
+start().then(window.segueSettle.resolve, (reason) => {
   window.segueSettle.reject(reason);
   console.error(reason);
 });

@@ -1,4 +1,5 @@
-// The first script of the page. It is no module, so that it runs before everything else.
+// The first script of the page. It is no module, so that it runs before everything else: it begins
+// to download the app. Its element names the files (Trunk.toml; xtask/src/page.rs).
 
 // A promise of the page's API, for pages that embed or drive this one.
 window.segueReady = new Promise((resolve, reject) => { window.segueSettle = { resolve, reject }; });
@@ -11,3 +12,19 @@ document.documentElement.lang = ((asked) => {
   const known = asked === "en" || asked === "zh-Hant" ? asked : navigator.languages.find((tag) => /^en\b/i.test(tag) || chinese(tag));
   return chinese(known) ? "zh-Hant" : "en";
 })(new URLSearchParams(location.search).get("lang"));
+
+// The app comes as one or two modules: with WebGL 2 and, a fifth smaller, with WebGPU alone. boot.js
+// takes the module that is downloaded here, or, if WebGPU turns out not to work, stops that and
+// takes `withWebgl2()`.
+window.segueDownload = (({ js, wasm, webgpuJs, webgpuWasm }) => {
+  const begin = (js, wasm, hasWebgl2) => {
+    const abort = new AbortController();
+    const response = fetch(wasm, { signal: abort.signal });
+    response.catch(() => {}); // boot.js shows it
+    document.head.append(Object.assign(document.createElement("link"), { rel: "modulepreload", href: js }));
+    return { js, wasm, hasWebgl2, response, stop: () => abort.abort() };
+  };
+  const withWebgl2 = () => begin(js, wasm, true);
+  const needsWebgl2 = !navigator.gpu || ["webgl2", "fallback"].includes(new URLSearchParams(location.search).get("backend"));
+  return { module: webgpuWasm && !needsWebgl2 ? begin(webgpuJs, webgpuWasm, false) : withWebgl2(), withWebgl2 };
+})(document.currentScript.dataset);

@@ -54,8 +54,9 @@ export function showStartFailed(reason, facts) {
   show({ title: words().start, text: words().startText, detail: reason, buttons: [[words().again, reload], copyReport(reason, facts)] });
 }
 
-export function showLost(reason, facts) {
-  show({ title: words().lost, text: words().lostText, detail: reason, buttons: [[words().reload, reload], copyReport(reason, facts)] });
+/** Shows that the graphics device is lost. `again` loads the page again. */
+export function showLost(reason, facts, again = reload) {
+  show({ title: words().lost, text: words().lostText, detail: reason, buttons: [[words().reload, again], copyReport(reason, facts)] });
 }
 
 export function showPanic(summary, facts) {

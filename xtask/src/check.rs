@@ -104,8 +104,10 @@ fn app(report: &mut Report) {
 }
 
 fn web(report: &mut Report) {
-    report.step("web build", || dist::build(dist::Profile::Release));
+    let build = |modules| move || dist::build(dist::Profile::Release, modules);
+    report.step("web build", build(dist::Modules::One));
     report.step("the same page by Trunk", compare::with_trunk);
+    report.step("web build as deployed", build(dist::Modules::Two));
 }
 
 fn browser(report: &mut Report) {

@@ -18,8 +18,18 @@ pub fn folder() -> PathBuf {
     root().join("dist")
 }
 
+/// The modules of the app in a page.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Modules {
+    /// One that draws with WebGPU or WebGL 2.
+    One,
+    /// That one and a smaller one that draws with WebGPU alone, as deployed. It takes a second long
+    /// link.
+    Two,
+}
+
 /// Builds the page into `dist/`, after installing what that needs.
-pub fn build(profile: Profile) -> Result<()> {
+pub fn build(profile: Profile, modules: Modules) -> Result<()> {
     tools::ensure_wasm_target()?;
     tools::clang()?;
     let name = match profile {
@@ -33,23 +43,41 @@ pub fn build(profile: Profile) -> Result<()> {
         || {
             // The app ends in one long link on one core: the other core builds the tool meanwhile.
             progress::run(vec![
-                Build { name: "Segue for the web", cargo: app(profile) },
+                Build { name: "Segue for the web", cargo: app(profile, &["--bin=reader"]) },
                 Build { name: "its JavaScript's writer", cargo: bindgen() },
             ])
         },
     )?;
-    step("putting the page together (seconds)", || assemble(profile))
+    if modules == Modules::Two {
+        step("building the module for WebGPU alone (about 3 minutes the first time)", || {
+            // Both are called segue.wasm, and the other is built again in no time.
+            let webgpu = app(profile, &["--no-default-features", "--features=app"]);
+            progress::run(vec![Build { name: "Segue for WebGPU", cargo: webgpu }])?;
+            let folder = compiled(profile);
+            fs::copy(folder.join("segue.wasm"), folder.join(format!("{}.wasm", page::WEBGPU)))?;
+            progress::run(vec![Build { name: "Segue for the web", cargo: app(profile, &[]) }])
+        })?;
+    }
+    step("putting the page together (seconds)", || assemble(profile, modules))
 }
 
-fn app(profile: Profile) -> Command {
+/// Returns the folder of compiled modules.
+fn compiled(profile: Profile) -> PathBuf {
+    target().join("wasm32-unknown-unknown").join(match profile {
+        Profile::Release => "release",
+        Profile::Dev => "debug",
+    })
+}
+
+fn app(profile: Profile, others: &[&str]) -> Command {
     let mut build = cargo(&[
         "build",
         "--locked",
         "--target=wasm32-unknown-unknown",
         "--package=segue",
         "--bin=segue",
-        "--bin=reader",
     ]);
+    build.args(others);
     if profile == Profile::Release {
         build.arg("--release");
     }
@@ -61,11 +89,8 @@ fn bindgen() -> Command {
 }
 
 /// Writes `dist/` from what has been compiled.
-fn assemble(profile: Profile) -> Result<()> {
-    let compiled = target().join("wasm32-unknown-unknown").join(match profile {
-        Profile::Release => "release",
-        Profile::Dev => "debug",
-    });
+fn assemble(profile: Profile, modules: Modules) -> Result<()> {
+    let compiled = compiled(profile);
     let tool =
         target().join("debug").join(format!("segue-bindgen{}", std::env::consts::EXE_SUFFIX));
     // Built beside it, so that a failed build leaves the old page.
@@ -75,6 +100,7 @@ fn assemble(profile: Profile) -> Result<()> {
         &root().join("web/index.html"),
         &fs::read_to_string(root().join("Trunk.toml"))?,
         &made,
+        modules == Modules::Two,
         &mut |bin, place| {
             let module = compiled.join(format!("{bin}.wasm"));
             run(Command::new(&tool).arg(module).arg(place))

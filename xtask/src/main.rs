@@ -23,7 +23,7 @@ cargo xtask serve [--port N] [--dev] [--no-build]
     --no-build  serves dist/ as it is
 
 cargo xtask serve --dist
-    Only writes the deployable folder dist/, each file precompressed beside itself (.br and .gz).
+    Only writes the deployable folder dist/, with a smaller module for browsers with WebGPU, each file precompressed beside itself (.br and .gz).
 
 cargo xtask test [PART …]
     Everything that must pass. Parts: lint core oracles app web browser; all of them unless some are named.
@@ -31,7 +31,7 @@ cargo xtask test [PART …]
     core        the tests of the libraries and their documentation examples, built without any UI
     oracles     exported files, read back by npm's three and PyPI's bvhio: the same motion?
     app         the tests of the app, pictures of the UI among them
-    web         the release build that `serve` makes; where Trunk is installed, it must make the same page
+    web         the release build that `serve` makes (where Trunk is installed, it must make the same page), and the one that is deployed
     browser     that build in Chromium, on WebGL2 and on WebGPU
 
 cargo xtask fuzz [TARGET …] [--minutes N] [--seed S]
@@ -135,7 +135,8 @@ fn serve(args: &[&str]) -> Result<()> {
         }
     }
     if build {
-        dist::build(profile)?;
+        let modules = if only_dist { dist::Modules::Two } else { dist::Modules::One };
+        dist::build(profile, modules)?;
     }
     if only_dist {
         return dist::precompress();

@@ -8,12 +8,17 @@ use std::path::{Path, PathBuf};
 
 use crate::shell::{Result, fail};
 
+/// The name of the app's module that draws with WebGPU alone, with which its files' names begin.
+pub const WEBGPU: &str = "webgpu";
+
 /// Builds the folder of the page `html`, whose files are beside it. `bindgen` writes the JavaScript
-/// and the WebAssembly of a binary into a folder.
+/// and the WebAssembly of a binary into a folder. `has_webgpu` adds the module [`WEBGPU`], which
+/// the page then prefers where the browser has WebGPU.
 pub fn make(
     html: &Path,
     trunk: &str,
     folder: &Path,
+    has_webgpu: bool,
     bindgen: &mut dyn FnMut(&str, &Path) -> Result<()>,
 ) -> Result<()> {
     fs::create_dir_all(folder)?;
@@ -58,7 +63,16 @@ pub fn make(
             "rust" => {
                 let app = App::write(link.attribute("data-bin")?, folder, bindgen)?;
                 preload = app.fill(&setting(trunk, "pattern_preload")?, &base);
-                app.fill(&setting(trunk, "pattern_script")?, &base)
+                let script = app.fill(&setting(trunk, "pattern_script")?, &base);
+                if has_webgpu {
+                    let App { js, wasm } = App::write(WEBGPU, folder, bindgen)?;
+                    let names = format!(
+                        "data-webgpu-js=\"{base}{js}\" data-webgpu-wasm=\"{base}{wasm}\" data-js="
+                    );
+                    script.replacen("data-js=", &names, 1)
+                } else {
+                    script
+                }
             }
             other => {
                 return fail(format!(
@@ -147,11 +161,11 @@ fn hash_of(parts: &[&[u8]]) -> String {
 mod tests {
     use super::*;
 
-    const TRUNK: &str = "[build]\npublic_url = \"./\"\npattern_script = '''<script src=\"{base}{js}\"></script>'''\n\
+    const TRUNK: &str = "[build]\npublic_url = \"./\"\npattern_script = '''<script src=\"{base}{js}\" data-js=\"{js}\"></script>'''\n\
                          pattern_preload = '''<link href=\"{base}{wasm}\">\n'''\n";
 
     /// Builds the page of these links in a folder of its own; returns its HTML and its files.
-    fn made(name: &str, links: &str) -> Result<(String, Vec<String>)> {
+    fn made(name: &str, links: &str, has_webgpu: bool) -> Result<(String, Vec<String>)> {
         let sources =
             std::env::temp_dir().join(format!("segue-page-{}-{name}", std::process::id()));
         drop(fs::remove_dir_all(&sources));
@@ -161,7 +175,7 @@ mod tests {
         let html = sources.join("web/index.html");
         fs::write(&html, format!("<head>{links}</head><body></body>"))?;
         let folder = sources.join("made");
-        let outcome = make(&html, TRUNK, &folder, &mut |bin, place| {
+        let outcome = make(&html, TRUNK, &folder, has_webgpu, &mut |bin, place| {
             fs::write(place.join(format!("{bin}.js")), "js")?;
             Ok(fs::write(place.join(format!("{bin}_bg.wasm")), "wasm")?)
         });
@@ -181,6 +195,7 @@ mod tests {
              <link data-trunk rel=\"rust\" href=\"../Cargo.toml\" data-bin=\"app\">\
              <link data-trunk rel=\"rust\" href=\"../Cargo.toml\" data-bin=\"reader\" data-type=\"worker\" data-target-path=\"js/read\">\
              <link data-trunk rel=\"copy-dir\" href=\"js\">",
+            false,
         )
         .unwrap();
         let [script, app_js, app_wasm, reader_js, reader_wasm, css] = [
@@ -196,15 +211,33 @@ mod tests {
         assert_eq!(
             html,
             format!(
-                "<head><link rel=\"stylesheet\" href=\"./{css}\" data-integrity=\"none\"/><script src=\"./{app_js}\"></script>\
+                "<head><link rel=\"stylesheet\" href=\"./{css}\" data-integrity=\"none\"/><script src=\"./{app_js}\" data-js=\"{app_js}\"></script>\
                  <link href=\"./{app_wasm}\">\n</head><body></body>"
             )
         );
     }
 
     #[test]
+    fn make_with_a_module_for_webgpu_names_both() {
+        let link = "<link data-trunk rel=\"rust\" href=\"../Cargo.toml\" data-bin=\"app\">";
+        let (html, files) = made("two", link, true).unwrap();
+        let file = |start: &str, end: &str| {
+            files.iter().find(|file| file.starts_with(start) && file.ends_with(end)).unwrap()
+        };
+        assert_eq!(files.len(), 5, "with index.html: {files:?}");
+        let named = format!(
+            "data-webgpu-js=\"./{}\" data-webgpu-wasm=\"./{}\" data-js=\"{}\"",
+            file("webgpu-", ".js"),
+            file("webgpu-", ".wasm"),
+            file("app-", ".js"),
+        );
+        assert!(html.contains(&named), "{html}");
+    }
+
+    #[test]
     fn make_with_an_unknown_link_is_refused() {
-        let error = made("sass", "<link data-trunk rel=\"sass\" href=\"page.scss\">").unwrap_err();
+        let error =
+            made("sass", "<link data-trunk rel=\"sass\" href=\"page.scss\">", false).unwrap_err();
         assert!(error.to_string().contains("rel=\"sass\""), "{error}");
     }
 }

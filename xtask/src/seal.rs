@@ -12,6 +12,9 @@ use crate::shell::{Result, fail};
 
 /// Folders whose files are fetched on request, and cached from then on.
 const LATER: [&str; 3] = ["samples/", "lessons/", "lang/"];
+/// The beginning of the names of the app's module with WebGL 2, and of that without it.
+const WEBGL2: &str = "segue-";
+const WEBGPU: &str = "webgpu-";
 /// The page's Content-Security-Policy: it may run the scripts and the WebAssembly beside it and
 /// nothing else, and fetch from anywhere, for `src=` and lessons. Pictures and films of its own
 /// (`blob:`) may be shown. Only a header of the host can say who may frame it.
@@ -51,23 +54,30 @@ pub fn seal(folder: &Path, is_release: bool) -> Result<()> {
         return fail("index.html has no head to put the build's name into");
     };
     fs::write(&page, format!("{head}<meta name=\"build\" content=\"{version}\">\n</head>{body}"))?;
-    let is_later = |file: &&String| LATER.iter().any(|later| file.starts_with(later));
-    let (later, first): (Vec<&String>, Vec<&String>) =
-        files.iter().filter(|file| *file != WORKER).partition(is_later);
-    let list = |files: &[&String]| {
-        format!("[\n{}]", files.iter().map(|file| format!("  {file:?},\n")).collect::<String>())
+    let with = |names: &[&str]| -> Vec<&String> {
+        files.iter().filter(|file| names.iter().any(|name| file.starts_with(name))).collect()
     };
+    let (later, webgl2, webgpu) = (with(&LATER), with(&[WEBGL2]), with(&[WEBGPU]));
+    let is_first = |file: &&String| {
+        *file != WORKER && ![&later, &webgl2, &webgpu].iter().any(|other| other.contains(file))
+    };
+    let first: Vec<&String> = files.iter().filter(is_first).collect();
     let worker = folder.join(WORKER);
     let script = fs::read_to_string(&worker)?;
-    for mark in ["\"BUILD\"", "[/* FILES */]", "[/* LATER */]"] {
+    let lists = [
+        ("[/* FILES */]", first),
+        ("[/* LATER */]", later),
+        ("[/* WEBGL2 */]", webgl2),
+        ("[/* WEBGPU */]", webgpu),
+    ];
+    let mut script = script.replace("\"BUILD\"", &format!("{version:?}"));
+    for (mark, files) in lists {
         if !script.contains(mark) {
             return fail(format!("web/{WORKER} has no {mark} to fill in"));
         }
+        let files: String = files.iter().map(|file| format!("  {file:?},\n")).collect();
+        script = script.replace(mark, &format!("[\n{files}]"));
     }
-    let script = script
-        .replace("\"BUILD\"", &format!("{version:?}"))
-        .replace("[/* FILES */]", &list(&first))
-        .replace("[/* LATER */]", &list(&later));
     Ok(fs::write(worker, script)?)
 }
 
@@ -144,10 +154,12 @@ mod tests {
             ),
             ("js/boot.js", boot),
             ("segue-1.wasm", "\0asm"),
+            ("webgpu-2.wasm", "\0asm"),
             ("samples/walk.gz", "packed"),
             (
                 "sw.js",
-                "const BUILD = \"BUILD\"; const FILES = [/* FILES */]; const LATER = [/* LATER */];",
+                "const BUILD = \"BUILD\"; const FILES = [/* FILES */]; const WITH = [/* WEBGL2 */]; \
+                 const WITHOUT = [/* WEBGPU */]; const LATER = [/* LATER */];",
             ),
         ] {
             fs::write(folder.join(file), text).unwrap();
@@ -171,8 +183,12 @@ mod tests {
             page.contains(&format!("./{scripts}")) && worker.contains(scripts),
             "{page} {worker}"
         );
-        assert!(worker.contains("segue-1.wasm") && worker.contains("\"index.html\""), "{worker}");
-        let (first, later) = worker.split_once("LATER").unwrap();
+        let (first, rest) = worker.split_once("WITH ").unwrap();
+        let (webgl2, rest) = rest.split_once("WITHOUT").unwrap();
+        let (webgpu, later) = rest.split_once("LATER").unwrap();
+        assert!(first.contains("\"index.html\"") && !first.contains("wasm"), "{worker}");
+        assert!(webgl2.contains("segue-1.wasm") && !webgl2.contains("webgpu"), "{worker}");
+        assert!(webgpu.contains("webgpu-2.wasm") && !webgpu.contains("segue-"), "{worker}");
         assert!(!first.contains("samples") && later.contains("\"samples/walk.gz\""), "{worker}");
         assert!(!worker.contains("sw.js"), "{worker}");
         let policy = page.find("Content-Security-Policy").unwrap();

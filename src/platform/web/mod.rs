@@ -17,11 +17,13 @@ pub(crate) use film::{Film, can_film, can_take_pictures, save_picture, take_pict
 pub(crate) use folders::watch_folders;
 pub(crate) use frame_pacer::FramePacer;
 pub(crate) use gamepad::gamepad;
+#[cfg(feature = "webgl2")]
+pub(crate) use page::listen;
 pub(crate) use page::{
     READS_IN_BACKGROUND, WORKS_BETWEEN_FRAMES, between_frames, confirm_leaving_while, full_link,
-    has_coarse_pointer, is_framed, is_fullscreen, languages, listen, location_query, next_frame,
-    next_turn, now_ms, open_page, prefers_reduced_motion, replace_query, requested_backend,
-    set_fullscreen, set_page_language, sleep, watch_hiding, watch_navigation,
+    has_coarse_pointer, is_framed, is_fullscreen, languages, location_query, next_frame, next_turn,
+    now_ms, open_page, prefers_reduced_motion, replace_query, requested_backend, set_fullscreen,
+    set_page_language, sleep, watch_hiding, watch_navigation,
 };
 pub(crate) use reader::{
     LargeFile, Reader, outside_memory, set_worker_factory, update_memory, wasm_memory_bytes,
