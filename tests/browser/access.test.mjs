@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { readdirSync, readFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
-import { onBackend, onBothBackends } from "./harness.mjs";
+import { onBothBackends, onOneBackend } from "./harness.mjs";
 import { until } from "./help.mjs";
 
 const LABS = ["view", "make", "blend", "transition", "speed", "loop", "layers", "register", "path", "graph", "match", "in_place", "edit", "clean"];
@@ -42,7 +42,7 @@ const outside = () => [...document.querySelectorAll("#outline [data-number] [dat
 }).map((element) => `${element.ariaLabel ?? element.textContent} in ${element.parentElement.ariaLabel}`);
 
 // Fails when a control of any lab has no name or no role for screen readers.
-onBackend("webgl2", "widget of every lab is an element with a role and a name", async ({ open }) => {
+onOneBackend("widget of every lab is an element with a role and a name", async ({ open }) => {
   const { page, segue } = await open("play=off", { viewport: [1280, 800] });
   const client = await page.context().newCDPSession(page);
   for (const lab of [...LABS, "lesson"]) {
@@ -63,7 +63,7 @@ onBackend("webgl2", "widget of every lab is an element with a role and a name", 
 });
 
 // Fails when what opens over the page, or a list of lessons, is wrong for screen readers.
-onBackend("webgl2", "menus, help and contents are elements as the page is", async ({ open }) => {
+onOneBackend("menus, help and contents are elements as the page is", async ({ open }) => {
   const { page, segue } = await open("lab=blend&lesson=contents&play=off", { viewport: [1280, 800] });
   await elements(page);
   assert.deepEqual(await faults(page), [], "contents");
@@ -128,7 +128,7 @@ onBothBackends("element passes keys and actions of screen readers to its widget"
 });
 
 // Fails when a number cannot be typed without a mouse.
-onBackend("webgl2", "number of a slider is typed by keyboard alone", async ({ open }) => {
+onOneBackend("number of a slider is typed by keyboard alone", async ({ open }) => {
   const { page, segue } = await open("lab=blend&blend_window=30&play=off", { viewport: [1280, 800] });
   await elements(page);
   await page.getByRole("button", { name: "Blend window: Click to type a value" }).focus();
@@ -173,7 +173,7 @@ onBothBackends("lessons are read from start to end by keyboard alone", async ({ 
 });
 
 // Fails when the page moves by itself although the system is set to little motion.
-onBackend("webgl2", "page with reduced motion starts paused", async ({ open }) => {
+onOneBackend("page with reduced motion starts paused", async ({ open }) => {
   const { segue } = await open("", { viewport: [640, 480], motion: "reduce" });
   const before = await segue("time");
   assert.equal((await segue("params")).play, false);

@@ -3,7 +3,7 @@
 
 import assert from "node:assert/strict";
 import { Buffer } from "node:buffer";
-import { onBackend, onBothBackends } from "./harness.mjs";
+import { onBackend, onBothBackends, onOneBackend } from "./harness.mjs";
 import { elsewhere, linkStored, stored, until } from "./help.mjs";
 
 /** A small motion file: a hip with one bone that turns. */
@@ -80,7 +80,7 @@ onBothBackends("time runs, stops and is set, and a still page draws nothing", as
   assert.equal(await segue("time"), stopped);
 });
 
-onBackend("webgl2", "files are loaded by drop and by call, and bad ones change nothing", async ({ open }) => {
+onOneBackend("files are loaded by drop and by call, and bad ones change nothing", async ({ open }) => {
   const { page, segue, load, dropFile } = await open("lab=view&play=off");
   await page.evaluate(() => {
     window.heard = [];
@@ -100,7 +100,7 @@ onBackend("webgl2", "files are loaded by drop and by call, and bad ones change n
   assert.equal(brought(await segue("clips")).length, 2);
 });
 
-onBackend("webgl2", "several files in one drop arrive in order", async ({ open }) => {
+onOneBackend("several files in one drop arrive in order", async ({ open }) => {
   const { page, segue } = await open("play=off");
   await page.evaluate((texts) => {
     const dataTransfer = new DataTransfer();
@@ -113,7 +113,7 @@ onBackend("webgl2", "several files in one drop arrive in order", async ({ open }
   assert.match(b, /^two~/);
 });
 
-onBackend("webgl2", "address follows the state and restores it", async ({ open }) => {
+onOneBackend("address follows the state and restores it", async ({ open }) => {
   const opened = await open("blend_window=24&play=off&backend=webgl2");
   const { page, segue } = opened;
   await segue("set", { blend_window: 48 });
@@ -133,7 +133,7 @@ onBackend("webgl2", "address follows the state and restores it", async ({ open }
   await until("going back opens that link", async () => (await segue("params")).blend_window === 7);
 });
 
-onBackend("webgl2", "work after a reload is restored, with the files of the library alone", async ({ open }) => {
+onOneBackend("work after a reload is restored, with the files of the library alone", async ({ open }) => {
   const opened = await open("");
   const { page, segue, load } = opened;
   await load("kept.bvh", bvh());
@@ -167,7 +167,7 @@ onBackend("webgl2", "work after a reload is restored, with the files of the libr
   assert.match((await stored(page)).query, /blend_window=33/, "a link that was only looked at is not stored, nor is a frame");
 });
 
-onBackend("webgl2", "files are fetched in the order of the link, and refusals are explained", async ({ open }) => {
+onOneBackend("files are fetched in the order of the link, and refusals are explained", async ({ open }) => {
   const answers = {
     "/slow.bvh": { text: bvh(90), after: 800 },
     "/fast.bvh": { text: bvh(30, "Chest") },
@@ -237,7 +237,7 @@ onBothBackends("a lost graphics device is replaced and the state stays", async (
   if (backend === "webgl2") assert.ok((await pixels()).colours() > 50);
 });
 
-onBackend("webgl2", "listeners get changes, and may call the API at once", async ({ open }) => {
+onOneBackend("listeners get changes, and may call the API at once", async ({ open }) => {
   const { page, segue } = await open("play=off");
   await page.evaluate(() => {
     window.queries = [];
@@ -251,7 +251,7 @@ onBackend("webgl2", "listeners get changes, and may call the API at once", async
   assert.equal((await segue("params")).blend_window, 8);
 });
 
-onBackend("webgl2", "bundled take is in the library once set() has resolved", async ({ open }) => {
+onOneBackend("bundled take is in the library once set() has resolved", async ({ open }) => {
   const { segue } = await open("lab=view&play=off");
   await segue("set", { a: "cmu_jump" });
   const take = (await segue("clips")).find(({ id }) => id === "cmu_jump");
@@ -278,7 +278,7 @@ onBackend("webgl2", "WebGL 2 draws where WebGPU has an adapter and no device", a
   await until("the new canvas shows the character", async () => (await pixels()).colours() > 50);
 });
 
-onBackend("webgl2", "copying puts the link into the clipboard, and then confirms it", async ({ open }) => {
+onOneBackend("copying puts the link into the clipboard, and then confirms it", async ({ open }) => {
   const { page, segue } = await open("blend_window=24&play=off");
   await page.context().grantPermissions(["clipboard-read", "clipboard-write"]);
   await page.locator("#segue").focus();

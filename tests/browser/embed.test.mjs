@@ -1,7 +1,7 @@
 // Tests of the page in a frame of another one, and after the loss of its graphics context.
 
 import assert from "node:assert/strict";
-import { onBackend, onBothBackends } from "./harness.mjs";
+import { onBothBackends, onOneBackend } from "./harness.mjs";
 import { apart, count, isClay, stageOf, striding, until } from "./help.mjs";
 
 const SMALL = { viewport: [960, 640] };
@@ -75,7 +75,7 @@ onBothBackends("frame with the link of an embedded state answers", async ({ open
 
 // Fails when the app and the page's modules parse a link differently. A frame that answers must
 // have no storage.
-onBackend("webgl2", "frame that answers stores nothing, by any spelling of its link", async ({ open }) => {
+onOneBackend("frame that answers stores nothing, by any spelling of its link", async ({ open }) => {
   const { page } = await open("", {
     ...SMALL,
     wait: false,

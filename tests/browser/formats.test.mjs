@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
-import { onBackend } from "./harness.mjs";
+import { onOneBackend } from "./harness.mjs";
 import { apart } from "./help.mjs";
 
 const SMALL = { viewport: [960, 640] };
@@ -16,7 +16,7 @@ const CASES = [
 ];
 
 // Fails when a reader is missing from the worker, and when a file is taken for another format.
-onBackend("webgl2", "files of every format open", async ({ open }) => {
+onOneBackend("files of every format open", async ({ open }) => {
   const { segue, load } = await open("lab=view&play=off", SMALL);
   for (const [path, joints, frames] of CASES) {
     const bytes = await readFile(new URL(`../../crates/formats/tests/cases/${path}`, import.meta.url));
@@ -30,7 +30,7 @@ onBackend("webgl2", "files of every format open", async ({ open }) => {
 });
 
 // Fails when a file that the page writes is not read again as the same motion.
-onBackend("webgl2", "written files are read again", async ({ open }) => {
+onOneBackend("written files are read again", async ({ open }) => {
   const { segue, load } = await open("lab=view&a=walk&play=off", SMALL);
   for (const format of ["bvh", "fbx", "npz"]) {
     const [clip] = (await load(`again.${format}`, await segue("export", "result", format))).clips;

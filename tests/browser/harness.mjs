@@ -27,9 +27,14 @@ export function onBothBackends(name, body) {
 }
 
 /**
- * Registers a test for one backend, where the result does not depend on it, or only one has the
- * feature.
+ * Registers a test whose result does not depend on the graphics, for the backend that starts
+ * sooner.
  */
+export function onOneBackend(name, body) {
+  onBackend("webgpu", name, body);
+}
+
+/** Registers a test for one backend, where only that one has the feature. */
 export function onBackend(backend, name, body) {
   test(`${name} [${backend}]`, { timeout: TEST_TIMEOUT_MS }, async (t) => {
     const opened = [];
@@ -40,6 +45,9 @@ export function onBackend(backend, name, body) {
     };
     try {
       await body({ backend, open, t });
+      // A page whose WebGPU device dies at the start draws with WebGL 2.
+      const drawn = await opened.at(-1)?.page.evaluate(() => window.segue?.stats?.().backend).catch(() => undefined);
+      if (drawn && drawn !== backend) t.diagnostic(`drawn by ${drawn}`);
       for (const { problems, log, refuses } of opened) {
         // Violations of the page's policy are errors, except in a test that provokes them
         // (`refuses`).

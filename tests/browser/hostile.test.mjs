@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import http from "node:http";
-import { onBackend } from "./harness.mjs";
+import { onOneBackend } from "./harness.mjs";
 import { elsewhere, striding, until } from "./help.mjs";
 
 const SMALL = { viewport: [960, 640] };
@@ -10,7 +10,7 @@ const DESK = { viewport: [1280, 800] };
 
 // Fails when a script that is not the page's own runs. The harness checks in every test that the
 // page itself keeps its policy.
-onBackend("webgl2", "policy of the page blocks foreign scripts", async ({ open }) => {
+onOneBackend("policy of the page blocks foreign scripts", async ({ open }) => {
   await elsewhere({ "/evil.js": { type: "text/javascript", text: "window.hit = 'a script from elsewhere';" } }, async (far) => {
     const opened = await open("lab=view&play=off", SMALL);
     opened.refuses = true;
@@ -41,7 +41,7 @@ onBackend("webgl2", "policy of the page blocks foreign scripts", async ({ open }
 });
 
 // Fails when a page that a lesson's link opens can navigate this one, or gets its address.
-onBackend("webgl2", "page that a lesson's link opens has no handle to this one", async ({ open }) => {
+onOneBackend("page that a lesson's link opens has no handle to this one", async ({ open }) => {
   const link = (far) => `[${"somewhere else ".repeat(30).trim()}](${far}/other.html)\n\n`;
   const answers = { "/other.html": { type: "text/html", text: "<!doctype html><title>Other</title>" } };
   await elsewhere(answers, async (far) => {
@@ -67,7 +67,7 @@ onBackend("webgl2", "page that a lesson's link opens has no handle to this one",
 
 // Fails when a value of a wrong type reaches the app, and when the message does not name the
 // argument, the found value and the expected type.
-onBackend("webgl2", "call with an argument of a wrong type names it", async ({ open }) => {
+onOneBackend("call with an argument of a wrong type names it", async ({ open }) => {
   const { page, segue } = await open("lab=blend&play=off", SMALL);
   const refusals = await page.evaluate(async () => {
     const circle = {};
@@ -96,7 +96,7 @@ onBackend("webgl2", "call with an argument of a wrong type names it", async ({ o
 });
 
 // Fails when a graph of too many clips shows the numbers of an earlier one.
-onBackend("webgl2", "set with more clips than a graph takes changes nothing", async ({ open }) => {
+onOneBackend("set with more clips than a graph takes changes nothing", async ({ open }) => {
   const { segue } = await open("lab=graph&play=off", SMALL);
   const before = await segue("params");
   const many = Array.from({ length: 70 }, (_, n) => `clip${n}`).join(",");
@@ -118,7 +118,7 @@ async function silent(body) {
 
 // Fails when a server that never answers is waited for for ever, and when the user cannot stop the
 // wait.
-onBackend("webgl2", "fetch without an answer ends by the user or by the timeout", async ({ open }) => {
+onOneBackend("fetch without an answer ends by the user or by the timeout", async ({ open }) => {
   await silent(async (far) => {
     const { page, segue } = await open("lab=view&play=off", SMALL);
     await page.evaluate(() => {
@@ -144,7 +144,7 @@ onBackend("webgl2", "fetch without an answer ends by the user or by the timeout"
 });
 
 // Fails when `loaded` resolves before the library has the clips of the link.
-onBackend("webgl2", "loaded right after the start waits for all clips", async ({ open }) => {
+onOneBackend("loaded right after the start waits for all clips", async ({ open }) => {
   const text = String(striding({ frames: 30 }));
   await elsewhere({ "/late.bvh": { text, after: 1500 } }, async (far) => {
     const { segue } = await open(`lab=view&play=off&src=${far}/late.bvh`, SMALL);
@@ -155,7 +155,7 @@ onBackend("webgl2", "loaded right after the start waits for all clips", async ({
 });
 
 // Fails when the page answers an origin that its host does not name.
-onBackend("webgl2", "only origins that the host names may drive the frame", async ({ open }) => {
+onOneBackend("only origins that the host names may drive the frame", async ({ open }) => {
   const { page } = await open("", {
     ...SMALL,
     wait: false,

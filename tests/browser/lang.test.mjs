@@ -1,7 +1,7 @@
 // Tests of the two languages: the choice for a visitor, and the download of the chosen one alone.
 
 import assert from "node:assert/strict";
-import { onBackend, onBothBackends } from "./harness.mjs";
+import { onBothBackends, onOneBackend } from "./harness.mjs";
 import { linkStored, until } from "./help.mjs";
 
 const isOfLanguage = (url) => url.pathname.includes("/lang/");
@@ -47,7 +47,7 @@ onBothBackends("link selects Chinese, the switch selects English, and files are 
   assert.equal(chinese.fetched.length, 2, "what is here is not fetched again");
 });
 
-onBackend("webgl2", "browser set to Chinese shows Chinese, and the link does not name it", async ({ open }) => {
+onOneBackend("browser set to Chinese shows Chinese, and the link does not name it", async ({ open }) => {
   const { page, segue, ready } = await open("lab=make&play=off", { prepare: readerOf("zh-TW", "en") });
   await spoken(page, "zh-Hant");
   assert.equal((await segue("params")).lang, "auto");
@@ -63,7 +63,7 @@ onBackend("webgl2", "browser set to Chinese shows Chinese, and the link does not
   await spoken(page, "en");
 });
 
-onBackend("webgl2", "language that cannot be loaded leaves English", async ({ open }) => {
+onOneBackend("language that cannot be loaded leaves English", async ({ open }) => {
   let refused = 0;
   const { page, segue } = await open("lab=blend&play=off&lang=zh-Hant", {
     prepare: (page) => page.route(isOfLanguage, (route) => (refused++, route.fulfill({ status: 404, body: "" }))),
@@ -75,7 +75,7 @@ onBackend("webgl2", "language that cannot be loaded leaves English", async ({ op
   assert.equal(refused, 1, "it is requested once");
 });
 
-onBackend("webgl2", "panels of the page are in the browser's language", async ({ open }) => {
+onOneBackend("panels of the page are in the browser's language", async ({ open }) => {
   const { page, ready } = await open("", {
     wait: false,
     prepare: async (page) => {

@@ -1,14 +1,14 @@
 // Tests of lessons: bundled ones in both languages, and a teacher's own from another server.
 
 import assert from "node:assert/strict";
-import { onBackend } from "./harness.mjs";
+import { onOneBackend } from "./harness.mjs";
 import { elsewhere, until } from "./help.mjs";
 
 const DESK = { viewport: [1280, 800] };
 
 // Fails when the texts are not bundled, when a lesson that is opened alone does not set its state,
 // and when it replaces the state of a link.
-onBackend("webgl2", "lesson sets its state, and exists in both languages", async ({ open }) => {
+onOneBackend("lesson sets its state, and exists in both languages", async ({ open }) => {
   const asked = [];
   const prepare = (page) => page.on("request", (request) => asked.push(new URL(request.url()).pathname));
   const { segue } = await open("lesson=half_life", { ...DESK, prepare });
@@ -25,7 +25,7 @@ onBackend("webgl2", "lesson sets its state, and exists in both languages", async
   assert.equal((await segue("params")).lab, "make", "a state that is named beside the lesson stays");
 });
 
-onBackend("webgl2", "lesson of another server is shown, or the reason why not", async ({ open }) => {
+onOneBackend("lesson of another server is shown, or the reason why not", async ({ open }) => {
   const text = "# Mine\n\n[Begin](?lab=loop&a=walk)\n\nText.\n\n# Second\n\n[On](?lab=make&gait=run)\n";
   const type = "text/plain; charset=utf-8";
   const answers = { "/mine.md": { text, type }, "/closed.md": { text, type, cors: false }, "/long.md": { text: text.padEnd(300_000, "x"), type } };

@@ -1,7 +1,7 @@
 // Tests of the link: every parameter into the address and back, and wrong addresses.
 
 import assert from "node:assert/strict";
-import { onBackend, onBothBackends } from "./harness.mjs";
+import { onBothBackends, onOneBackend } from "./harness.mjs";
 import { striding, until } from "./help.mjs";
 
 const SMALL = { viewport: [960, 640] };
@@ -81,7 +81,7 @@ onBothBackends("wrong parts of a link are reported, and the rest is used", async
   await until("a notice stands on the page", async () => (await differing()) > 1000);
 });
 
-onBackend("webgl2", "going back in the history restores the state", async ({ open }) => {
+onOneBackend("going back in the history restores the state", async ({ open }) => {
   const { page, segue } = await open("blend_window=24&play=off", SMALL);
   await page.evaluate(() => history.pushState(null, "", "?blend_window=48&play=off"));
   await page.evaluate(() => history.pushState(null, "", "?blend_window=48&play=off&x"));

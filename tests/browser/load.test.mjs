@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import process from "node:process";
 import { fileURLToPath } from "node:url";
-import { onBackend, onBothBackends } from "./harness.mjs";
+import { onBothBackends, onOneBackend } from "./harness.mjs";
 import { apart, striding, stored, until } from "./help.mjs";
 
 const SMALL = { viewport: [960, 640] };
@@ -131,7 +131,7 @@ function emptyFiles(count) {
 
 // Fails when an archive may contain any number of files, and when each broken one is reported
 // before they are counted.
-onBackend("webgl2", "zip of 60,000 empty files does not stop the frames, and its refusal names the limit", async ({ open, t }) => {
+onOneBackend("zip of 60,000 empty files does not stop the frames, and its refusal names the limit", async ({ open, t }) => {
   const { page, segue, load } = await open("lab=view&play=off", SMALL);
   await segue("set", {});
   const before = await segue("clips");
@@ -181,7 +181,7 @@ onBothBackends("reload restores the work", async ({ open }) => {
 });
 
 // Fails when the work of a late storage is lost, or replaced by a clip that was dropped meanwhile.
-onBackend("webgl2", "late stored work joins a clip that was dropped meanwhile", async ({ open }) => {
+onOneBackend("late stored work joins a clip that was dropped meanwhile", async ({ open }) => {
   const { page, segue, load, dropFile, ready } = await open("", SMALL);
   const mine = (await load("mine.bvh", striding({ frames: 90 }))).clips[0];
   await until("the work is stored", async () => (await stored(page)).files.length === 1);
@@ -215,7 +215,7 @@ function holdStorage() {
 }
 
 // Fails when one tab overwrites the clips that another has stored, and when it deletes their files.
-onBackend("webgl2", "two tabs keep the clips of both", async ({ open }) => {
+onOneBackend("two tabs keep the clips of both", async ({ open }) => {
   const { page, segue, load, ready } = await open("play=off", SMALL);
   const other = await page.context().newPage();
   await other.goto(page.url(), { waitUntil: "commit" });

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { createServer } from "node:http";
 import { fileURLToPath } from "node:url";
-import { onBackend, onBothBackends } from "./harness.mjs";
+import { onBothBackends, onOneBackend } from "./harness.mjs";
 import { until } from "./help.mjs";
 
 const SMALL = { viewport: [640, 480], keeps: true };
@@ -61,7 +61,7 @@ onBothBackends("second visit needs no network", async ({ open, backend }) => {
 });
 
 // Fails when a worker caches files of two builds, and when reloads never get the new one.
-onBackend("webgl2", "newer build replaces all files with the next reload", async ({ open, t }) => {
+onOneBackend("newer build replaces all files with the next reload", async ({ open, t }) => {
   const { now, base } = await host(t);
   const { page, ready } = await open("play=off", { ...SMALL, base });
   await isKept(page);
@@ -91,7 +91,7 @@ onBackend("webgl2", "newer build replaces all files with the next reload", async
 
 // Fails when a host cannot replace files beside the page, and when files of its other pages are
 // cached.
-onBackend("webgl2", "files beside the page come from the network while there is one", async ({ open, t }) => {
+onOneBackend("files beside the page come from the network while there is one", async ({ open, t }) => {
   const { now, base } = await host(t);
   Object.assign(now.beside, { "mine.md": "one", "other.html": "<!doctype html><title>Other</title>", "other.json": "1" });
   const { page } = await open("play=off", { ...SMALL, base });

@@ -1,7 +1,7 @@
 // Tests of the page on screens of other pixels.
 
 import assert from "node:assert/strict";
-import { onBackend } from "./harness.mjs";
+import { onOneBackend } from "./harness.mjs";
 import { until } from "./help.mjs";
 
 /** Rounding to whole pixels of the screen moves an edge by one pixel of the page at most, its other edge as well. */
@@ -31,7 +31,7 @@ const canvas = (page) => page.evaluate(() => {
 // Fails when the canvas has not as many pixels as the screen has for it, or the page is laid out
 // otherwise on a screen of more pixels, also on one that a browser emulates.
 for (const [viewport, scales] of [[[390, 844], [1, 1.5, 2, 3, 4]], [[1280, 800], [1, 1.5, 2]]]) {
-  onBackend("webgl2", `page of ${viewport[0]} by ${viewport[1]} has the same layout at every pixel ratio`, async ({ open }) => {
+  onOneBackend(`page of ${viewport[0]} by ${viewport[1]} has the same layout at every pixel ratio`, async ({ open }) => {
     let first;
     for (const scale of scales) {
       const { page } = await open("lab=blend&compare=blend_window:30,15,10&play=off", { viewport, scale });

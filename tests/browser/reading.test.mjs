@@ -1,7 +1,7 @@
 // Tests of large files, which a worker reads while the page goes on.
 
 import assert from "node:assert/strict";
-import { onBackend, onBothBackends } from "./harness.mjs";
+import { onBothBackends, onOneBackend } from "./harness.mjs";
 import { apart, striding, until } from "./help.mjs";
 
 const SMALL = { viewport: [960, 640] };
@@ -33,7 +33,7 @@ onBothBackends("large file is read while the page goes on", async ({ open }) => 
   await assert.rejects(load("torn.bvh", LARGE.subarray(0, LARGE.length / 2).toString().replace("MOTION", "NOTION")), /torn\.bvh:\d+:\d+: found .+, expected /);
 });
 
-onBackend("webgl2", "reading of a large file can be stopped", async ({ open }) => {
+onOneBackend("reading of a large file can be stopped", async ({ open }) => {
   const { page, segue } = await open("lab=view&play=off", SMALL);
   await segue("set", {});
   const before = await segue("clips");
@@ -50,7 +50,7 @@ onBackend("webgl2", "reading of a large file can be stopped", async ({ open }) =
   assert.equal((await segue("clips")).length, before.length + 1);
 });
 
-onBackend("webgl2", "large file is restored after a reload", async ({ open }) => {
+onOneBackend("large file is restored after a reload", async ({ open }) => {
   const { page, segue, load, ready } = await open("", SMALL);
   const { clips } = await load("long.bvh", LARGE);
   await segue("set", { lab: "view", compare: "", a: clips[0].id, play: false });

@@ -1,7 +1,7 @@
 // Tests of bundled takes, which are fetched on demand, alone or as a set, and cached.
 
 import assert from "node:assert/strict";
-import { onBackend, onBothBackends } from "./harness.mjs";
+import { onBothBackends, onOneBackend } from "./harness.mjs";
 import { until } from "./help.mjs";
 
 const DESK = { viewport: [1280, 800] };
@@ -31,7 +31,7 @@ onBothBackends("link to a take fetches that take alone", async ({ open }) => {
 
 // Fails when the clips of the graph are not replaced, when one of the nine is not loaded, and when
 // the walk is not made of them.
-onBackend("webgl2", "graph and match labs load all nine takes of a link", async ({ open }) => {
+onOneBackend("graph and match labs load all nine takes of a link", async ({ open }) => {
   const asked = [];
   const { segue } = await open("lab=graph&play=off", { ...DESK, prepare: watch(asked) });
   await segue("set", {});
@@ -48,7 +48,7 @@ onBackend("webgl2", "graph and match labs load all nine takes of a link", async 
 });
 
 // Fails when a take is not cached with the page, and when the library loses a loaded take.
-onBackend("webgl2", "loaded take needs no network", async ({ open }) => {
+onOneBackend("loaded take needs no network", async ({ open }) => {
   const { page, ready, segue } = await open("lab=loop&a=cmu16_run&play=off", { ...DESK, keeps: true });
   await until("the page is kept", () => page.evaluate(() => Boolean(navigator.serviceWorker.controller)));
   await segue("set", { a: "cmu16_walk" });

@@ -1,7 +1,7 @@
 // Tests of storage: a loaded file is restored, however the page has ended.
 
 import assert from "node:assert/strict";
-import { onBackend } from "./harness.mjs";
+import { onOneBackend } from "./harness.mjs";
 import { linkStored, random, striding, until } from "./help.mjs";
 
 const SMALL = { viewport: [960, 640] };
@@ -36,7 +36,7 @@ const ENDS = {
 // Fails when load() resolves before the file is stored, and when a stored file needs a record that
 // is not written yet.
 for (const [seed, [end, endPage]] of Object.entries(ENDS).entries()) {
-  onBackend("webgl2", `loaded files are restored after a ${end} at any moment`, async ({ open }) => {
+  onOneBackend(`loaded files are restored after a ${end} at any moment`, async ({ open }) => {
     const next = random(20_261_122 + seed);
     const texts = Array.from({ length: FILES }, (_, index) => striding({ frames: 12, swing: 10 + index }).toString());
     let resolved = 0;
@@ -98,7 +98,7 @@ const inStorage = (page, body, argument = null) => page.evaluate(`(async () => {
 const keysOf = (page, store) => inStorage(page, async (stores, asked, store) => asked(stores(store)[0].getAllKeys()), store);
 
 // Fails when a damaged record is overwritten, and when clips or files are lost with it.
-onBackend("webgl2", "damaged record is kept, and its clips are restored", async ({ open }) => {
+onOneBackend("damaged record is kept, and its clips are restored", async ({ open }) => {
   const { page, segue, load, ready } = await open("lab=view&play=off", SMALL);
   const { clips: [mine] } = await load("mine.bvh", striding({ frames: 12 }));
   await until("the record is written", async () => (await keysOf(page, "work")).includes("latest"));
@@ -116,7 +116,7 @@ onBackend("webgl2", "damaged record is kept, and its clips are restored", async 
 });
 
 // Fails when one tab does not get the clips that another has stored.
-onBackend("webgl2", "two tabs get each other's clips", async ({ open }) => {
+onOneBackend("two tabs get each other's clips", async ({ open }) => {
   const { page, load } = await open("lab=view&play=off", SMALL);
   const other = await page.context().newPage();
   await other.goto(page.url(), { waitUntil: "commit" });
@@ -131,7 +131,7 @@ onBackend("webgl2", "two tabs get each other's clips", async ({ open }) => {
 });
 
 // Fails when a file without room prevents the storage of others, and when it is not named.
-onBackend("webgl2", "full storage stores what has room and names the rest", async ({ open }) => {
+onOneBackend("full storage stores what has room and names the rest", async ({ open }) => {
   const { page, segue, load, ready } = await open("lab=view&play=off", SMALL);
   await page.evaluate(() => {
     window.errors = [];

@@ -49,7 +49,12 @@ fn lint(report: &mut Report) {
     report.step("clippy, web", || {
         tools::ensure_wasm_target()?;
         tools::clang()?;
-        shell::run(&mut clippy(&["--target=wasm32-unknown-unknown", "--bin=segue", "--bin=reader"]))
+        let web = |what: &[&str]| {
+            let target = "--target=wasm32-unknown-unknown";
+            shell::run(&mut clippy(&[&[target, "--bin=segue"], what].concat()))
+        };
+        web(&["--bin=reader"])?;
+        web(&["--no-default-features", "--features=app"])
     });
 }
 
