@@ -85,7 +85,7 @@ onOneBackend("menus, help and contents are elements as the page is", async ({ op
 
 // Fails when Tab does not begin at the first element, leaves the reading order, or loses a press
 // during a slow frame.
-onBothBackends("Tab follows the reading order, and its first stop skips to the parameters", async ({ open }) => {
+onOneBackend("Tab follows the reading order, and its first stop skips to the parameters", async ({ open }) => {
   const { page } = await open("lab=blend&play=off", { viewport: [1280, 800] });
   await elements(page);
   await page.keyboard.press("Tab");
@@ -106,7 +106,7 @@ onBothBackends("Tab follows the reading order, and its first stop skips to the p
 
 // Fails when the focus of an element does not reach its widget, its keys are lost, or an action of
 // a screen reader has no effect.
-onBothBackends("element passes keys and actions of screen readers to its widget", async ({ open }) => {
+onOneBackend("element passes keys and actions of screen readers to its widget", async ({ open }) => {
   const { page, segue } = await open("lab=blend&blend_window=30&play=off", { viewport: [1280, 800] });
   await elements(page);
   const params = (key, value) => until(`${key} is ${value}`, async () => (await segue("params"))[key] === value);
@@ -141,7 +141,7 @@ onOneBackend("number of a slider is typed by keyboard alone", async ({ open }) =
 });
 
 // Fails when the text of a lesson, or the way to the next one, is not among the elements.
-onBothBackends("lessons are read from start to end by keyboard alone", async ({ open }) => {
+onOneBackend("lessons are read from start to end by keyboard alone", async ({ open }) => {
   const { page, segue } = await open("play=off", { viewport: [1280, 800] });
   await elements(page);
   const press = async (role, name) => {

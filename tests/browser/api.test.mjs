@@ -1,13 +1,13 @@
 // Tests of the calls of `window.segueReady`, one by one.
 
 import assert from "node:assert/strict";
-import { onBothBackends } from "./harness.mjs";
+import { onBothBackends, onOneBackend } from "./harness.mjs";
 import { STRIP, apart, count, isClay, timelineOf, until } from "./help.mjs";
 
 const SMALL = { viewport: [960, 640] };
 
 // Fails when a refused value or one beside it is set, and when the message does not name it.
-onBothBackends("set with a wrong value names it and changes nothing", async ({ open }) => {
+onOneBackend("set with a wrong value names it and changes nothing", async ({ open }) => {
   const { page, segue } = await open("lab=blend&play=off", SMALL);
   const [params, url] = [await segue("params"), await segue("url")];
   for (const [values, reason] of [
@@ -31,7 +31,7 @@ onBothBackends("set with a wrong value names it and changes nothing", async ({ o
   await assert.rejects(segue("seek", "soon"), /seek/);
 });
 
-onBothBackends("keys has every parameter, and set calls the listeners", async ({ open, backend }) => {
+onOneBackend("keys has every parameter, and set calls the listeners", async ({ open, backend }) => {
   const { page, segue } = await open("lab=blend&play=off", SMALL);
   assert.match(await segue("version"), /^\d+\.\d+\.\d+/);
   const [keys, params, stats] = [await segue("keys"), await segue("params"), await segue("stats")];
@@ -57,7 +57,7 @@ onBothBackends("keys has every parameter, and set calls the listeners", async ({
   assert.ok(apart(await segue("pose", "result", 2.4), before) > 1e-3, "set resolves when the result is computed");
 });
 
-onBothBackends("play, pause, seek and time", async ({ open }) => {
+onOneBackend("play, pause, seek and time", async ({ open }) => {
   const { segue } = await open("lab=blend&play=off", SMALL);
   await segue("seek", 1.25);
   assert.ok(Math.abs((await segue("time")) - 1.25) < 1e-3);
@@ -82,7 +82,7 @@ onBothBackends("a snapshot is a picture of the stage", async ({ open }) => {
   assert.ok(count(picture, [0, 40, picture.width, picture.height - 60], isClay) > 2000, "the character is in it");
 });
 
-onBothBackends("exported file can be loaded", async ({ open }) => {
+onOneBackend("exported file can be loaded", async ({ open }) => {
   const { segue, load } = await open("lab=blend&play=off", SMALL);
   await segue("set", {});
   const bytes = await segue("export", "result", "bvh");
@@ -97,7 +97,7 @@ onBothBackends("exported file can be loaded", async ({ open }) => {
 });
 
 // Fails when a call returns an earlier result for clips that it was not made from.
-onBothBackends("every call on a refused result rejects with its sentence", async ({ open }) => {
+onOneBackend("every call on a refused result rejects with its sentence", async ({ open }) => {
   const { segue } = await open("lab=path&a=walk&play=off", SMALL);
   await until("it is measured", async () => Object.keys(await segue("metrics")).length > 0);
   const clips = (await segue("clips")).length;

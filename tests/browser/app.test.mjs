@@ -18,7 +18,7 @@ function bvh(frames = 60, bone = "Spine") {
 
 const brought = (clips) => clips.filter((clip) => clip.sha256).map((clip) => clip.name);
 
-onBothBackends("the API answers, and set() is all or nothing", async ({ open, backend }) => {
+onOneBackend("the API answers, and set() is all or nothing", async ({ open, backend }) => {
   const { segue } = await open("blend_window=24&play=off");
   assert.equal((await segue("stats")).backend, backend);
   const keys = await segue("keys");

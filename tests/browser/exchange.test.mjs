@@ -1,7 +1,7 @@
 // Tests of exported files with other programs: three.js, and the validator of Khronos.
 
 import assert from "node:assert/strict";
-import { onBothBackends } from "./harness.mjs";
+import { onOneBackend } from "./harness.mjs";
 import { striding } from "./help.mjs";
 import { AS_GOOD_AS_SAME, byIndex, complaints, farthest, fromBvh, fromCsv, fromGlb } from "./read_back.mjs";
 
@@ -9,7 +9,7 @@ import { AS_GOOD_AS_SAME, byIndex, complaints, farthest, fromBvh, fromCsv, fromG
 const METRES_PER_UNIT = 0.01;
 
 // Fails when the formats have different motions, and when a GLB is invalid or shows nothing.
-onBothBackends("exported motion is the same in three.js", async ({ open }) => {
+onOneBackend("exported motion is the same in three.js", async ({ open }) => {
   const { segue, load } = await open("lab=blend&play=off", { viewport: [960, 640] });
   await segue("set", {});
   const { clips: [clip] } = await load("strides.bvh", striding({ frames: 40 }));
@@ -25,7 +25,7 @@ onBothBackends("exported motion is the same in three.js", async ({ open }) => {
   }
 });
 
-onBothBackends("exported GLB can be loaded", async ({ open }) => {
+onOneBackend("exported GLB can be loaded", async ({ open }) => {
   const { segue, load } = await open("lab=blend&play=off", { viewport: [960, 640] });
   const { clips: [clip] } = await load("strides.bvh", striding({ frames: 40 }));
   const { clips: [back], warnings } = await load("back.glb", await segue("export", clip.id, "glb"));

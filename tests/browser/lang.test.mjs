@@ -1,7 +1,7 @@
 // Tests of the two languages: the choice for a visitor, and the download of the chosen one alone.
 
 import assert from "node:assert/strict";
-import { onBothBackends, onOneBackend } from "./harness.mjs";
+import { onOneBackend } from "./harness.mjs";
 import { linkStored, until } from "./help.mjs";
 
 const isOfLanguage = (url) => url.pathname.includes("/lang/");
@@ -25,7 +25,7 @@ const readerOf = (...languages) => (page) => page.addInitScript((languages) => {
 
 // Fails when the font is part of the first visit, when Chinese is not shown, or when both languages
 // look the same.
-onBothBackends("link selects Chinese, the switch selects English, and files are fetched on demand", async ({ open }) => {
+onOneBackend("link selects Chinese, the switch selects English, and files are fetched on demand", async ({ open }) => {
   const plain = counted();
   const english = await open("lab=blend&play=off&t=1", { prepare: plain.prepare });
   const before = await english.screenshot();

@@ -1,7 +1,7 @@
 // Tests of the link: every parameter into the address and back, and wrong addresses.
 
 import assert from "node:assert/strict";
-import { onBothBackends, onOneBackend } from "./harness.mjs";
+import { onOneBackend } from "./harness.mjs";
 import { striding, until } from "./help.mjs";
 
 const SMALL = { viewport: [960, 640] };
@@ -32,7 +32,7 @@ const serveFiles = (page) => page.route(({ hostname }) => hostname === "example.
 
 // Fails for every key that url() leaves out or escapes wrongly, or that a link does not restore,
 // and when a file of the link replaces a clip in it.
-onBothBackends("every key is restored by its link", async ({ open }) => {
+onOneBackend("every key is restored by its link", async ({ open }) => {
   const { segue } = await open("", { ...SMALL, prepare: serveFiles });
   const keys = await segue("keys");
   const wanted = Object.fromEntries(keys.map((row) => [row.key, otherThanDefault(row)]));
@@ -51,7 +51,7 @@ onBothBackends("every key is restored by its link", async ({ open }) => {
   assert.equal(new URL(await again.segue("url")).search, url.search);
 });
 
-onBothBackends("defaults are not part of a link, and the address follows", async ({ open }) => {
+onOneBackend("defaults are not part of a link, and the address follows", async ({ open }) => {
   const { page, segue } = await open("lab=blend&blend_window=24", SMALL);
   assert.equal(new URL(await segue("url")).search, "?blend_window=24");
   await segue("set", { blend_window: 30, weight_law: "linear" });
@@ -65,7 +65,7 @@ onBothBackends("defaults are not part of a link, and the address follows", async
 
 // Fails when one bad part of a link affects the others, and when there is no notice. Notices are
 // not part of the API, so the picture is checked.
-onBothBackends("wrong parts of a link are reported, and the rest is used", async ({ open }) => {
+onOneBackend("wrong parts of a link are reported, and the rest is used", async ({ open }) => {
   const query = "blend_window=24&align=off&play=off";
   const right = await open(query, SMALL);
   const wrong = await open(`colour=red&weight_law=steep&ghosts=99&${query}`, SMALL);

@@ -42,7 +42,7 @@ onBothBackends("dropped files become A, then B, and play", async ({ open }) => {
 const SHARED = [process.env.SEGUE_SHARED, fileURLToPath(new URL("../../../shared/data", import.meta.url)), fileURLToPath(new URL("../../../../shared/data", import.meta.url))]
   .find((folder) => folder && existsSync(`${folder}/cmu/run.bvh`));
 
-onBothBackends("dropped takes of two studios are blended", async ({ open, t }) => {
+onOneBackend("dropped takes of two studios are blended", async ({ open, t }) => {
   if (!SHARED) return t.skip("the takes are not here");
   const { segue, dropFile } = await open("lab=blend&play=off", SMALL);
   for (const [index, path] of ["cmu/run.bvh", "games105/walkF.bvh"].entries()) {
@@ -58,7 +58,7 @@ onBothBackends("dropped takes of two studios are blended", async ({ open, t }) =
 
 // Fails when a broken file changes the state, when its refusal has no position, and when the app
 // stops.
-onBothBackends("broken file is refused with its position, and changes nothing", async ({ open }) => {
+onOneBackend("broken file is refused with its position, and changes nothing", async ({ open }) => {
   const { segue, load } = await open("lab=blend&play=off", SMALL);
   await segue("set", {}); // resolves when the clips that Segue makes itself are made
   const before = await segue("clips");
@@ -86,7 +86,7 @@ onBothBackends("broken file is refused with its position, and changes nothing", 
   assert.ok((await segue("stats")).wasm_bytes < 200e6);
 });
 
-onBothBackends("dropped broken file is reported", async ({ open }) => {
+onOneBackend("dropped broken file is reported", async ({ open }) => {
   const { page, segue, dropFile } = await open("lab=blend&play=off", SMALL);
   await page.evaluate(() => {
     window.errors = [];

@@ -1,7 +1,7 @@
 // Tests of large files, which a worker reads while the page goes on.
 
 import assert from "node:assert/strict";
-import { onBothBackends, onOneBackend } from "./harness.mjs";
+import { onOneBackend } from "./harness.mjs";
 import { apart, striding, until } from "./help.mjs";
 
 const SMALL = { viewport: [960, 640] };
@@ -10,7 +10,7 @@ const LARGE = striding({ frames: 12_000 });
 
 // Fails when the file is read between two frames, when answers of the worker are incomplete, and
 // when no progress is reported.
-onBothBackends("large file is read while the page goes on", async ({ open }) => {
+onOneBackend("large file is read while the page goes on", async ({ open }) => {
   const { page, segue, dropFile, load } = await open("lab=view&play=off", SMALL);
   await page.evaluate(() => {
     window.progress = [];

@@ -1,7 +1,7 @@
 // Tests of bundled takes, which are fetched on demand, alone or as a set, and cached.
 
 import assert from "node:assert/strict";
-import { onBothBackends, onOneBackend } from "./harness.mjs";
+import { onOneBackend } from "./harness.mjs";
 import { until } from "./help.mjs";
 
 const DESK = { viewport: [1280, 800] };
@@ -19,7 +19,7 @@ function watch(asked) {
 
 // Fails when a first visit or another clip fetches takes, when a link fetches more than it names,
 // and when a fetched take cannot be played.
-onBothBackends("link to a take fetches that take alone", async ({ open }) => {
+onOneBackend("link to a take fetches that take alone", async ({ open }) => {
   const asked = [];
   const { segue } = await open("lab=loop&a=cmu16_walk&play=off", { ...DESK, prepare: watch(asked) });
   await segue("set", {});
