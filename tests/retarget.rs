@@ -6,17 +6,24 @@
 
 #[path = "../crates/formats/tests/common/mod.rs"]
 mod common;
+#[path = "encodings/rigs.rs"]
+mod encodings;
 
 use common::shared_data;
-use segue_formats::{ImportOptions, import, unpack_gzip};
-use segue_motion::clip::{Clip, Motion};
+use segue_formats::{ImportOptions, bvh, import, unpack_gzip};
+use segue_motion::clip::{Clip, Contacts, Motion};
+use segue_motion::metrics::foot_slides;
 use segue_motion::retarget::{RetargetErrors, RetargetOptions, TargetBody, retarget_motion};
 use segue_motion::skeleton::{Joint, Role, Roles, Side, Skeleton, fixtures};
+use segue_motion::synth::{Action, Params, synthesize};
+use segue_session::{Command, Outcome, Session, Slot};
 use std::sync::Arc;
 
 /// The bar: skating beyond that of the source, per stance, and depth in the ground, centimetres.
 const MAX_MORE_SKATING_CM: f64 = 0.3;
 const MAX_PENETRATION_CM: f64 = 0.5;
+/// The frames of a take that go through files.
+const MAX_FRAMES: usize = 900;
 
 fn read(name: &str, bytes: &[u8]) -> Motion {
     let mut file = import(name, bytes, &ImportOptions::default()).expect("a motion file");
@@ -115,6 +122,15 @@ struct Rig {
     model: Option<Arc<Clip>>,
 }
 
+impl Rig {
+    fn body(&self) -> TargetBody {
+        match &self.model {
+            Some(model) => TargetBody::of_clip(model, &self.roles),
+            None => TargetBody::at_rest(&self.skeleton, &self.roles),
+        }
+    }
+}
+
 fn rigs() -> Vec<Rig> {
     let builds = [
         ("Bandai-Namco", fixtures::bandai(), Build { shin: 1.2, thigh: 0.9, ..AVERAGE }),
@@ -167,11 +183,7 @@ fn captured_motion_on_other_rigs_neither_slides_nor_sinks_in() {
     let mut faults = Vec::new();
     for rig in rigs() {
         for (name, motion) in takes() {
-            let body = TargetBody {
-                skeleton: &rig.skeleton,
-                roles: &rig.roles,
-                model: rig.model.as_deref(),
-            };
+            let body = rig.body();
             let made = retarget_motion(&motion, &body, &RetargetOptions::default()).expect("made");
             let errors = made.report;
             let plain =
@@ -218,4 +230,213 @@ fn faults_of(errors: &RetargetErrors) -> impl Iterator<Item = String> {
         .then(|| format!("{} limbs beyond their limits", errors.beyond_limits.result));
     let none = (skating.stances == 0).then(|| "no stance was measured".to_owned());
     [worst, mean, deep, bent, none].into_iter().flatten()
+}
+
+/// Returns a session with the motions in its library, as files, and their ids.
+fn opened(motions: &[(&str, &Clip)]) -> (Session, Vec<String>) {
+    let mut session = Session::new();
+    let ids = motions.iter().map(|(name, clip)| {
+        let text = bvh::write(clip, &bvh::WriteOptions::default());
+        let read = session.load(&format!("{name}.bvh"), Arc::from(text.as_bytes()));
+        let read = read.expect("a file that is read");
+        assert!(!read.ids.is_empty(), "{name}: {:?}", read.warnings);
+        read.ids[0].clone()
+    });
+    let ids = ids.collect();
+    (session, ids)
+}
+
+/// Returns what a user gets of a lab with A and B.
+fn result(session: &mut Session, a: &str, b: &str, more: &str) -> Result<Arc<Outcome>, String> {
+    let link = format!("{more}&a={a}&b={b}&clips={a},{b}&match_clips={a},{b}&play=off");
+    session.apply(Command::OpenLink(link)).expect("a link is never refused");
+    while session.work() {}
+    let pane = session.panes().first().expect("a pane");
+    match (&pane.outcome, &pane.problem) {
+        (_, Some(problem)) => Err(problem.to_string()),
+        (Some(outcome), None) => Ok(Arc::clone(outcome)),
+        (None, None) => panic!("neither a result nor a reason"),
+    }
+}
+
+/// Returns a motion of the synthesised body on another.
+fn walking_on(rig: &Rig, duration_secs: f32) -> Clip {
+    let params = Params { duration_secs, ..Params::new(Action::Walk) };
+    let walk = Motion::analyze(synthesize(&params).expect("a walk").clip);
+    retarget_motion(&walk, &rig.body(), &RetargetOptions::DIRECTIONS).expect("made").clip
+}
+
+/// Returns the worst slide in a stance and its mean, centimetres.
+fn slides(motion: &Motion, contacts: &Contacts) -> [f64; 2] {
+    let found = foot_slides(motion.clip(), motion.roles(), contacts);
+    let slides = || found.iter().map(|slide| slide.slide_cm);
+    [slides().fold(0.0, f64::max), slides().sum::<f64>() / found.len().max(1) as f64]
+}
+
+/// Returns the greatest depth of a foot below the ground, centimetres, and the greatest flexion of
+/// a knee, degrees.
+fn depth_and_flexion(motion: &Motion, ground_m: f32) -> [f32; 2] {
+    let (roles, skeleton) = (motion.roles(), motion.clip().skeleton());
+    let (mut lowest, mut bent) = (f32::INFINITY, 0.0f32);
+    for frame in 0..motion.clip().frames() {
+        let world = motion.clip().world_pose(frame);
+        for side in Side::BOTH {
+            for (joint, point) in roles.foot_points(skeleton, side) {
+                lowest = lowest.min(world.point(joint, point).y);
+            }
+            let leg = Role::leg(side).map(|role| roles.get(role));
+            let [thigh, shin, foot, _] = leg.map(|joint| world.positions[joint.expect("a leg")]);
+            bent = bent.max((shin - thigh).angle_between(foot - shin).to_degrees());
+        }
+    }
+    [(ground_m - lowest) * 100.0, bent]
+}
+
+/// The same bar, for what a blend gets: through files, the library and the lab's cache, at the
+/// frame rate of A. Slides, depths and knees are measured here, not taken from the report.
+#[test]
+fn blends_with_other_bodies_neither_slide_nor_sink_in() {
+    let mut faults = Vec::new();
+    eprintln!("through the session: rig, take; slide of the clip and of the result, worst, mean");
+    for rig in rigs() {
+        let base = walking_on(&rig, 3.0);
+        for (name, take) in takes() {
+            // Larger files are read elsewhere.
+            let part = take.clip().crop(0..take.clip().frames().min(MAX_FRAMES)).expect("frames");
+            let (mut session, ids) = opened(&[("rig", &base), (name, &part)]);
+            let made = result(&mut session, &ids[0], &ids[1], "lab=blend").expect("a blend");
+            let report = made.retargeted.as_ref().expect("a report on retargeting");
+            let (a, b) = (session.slot(Slot::A), session.slot(Slot::B));
+            let [a, b] = [a, b].map(|entry| entry.expect("a clip").motion.clone().expect("read"));
+            let incoming = &made.sources[1].motion;
+            assert_eq!(incoming.clip().skeleton(), a.clip().skeleton());
+            let legs = [&a, &b]
+                .map(|motion| motion.roles().leg_length(motion.clip().skeleton()).expect("legs"));
+            let [own, own_mean] = slides(&b, b.contacts());
+            let [worst, mean] = slides(incoming, incoming.contacts());
+            let ground_m = b.ground_m() * legs[0] / legs[1];
+            let [depth, bent] = depth_and_flexion(incoming, ground_m);
+            let limits = report.errors.beyond_limits.result;
+            eprintln!(
+                "{:<28} {name:<10} {own:>6.2} {own_mean:>6.2} {worst:>6.2} {mean:>6.2} | depth {depth:>6.2} | knee {bent:>5.1}° | beyond {limits}",
+                rig.name
+            );
+            if worst > own + MAX_MORE_SKATING_CM || mean > own_mean + MAX_MORE_SKATING_CM {
+                faults.push(format!("{} {name}: slides {worst:.2} {mean:.2} cm", rig.name));
+            }
+            if f64::from(depth) > MAX_PENETRATION_CM || limits > 0 || bent > 155.7 {
+                faults.push(format!("{} {name}: {depth:.2} cm, {limits}, {bent:.1}°", rig.name));
+            }
+        }
+    }
+    assert!(faults.is_empty(), "\n{}", faults.join("\n"));
+}
+
+/// Returns a body on four legs.
+fn quadruped() -> Rig {
+    let mut joints = Vec::new();
+    let mut add = |name: &str, parent: Option<usize>, offset: [f32; 3]| {
+        let channels = Vec::new();
+        let (name, offset) = (name.to_owned(), offset.into());
+        joints.push(Joint { name, parent, offset, end_site: None, channels });
+        joints.len() - 1
+    };
+    let hips = add("Hips", None, [0.0, 0.6, -0.3]);
+    let spine = add("Spine", Some(hips), [0.0, 0.05, 0.3]);
+    let chest = add("Chest", Some(spine), [0.0, 0.0, 0.3]);
+    let neck = add("Neck", Some(chest), [0.0, 0.15, 0.15]);
+    add("Head", Some(neck), [0.0, 0.15, 0.1]);
+    add("Tail", Some(hips), [0.0, 0.0, -0.3]);
+    for (side, sign) in [("Left", 1.0), ("Right", -1.0)] {
+        for (end, on) in [("Hind", hips), ("Fore", chest)] {
+            let upper = add(&format!("{side}{end}UpperLeg"), Some(on), [0.1 * sign, -0.05, 0.0]);
+            let lower = add(&format!("{side}{end}LowerLeg"), Some(upper), [0.0, -0.28, 0.04]);
+            add(&format!("{side}{end}Foot"), Some(lower), [0.0, -0.26, -0.04]);
+        }
+    }
+    let skeleton = Arc::new(Skeleton::new(joints).expect("a tree"));
+    Rig { name: "quadruped".into(), roles: Roles::detect(&skeleton), skeleton, model: None }
+}
+
+/// Returns a body without hands and feet.
+fn without_ends() -> Rig {
+    let whole = fixtures::lafan();
+    let roles = fixtures::roles(&whole);
+    let ends = Side::BOTH.into_iter().flat_map(|side| {
+        [Role::hand(side), Role::foot(side), Role::toe(side)].map(|role| roles.get(role))
+    });
+    let ends: Vec<usize> = ends.flatten().collect();
+    let (mut joints, mut moved) = (Vec::new(), Vec::new());
+    for (index, joint) in whole.joints().iter().enumerate() {
+        let above = joint.parent.map(|parent: usize| moved[parent]);
+        let is_left_out = ends.contains(&index) || above == Some(None);
+        moved.push((!is_left_out).then_some(joints.len()));
+        if !is_left_out {
+            joints.push(Joint { parent: above.flatten(), ..joint.clone() });
+        }
+    }
+    let skeleton = Arc::new(Skeleton::new(joints).expect("a tree"));
+    Rig { name: "stumps".into(), roles: Roles::detect(&skeleton), skeleton, model: None }
+}
+
+/// Bodies and clips that nobody hopes for have a result without wild numbers, or a reason.
+#[test]
+fn odd_bodies_have_a_result_or_a_reason() {
+    let (walk, run) = (take("16_15", 0), take("16_55", 0));
+    let lafan = fixtures::lafan();
+    let plain = Rig {
+        name: "plain".into(),
+        roles: fixtures::roles(&lafan),
+        skeleton: Arc::clone(&lafan),
+        model: None,
+    };
+    let base = walking_on(&plain, 2.0);
+    let mut bodies: Vec<(String, Clip)> = encodings::encodings(&base)
+        .into_iter()
+        .map(|(name, text)| (name.to_owned(), Clip::clone(read(name, text.as_bytes()).clip())))
+        .collect();
+    bodies.push(("elsewhere".into(), encodings::placed(&base)));
+    bodies.push(("one frame".into(), base.crop(0..1).expect("a frame")));
+    for rig in [quadruped(), without_ends()] {
+        bodies.push((rig.name.clone(), walking_on(&rig, 2.0)));
+    }
+    let one = walk.clip().crop(0..1).expect("a frame");
+    for (name, body) in &bodies {
+        let clips = [("body", body), ("walk", &**walk.clip()), ("run", run.clip()), ("one", &one)];
+        let (mut session, ids) = opened(&clips);
+        let [body_id, walk_id, run_id, one_id] = [0, 1, 2, 3].map(|index: usize| &*ids[index]);
+        for (a, b, lab) in [
+            (body_id, walk_id, "lab=blend"),
+            (body_id, walk_id, "lab=layers"),
+            (body_id, walk_id, "lab=blend&retarget_feet=0&retarget_hands=0"),
+            (body_id, one_id, "lab=layers"),
+            (walk_id, body_id, "lab=blend"),
+            (one_id, body_id, "lab=layers"),
+            (body_id, run_id, "lab=graph"),
+            (body_id, run_id, "lab=match&scenario=left"),
+        ] {
+            let made = match result(&mut session, a, b, lab) {
+                Ok(made) => made,
+                Err(reason) => {
+                    eprintln!("{name} {lab} {a} {b}: {reason}");
+                    assert!(reason.len() > 10, "{name} {lab}: {reason}");
+                    continue;
+                }
+            };
+            let clip = made.motion.clip();
+            let mut at = clip.world_positions(0..clip.frames()).into_iter();
+            let wild = at.find(|p| !p.is_finite() || p.y.abs() > 10.0);
+            assert!(wild.is_none(), "{name} {lab}: {wild:?}");
+            if let Some(report) = &made.retargeted
+                && !lab.contains("retarget_feet=0")
+            {
+                let errors = report.errors;
+                let cm = errors.penetration_cm.result;
+                eprintln!("{name} {lab} {a} {b}: {cm:.2} cm deep, {:?}", errors.beyond_limits);
+                for foot in errors.feet.into_iter().flatten() {
+                    assert!(foot.result.worst_cm < 15.0, "{name} {lab}: {errors:?}");
+                }
+            }
+        }
+    }
 }

@@ -12,7 +12,8 @@ use crate::export::{ExportFormat, ExportOptions, export, file_name};
 use crate::reading::{ReadFile, ReadReport};
 use segue_formats::csv::cell;
 use segue_formats::{PackedFile, ZipFull, ZipWriter};
-use segue_motion::clip::{Clip, Interpolation, Motion, reference_pose, resample, retarget_onto};
+use segue_motion::clip::{Clip, Interpolation, Motion, reference_pose, resample};
+use segue_motion::retarget::{RetargetOptions, TargetBody, retarget_motion};
 use segue_motion::skeleton::{FoldedChain, Joint, Pose, Roles, Skeleton, local_pose};
 use segue_motion::skin::{Character, SkinnedMesh};
 use segue_text::{Message, ToMessage as _, msg};
@@ -67,15 +68,16 @@ impl TargetRig {
         }
     }
 
-    /// Returns a motion on this body.
+    /// Returns a motion on this body, with its feet and hands where they belong.
     fn put_on(&self, motion: &Motion) -> Result<Motion, Message> {
         let skeleton = Skeleton::new(self.joints.clone()).map_err(|error| error.to_message())?;
         let skeleton = Arc::new(skeleton.with_folded_chain(self.above.clone()));
         let model = Clip::new("", skeleton, 30.0, self.rotations.clone(), vec![self.root])
             .map_err(|error| error.to_message())?;
-        let clip = retarget_onto(motion.clip(), motion.roles(), &model, &self.roles)
+        let body = TargetBody::of_clip(&model, &self.roles);
+        let made = retarget_motion(motion, &body, &RetargetOptions::default())
             .map_err(|error| error.to_message())?;
-        Ok(Motion::with_roles(clip, &self.roles))
+        Ok(Motion::with_roles(made.clip, &self.roles).with_contacts(motion.contacts().clone()))
     }
 }
 

@@ -179,6 +179,7 @@ pub(crate) fn under_way(job: &Job) -> Message {
         JobKind::Matching => msg!("Finding the best match {percent:.0} %", percent),
         JobKind::Registering => msg!("Registering the clips {percent:.0} %", percent),
         JobKind::BuildingGraph => msg!("Building the graph {percent:.0} %", percent),
+        JobKind::Retargeting => msg!("Retargeting {percent:.0} %", percent),
         JobKind::HoldingFeet => msg!("Locking feet {percent:.0} %", percent),
         JobKind::Cleaning => msg!("Looking for faults {percent:.0} %", percent),
         JobKind::Driving => msg!("Simulating {percent:.0} %", percent),

@@ -171,6 +171,7 @@ mod tests {
         let told = |names: &[&str]| {
             retargeted(&RetargetReport {
                 unmatched: names.iter().map(|name| (*name).to_owned()).collect(),
+                ..RetargetReport::default()
             })
             .to_string()
         };

@@ -211,44 +211,60 @@ pub(crate) fn stillest_point(before: &[Vec3], after: &[Vec3]) -> Option<(usize, 
 }
 
 /// World positions of the points of the feet and of the hips, frame by frame.
+#[derive(Debug)]
 pub(super) struct FootTracks {
     /// Positions of ankles, toe joints and toe tips, for each side that has them.
     pub(super) feet: [Vec<(Side, Vec<Vec3>)>; 3],
     /// Positions of the hips.
     body: Vec<Vec3>,
+    /// For each track, kind by kind: a joint, and a point in its frame.
+    points: [Vec<(usize, Vec3)>; 3],
+    hips: usize,
+    /// The joints to pose.
+    needed: Vec<usize>,
 }
 
 impl FootTracks {
     pub(super) fn of(clip: &Clip, roles: &Roles) -> Self {
+        let mut tracks = Self::new(clip, roles);
+        tracks.read(clip, 0..clip.frames());
+        tracks
+    }
+
+    /// Returns tracks without a frame, to be filled by [`read`](Self::read).
+    pub(super) fn new(clip: &Clip, roles: &Roles) -> Self {
         let skeleton = clip.skeleton();
         let joint = |role| roles.get_within(role, skeleton.len());
-        let mut wanted: Vec<(usize, Side, usize, Vec3)> = Vec::new();
+        let mut feet: [Vec<(Side, Vec<Vec3>)>; 3] = Default::default();
+        let mut points: [Vec<(usize, Vec3)>; 3] = Default::default();
         for side in Side::BOTH {
             let (foot, toe) = (joint(Role::foot(side)), joint(Role::toe(side)));
-            wanted.extend(foot.map(|j| (0, side, j, Vec3::ZERO)));
-            wanted.extend(toe.map(|j| (1, side, j, Vec3::ZERO)));
             // The tip of a foot without toes is its own end site.
             let last = toe.or(foot);
-            wanted.extend(last.and_then(|j| Some((2, side, j, skeleton.joints()[j].end_site?))));
+            let tip = last.and_then(|j| Some((j, skeleton.joints()[j].end_site?)));
+            let of = [foot.map(|j| (j, Vec3::ZERO)), toe.map(|j| (j, Vec3::ZERO)), tip];
+            for ((tracks, points), point) in feet.iter_mut().zip(&mut points).zip(of) {
+                tracks.extend(point.map(|_| (side, Vec::with_capacity(clip.frames()))));
+                points.extend(point);
+            }
         }
         let hips = joint(Role::Hips).unwrap_or(0);
-        let mut body = Vec::with_capacity(clip.frames());
-        let mut points: Vec<Vec<Vec3>> = vec![Vec::with_capacity(clip.frames()); wanted.len()];
+        let joints = points.iter().flatten().map(|&(joint, _)| joint).chain([hips]);
+        let needed = skeleton.with_ancestors(joints);
+        Self { feet, body: Vec::with_capacity(clip.frames()), points, hips, needed }
+    }
+
+    /// Adds these frames, which follow those that were read.
+    pub(super) fn read(&mut self, clip: &Clip, frames: Range<usize>) {
         let mut world = WorldPose::default();
-        let needed =
-            skeleton.with_ancestors(wanted.iter().map(|&(_, _, joint, _)| joint).chain([hips]));
-        for frame in 0..clip.frames() {
-            clip.world_pose_of(frame, &needed, &mut world);
-            body.push(world.positions[hips]);
-            for (&(_, _, joint, point), track) in wanted.iter().zip(&mut points) {
+        for frame in frames {
+            clip.world_pose_of(frame, &self.needed, &mut world);
+            self.body.push(world.positions[self.hips]);
+            let tracks = self.feet.iter_mut().flatten().zip(self.points.iter().flatten());
+            for ((_, track), &(joint, point)) in tracks {
                 track.push(world.point(joint, point));
             }
         }
-        let mut feet: [Vec<(Side, Vec<Vec3>)>; 3] = Default::default();
-        for ((kind, side, _, _), track) in wanted.into_iter().zip(points) {
-            feet[kind].push((side, track));
-        }
-        Self { feet, body }
     }
 
     /// Returns for every frame the ratio of the body's speed to the steady speed, at least 1.

@@ -50,19 +50,14 @@ pub fn estimate_ground(clip: &Clip, roles: &Roles, contacts: &Contacts) -> f32 {
     }
 }
 
-/// Returns the amount by which `moved`, a clip that was retargeted to a body `scale` times as
-/// large, has to be raised so that its feet are as high as those of `source` in proportion. Only
-/// kinds of foot points (ankles, toe joints, toe tips) that both bodies have are compared: an ankle
-/// stands higher than a toe. `None` where they have none in common.
-pub(super) fn rise_between(
-    source: (&Clip, &Roles),
-    moved: (&Clip, &Roles),
-    scale: f32,
-) -> Option<f32> {
-    let [source, moved] = [source, moved].map(|(clip, roles)| FootTracks::of(clip, roles));
+/// Returns the amount by which a clip with the feet `moved`, which was retargeted to a body `scale`
+/// times as large, has to be raised so that they are as high as those of `source` in proportion.
+/// Only kinds of foot points (ankles, toe joints, toe tips) that both bodies have are compared: an
+/// ankle stands higher than a toe. `None` where they have none in common.
+pub(super) fn rise_between(source: &FootTracks, moved: &FootTracks, scale: f32) -> Option<f32> {
     let has = |tracks: &FootTracks, kind: usize| !tracks.feet[kind].is_empty();
-    let shared = [0, 1, 2].map(|kind| has(&source, kind) && has(&moved, kind));
-    Some(level_of(&source, shared)? * scale - level_of(&moved, shared)?)
+    let shared = [0, 1, 2].map(|kind| has(source, kind) && has(moved, kind));
+    Some(level_of(source, shared)? * scale - level_of(moved, shared)?)
 }
 
 /// Returns the 5th percentile of the heights of the lowest points of these kinds; `None` where

@@ -373,6 +373,14 @@ impl Clip {
         scaled
     }
 
+    /// Returns the clip with its root raised in every frame, metres.
+    pub(super) fn raised(mut self, by: f32) -> Self {
+        for root in &mut self.root_translations {
+            root.y += by;
+        }
+        self
+    }
+
     /// Returns the clip with each frame moved over the ground by a transform of its own; a frame
     /// without one stays in place.
     #[must_use]

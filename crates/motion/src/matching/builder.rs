@@ -10,18 +10,22 @@ use super::tags::{TagRange, suggest_tags};
 use super::{MatchError, Weights};
 use crate::blend::moving_joints_of;
 use crate::clip::{
-    Clip, ContactCorrections, ContactOptions, Contacts, Interpolation, Motion, mirror, resample,
-    retarget_onto,
+    Clip, ContactCorrections, ContactOptions, Contacts, Interpolation, Motion, RetargetError,
+    mirror, resample,
 };
 use crate::math::Planar;
 use crate::registration::{Progress, REFERENCE_HEIGHT_M};
+use crate::retarget::{MotionRetargeting, TargetBody};
 use crate::skeleton::{Roles, Side, Skeleton};
 use crate::transition::repeat_clip;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// The greatest number of frames of a database: features of 27 dimensions then take half a
 /// gigabyte.
 const MAX_FRAMES: usize = 2_000_000;
+/// Number of frames that are retargeted in one slice, in one of several passes.
+const FRAMES_PER_RETARGET: usize = 1_000;
 /// Number of frames whose features are gathered in one slice.
 const FRAMES_PER_GATHER: usize = 3_000;
 /// Number of frames that are sorted into boxes in one slice.
@@ -35,7 +39,7 @@ const FRAMES_PER_SORT: usize = 100_000;
 /// and frames sorted into boxes. A clip that is a cycle is closed and repeats
 /// ([`DatabaseOptions::cycles`]). Any other clip that is too short for its trajectory features is
 /// left out and named in [`Database::skipped`].
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct DatabaseBuilder {
     clips: Vec<Arc<Motion>>,
     options: DatabaseOptions,
@@ -50,9 +54,10 @@ pub struct DatabaseBuilder {
     stage: Stage,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 enum Stage {
     Prepare,
+    Retarget(Box<MotionRetargeting>),
     Measure(PreparedClip),
     Mirror,
     MeasureMirrored(PreparedClip),
@@ -199,7 +204,7 @@ impl DatabaseBuilder {
         let of_clip =
             |part: usize| (4 * self.next + part) * CLIPS_SHARE / (4 * self.clips.len()).max(1);
         let done = match &self.stage {
-            Stage::Prepare => of_clip(0),
+            Stage::Prepare | Stage::Retarget(_) => of_clip(0),
             Stage::Measure(_) => of_clip(1),
             Stage::Mirror => of_clip(2),
             Stage::MeasureMirrored(_) => of_clip(3),
@@ -226,21 +231,25 @@ impl DatabaseBuilder {
     pub fn advance(&mut self) -> Result<Progress, MatchError> {
         match std::mem::replace(&mut self.stage, Stage::Prepare) {
             Stage::Prepare => match self.clips.get(self.next) {
+                Some(from) if *from.clip().skeleton() == self.skeleton => {
+                    self.stage = self.measure_next(Arc::clone(from.clip()))?;
+                }
                 Some(from) => {
-                    let round = self.prepared(from)?;
-                    if round.cycle.is_some() || round.clip.frames() > self.layout.horizon() {
-                        self.stage = Stage::Measure(round);
-                    } else {
-                        self.skipped.push(MatchError::TooShort {
-                            name: from.clip().name().to_owned(),
-                            secs: from.clip().duration_secs(),
-                            horizon_secs: self.layout.horizon() as f64 / RATE as f64,
-                        });
-                        self.next += 1;
-                    }
+                    let first = self.clips.first().unwrap_or(from);
+                    let (body, options) = (TargetBody::of(first), self.options.retarget);
+                    let begun = MotionRetargeting::new(Arc::clone(from), body, options);
+                    let begun = begun.map_err(|error| self.not_retargeted(error))?;
+                    self.stage = Stage::Retarget(Box::new(begun));
                 }
                 None => self.stage = Stage::Gather(GatheredFeatures::new()),
             },
+            Stage::Retarget(retargeting) => {
+                let next = retargeting.advance(FRAMES_PER_RETARGET);
+                self.stage = match next.map_err(|error| self.not_retargeted(error))? {
+                    ControlFlow::Continue(rest) => Stage::Retarget(Box::new(rest)),
+                    ControlFlow::Break(made) => self.measure_next(Arc::new(made.clip))?,
+                };
+            }
             Stage::Measure(round) => {
                 let contacts = round.contacts(&self.roles)?;
                 let mut motion = DatabaseClip::new(
@@ -349,16 +358,29 @@ impl DatabaseBuilder {
         Stage::Prepare
     }
 
-    /// Returns a clip on the first clip's skeleton and at the database's rate.
-    fn prepared(&self, from: &Motion) -> Result<PreparedClip, MatchError> {
-        let mut clip = Arc::clone(from.clip());
-        if clip.skeleton() != &self.skeleton
-            && let Some(model) = self.clips.first()
-        {
-            let moved = retarget_onto(&clip, from.roles(), model.clip(), model.roles())
-                .map_err(|error| MatchError::Retarget { name: clip.name().to_owned(), error })?;
-            clip = Arc::new(moved);
+    fn not_retargeted(&self, error: RetargetError) -> MatchError {
+        let clip = self.clips.get(self.next).map(|from| from.clip().name().to_owned());
+        MatchError::Retarget { name: clip.unwrap_or_default(), error }
+    }
+
+    /// Returns the stage after the next clip is on the first one's skeleton.
+    fn measure_next(&mut self, clip: Arc<Clip>) -> Result<Stage, MatchError> {
+        let Some(from) = self.clips.get(self.next) else { return Ok(Stage::Prepare) };
+        let round = self.prepared(from, clip)?;
+        if round.cycle.is_some() || round.clip.frames() > self.layout.horizon() {
+            return Ok(Stage::Measure(round));
         }
+        self.skipped.push(MatchError::TooShort {
+            name: from.clip().name().to_owned(),
+            secs: from.clip().duration_secs(),
+            horizon_secs: self.layout.horizon() as f64 / RATE as f64,
+        });
+        self.next += 1;
+        Ok(Stage::Prepare)
+    }
+
+    /// Returns a clip, which is on the first one's skeleton, at the database's rate.
+    fn prepared(&self, from: &Motion, mut clip: Arc<Clip>) -> Result<PreparedClip, MatchError> {
         let corrections = from.contact_corrections();
         if self.options.cycles
             && let Some(looped) = cycle::closed(&clip, &self.roles, corrections, from.is_cycle())

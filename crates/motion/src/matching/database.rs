@@ -8,6 +8,7 @@ use super::tags::{self, TagRange, TagSet};
 use super::{Block, DatabaseBuilder, Features, MatchError, Weights};
 use crate::clip::Motion;
 use crate::math::{Planar, quat, stats};
+use crate::retarget::RetargetOptions;
 use crate::skeleton::{Pose, Roles, Skeleton};
 use std::sync::Arc;
 
@@ -37,6 +38,9 @@ pub struct Place {
 pub struct DatabaseOptions {
     /// The features of a frame.
     pub features: FeatureOptions,
+    /// The options of retargeting clips of other bodies to that of the first.
+    #[serde(default)]
+    pub retarget: RetargetOptions,
     /// Whether each clip is followed by its mirror image.
     pub mirrored: bool,
     /// Whether a clip that is a cycle, exactly or nearly, repeats: it is searched to its last frame
@@ -46,7 +50,12 @@ pub struct DatabaseOptions {
 
 impl Default for DatabaseOptions {
     fn default() -> Self {
-        Self { features: FeatureOptions::default(), mirrored: true, cycles: true }
+        Self {
+            features: FeatureOptions::default(),
+            retarget: RetargetOptions::default(),
+            mirrored: true,
+            cycles: true,
+        }
     }
 }
 

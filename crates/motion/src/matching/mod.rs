@@ -79,7 +79,7 @@
 //!
 //! It assumes one ground plane, without obstacles and other characters. It looks one second ahead
 //! and plans nothing: motion that is not in the clips does not appear. Retargeted clips keep their
-//! feet planted only as well as [`crate::clip::retarget`] does.
+//! feet planted only as well as [`crate::retarget`] does.
 //!
 //! # Sources
 //!

@@ -35,7 +35,7 @@
 //! let walk = Motion::analyze(synthesize(&Params::new(Action::Walk))?.clip);
 //! let child = Arc::new(walk.clip().skeleton().scaled(0.6));
 //! let roles = Roles::detect(&child);
-//! let body = TargetBody { skeleton: &child, roles: &roles, model: None };
+//! let body = TargetBody::at_rest(&child, &roles);
 //! let made = retarget_motion(&walk, &body, &RetargetOptions::default())?;
 //! assert!(made.report.skating.result.worst_cm < made.report.source_skating.worst_cm + 0.3);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -44,7 +44,8 @@
 //! # What it does not do
 //!
 //! The ground is one plane. Hands are held by shoulders and by each other, not by the ground, by
-//! the body or by props. Bodies without legs, or on four of them, get directions alone.
+//! the body or by props. A limb that one of the bodies lacks gets the directions of its bones alone;
+//! of a body on four legs, those that have the roles of a person's legs and arms are placed.
 //!
 //! # Sources
 //!
@@ -59,6 +60,7 @@
 mod feet;
 mod hands;
 mod report;
+mod retargeting;
 mod solve;
 #[cfg(test)]
 mod tests;
@@ -66,9 +68,10 @@ mod tracks;
 mod twist;
 
 pub use report::{Compared, LimbReach, RetargetErrors, SkatingValues};
+pub use retargeting::MotionRetargeting;
 
-use crate::clip::{Clip, Motion, RetargetError, retarget, retarget_onto};
-use crate::skeleton::{Retargeting, Role, Roles, Side, Skeleton};
+use crate::clip::{Clip, Motion, RetargetError, reference_pose, stance_for_rest};
+use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose};
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -112,22 +115,55 @@ impl RetargetOptions {
 }
 
 /// The body that a motion is moved to.
-#[derive(Clone, Copy, Debug)]
-pub struct TargetBody<'a> {
-    /// Its skeleton.
-    pub skeleton: &'a Arc<Skeleton>,
-    /// The roles of its joints.
-    pub roles: &'a Roles,
-    /// A clip of this body, from which its stance is taken if its rest pose is implausible.
-    pub model: Option<&'a Clip>,
+#[derive(Clone, Debug)]
+pub struct TargetBody {
+    skeleton: Arc<Skeleton>,
+    roles: Roles,
+    /// A pose in which the body stands, or its rest pose.
+    reference: WorldPose,
+    /// The stance in place of an implausible rest pose.
+    stance: Option<WorldPose>,
 }
 
-impl<'a> TargetBody<'a> {
+impl TargetBody {
+    /// Returns the body of a skeleton whose rest pose is plausible.
+    #[must_use]
+    pub fn at_rest(skeleton: &Arc<Skeleton>, roles: &Roles) -> Self {
+        Self {
+            skeleton: Arc::clone(skeleton),
+            roles: roles.clone(),
+            reference: skeleton.rest_pose(),
+            stance: None,
+        }
+    }
+
+    /// Returns the body of a clip, from which its stance is taken if its rest pose is implausible.
+    #[must_use]
+    pub fn of_clip(model: &Clip, roles: &Roles) -> Self {
+        Self {
+            skeleton: Arc::clone(model.skeleton()),
+            roles: roles.clone(),
+            reference: reference_pose(model, roles),
+            stance: stance_for_rest(model, roles),
+        }
+    }
+
     /// Returns the body of a motion.
     #[must_use]
-    pub fn of(motion: &'a Motion) -> Self {
-        let model = motion.clip();
-        Self { skeleton: model.skeleton(), roles: motion.roles(), model: Some(model) }
+    pub fn of(motion: &Motion) -> Self {
+        Self::of_clip(motion.clip(), motion.roles())
+    }
+
+    /// Returns its skeleton.
+    #[must_use]
+    pub fn skeleton(&self) -> &Arc<Skeleton> {
+        &self.skeleton
+    }
+
+    /// Returns the roles of its joints.
+    #[must_use]
+    pub fn roles(&self) -> &Roles {
+        &self.roles
     }
 }
 
@@ -141,10 +177,10 @@ pub struct RetargetedMotion {
 }
 
 /// Retargets a motion to another body: directions of bones first, then the places of feet and
-/// hands; see the [module](self).
+/// hands; see the [module](self). [`MotionRetargeting`] does the same in slices.
 ///
 /// On the same skeleton the clip is returned unchanged, on the same rig with its joints in another
-/// order every shared joint keeps its position. Time: O(frames × joints), five passes of forward
+/// order every shared joint keeps its position. Time: O(frames × joints), ten passes of forward
 /// kinematics.
 ///
 /// # Errors
@@ -154,37 +190,22 @@ pub fn retarget_motion(
     target: &TargetBody,
     options: &RetargetOptions,
 ) -> Result<RetargetedMotion, RetargetError> {
-    let (clip, roles) = (source.clip(), source.roles());
-    let plain = match target.model {
-        Some(model) if model.skeleton() == target.skeleton => {
-            retarget_onto(clip, roles, model, target.roles)?
-        }
-        _ => retarget(clip, roles, target.skeleton, target.roles)?,
-    };
-    let way = Retargeting::new(clip.skeleton(), roles, target.skeleton, target.roles);
-    let scale = way.filter(|way| !way.is_same_rig()).map(|way| way.scale());
-    let Some(scale) = scale.filter(|_| clip.skeleton() != target.skeleton) else {
-        return Ok(RetargetedMotion { clip: plain, report: RetargetErrors::default() });
-    };
-    let task = Task { source, plain: &plain, target, scale, options: options.clamped() };
-    let solved = solve::solve(&task)?;
-    let report = report::measure(&task, &solved);
-    let clip = twist::spread(solved.clip, target)?;
-    Ok(RetargetedMotion { clip, report })
+    MotionRetargeting::new(Arc::new(source.clone()), target.clone(), *options)?.finish()
 }
 
 /// The motion, the body and the options of one retargeting.
-struct Task<'a> {
-    source: &'a Motion,
+#[derive(Debug)]
+struct Task {
+    source: Arc<Motion>,
+    target: TargetBody,
+    options: RetargetOptions,
     /// The directions of the source's bones on the target.
-    plain: &'a Clip,
-    target: &'a TargetBody<'a>,
+    plain: Clip,
     /// The ratio of the legs' lengths.
     scale: f32,
-    options: RetargetOptions,
 }
 
-impl Task<'_> {
+impl Task {
     /// Returns the height of the ground under the result, metres.
     fn ground_m(&self) -> f32 {
         self.source.ground_m() * self.scale
@@ -193,7 +214,7 @@ impl Task<'_> {
     /// Returns the height of the target's body as a share of 1.75 m, for lengths that are given for
     /// such a body.
     fn size(&self) -> f32 {
-        self.target.roles.body_height(self.target.skeleton)
+        self.target.roles.body_height(&self.target.skeleton)
             / crate::registration::REFERENCE_HEIGHT_M as f32
     }
 }

@@ -1,12 +1,14 @@
 //! The errors that remain after retargeting.
 
 use super::Task;
-use super::solve::{LIMITS, Solved};
+use super::solve::{Goals, LIMITS};
+use super::tracks::Tracks;
 use crate::clip::Clip;
-use crate::metrics::foot_slides;
-use crate::skeleton::{Roles, Side, WorldPose};
+use crate::metrics::SlideMeter;
+use crate::skeleton::{Side, WorldPose};
 use crate::transition::LimbPose;
 use glam::Vec3;
+use std::ops::Range;
 
 /// Flexions beyond the limits by less than this count as within them, radians (0.6°).
 const TOLERANCE_RADIANS: f32 = 0.01;
@@ -60,99 +62,135 @@ pub struct RetargetErrors {
     pub beyond_limits: Compared<usize>,
 }
 
-/// Measures a result.
-pub(super) fn measure(task: &Task, solved: &Solved) -> RetargetErrors {
-    let mut errors = RetargetErrors {
-        skating: Compared {
-            directions: skating(task.plain, task.target.roles, task),
-            result: skating(&solved.clip, task.target.roles, task),
-        },
-        source_skating: skating(task.source.clip(), task.source.roles(), task),
-        ..RetargetErrors::default()
-    };
-    for (clip, pick) in [(task.plain, false), (&solved.clip, true)] {
-        let found = Found::of(task, clip, solved);
-        let feet = errors.feet.iter_mut().zip(found.feet);
-        for (error, found) in feet.chain(errors.hands.iter_mut().zip(found.hands)) {
-            if let Some(found) = found {
-                let error = error.get_or_insert_default();
-                *if pick { &mut error.result } else { &mut error.directions } = found;
-            }
-        }
-        let (depth, hits) = (f64::from(found.depth_m) * 100.0, found.beyond_limits);
-        if pick {
-            (errors.penetration_cm.result, errors.beyond_limits.result) = (depth, hits);
-        } else {
-            (errors.penetration_cm.directions, errors.beyond_limits.directions) = (depth, hits);
-        }
-    }
-    errors
+/// The measurement of a result in slices.
+#[derive(Debug)]
+pub(super) struct ErrorMeter {
+    /// The slide of the source, of its bones' directions, and of the result.
+    slides: [SlideMeter; 3],
+    directions: Found,
+    result: Found,
+    frames: usize,
+    /// The ankle, ball and tip of both feet, each as a joint and a point in its frame.
+    points: [[Option<(usize, Vec3)>; 3]; 2],
+    needed: Vec<usize>,
 }
 
-fn skating(clip: &Clip, roles: &Roles, task: &Task) -> SkatingValues {
-    let slides = foot_slides(clip, roles, task.source.contacts());
-    let slides = || slides.iter().map(|slide| slide.slide_cm);
-    let stances = slides().count();
-    SkatingValues {
-        worst_cm: slides().fold(0.0, f64::max),
-        mean_cm: slides().sum::<f64>() / stances.max(1) as f64,
-        stances,
+impl ErrorMeter {
+    /// Returns a meter that has measured nothing yet.
+    pub(super) fn new(task: &Task, tracks: &Tracks) -> Self {
+        let (skeleton, roles) = (&task.target.skeleton, &task.target.roles);
+        let points = Side::BOTH.map(|side| super::foot_points(skeleton, roles, side));
+        let limbs = tracks.legs.iter().flatten().map(|(leg, _)| leg);
+        let limbs = limbs.chain(tracks.arms.iter().flatten());
+        let feet = points.iter().flatten().flatten().map(|(joint, _)| *joint);
+        let needed = limbs.flat_map(|track| track.limb.joints()).chain(feet);
+        Self {
+            slides: [
+                SlideMeter::new(task.source.clip(), task.source.roles()),
+                SlideMeter::new(&task.plain, roles),
+                SlideMeter::new(&task.plain, roles),
+            ],
+            directions: Found::default(),
+            result: Found::default(),
+            frames: 0,
+            needed: skeleton.with_ancestors(needed),
+            points,
+        }
+    }
+
+    /// Measures these frames of the result, which follow those that are measured.
+    pub(super) fn measure(
+        &mut self,
+        task: &Task,
+        (tracks, goals): (&Tracks, &Goals),
+        solved: &Clip,
+        frames: Range<usize>,
+    ) {
+        let clips = [task.source.clip(), &task.plain, solved];
+        for (meter, clip) in self.slides.iter_mut().zip(clips) {
+            meter.advance(clip, task.source.contacts(), frames.len());
+        }
+        let mut world = WorldPose::default();
+        for (found, clip) in [(&mut self.directions, &task.plain), (&mut self.result, solved)] {
+            for frame in frames.clone() {
+                clip.world_pose_of(frame, &self.needed, &mut world);
+                found.add(&world, tracks, goals, frame);
+                let lowest = (self.points.iter().flatten().flatten())
+                    .map(|&(joint, point)| world.point(joint, point).y)
+                    .fold(f32::INFINITY, f32::min);
+                found.depth_m = found.depth_m.max(task.ground_m() - lowest);
+            }
+        }
+        self.frames = frames.end;
+    }
+
+    /// Returns the errors of the frames that are measured.
+    pub(super) fn finish(self, tracks: &Tracks) -> RetargetErrors {
+        let [source, directions, result] = self.slides.map(|meter| {
+            let slides = meter.finish();
+            let slides = || slides.iter().map(|slide| slide.slide_cm);
+            let stances = slides().count();
+            SkatingValues {
+                worst_cm: slides().fold(0.0, f64::max),
+                mean_cm: slides().sum::<f64>() / stances.max(1) as f64,
+                stances,
+            }
+        });
+        let (before, after) = (&self.directions, &self.result);
+        let frames = self.frames.max(1) as f64;
+        let reach = |limb: usize| Compared {
+            directions: before.reach(limb, frames),
+            result: after.reach(limb, frames),
+        };
+        let cm = |found: &Found| f64::from(found.depth_m) * 100.0;
+        RetargetErrors {
+            feet: [0, 1].map(|side| tracks.legs[side].is_some().then(|| reach(side))),
+            hands: [0, 1].map(|side| tracks.arms[side].is_some().then(|| reach(2 + side))),
+            skating: Compared { directions, result },
+            source_skating: source,
+            penetration_cm: Compared { directions: cm(before), result: cm(after) },
+            beyond_limits: Compared {
+                directions: before.beyond_limits,
+                result: after.beyond_limits,
+            },
+        }
     }
 }
 
 /// The errors of one clip of the target's body.
-#[derive(Default)]
+#[derive(Debug, Default)]
 struct Found {
-    feet: [Option<LimbReach>; 2],
-    hands: [Option<LimbReach>; 2],
+    /// The largest distance from the goal and the sum over all frames, centimetres: feet, then
+    /// hands.
+    off_cm: [(f64, f64); 4],
     depth_m: f32,
     beyond_limits: usize,
 }
 
 impl Found {
-    fn of(task: &Task, clip: &Clip, solved: &Solved) -> Self {
-        let (skeleton, roles) = (task.target.skeleton, task.target.roles);
-        let points = Side::BOTH.map(|side| super::foot_points(skeleton, roles, side));
-        let (tracks, goals) = (&solved.tracks, &solved.goals);
-        let legs = || (0..2).filter_map(|side| Some((side, &tracks.legs[side].as_ref()?.0)));
-        let arms = || (0..2).filter_map(|side| Some((side, tracks.arms[side].as_ref()?)));
-        let limbs = legs().chain(arms()).flat_map(|(_, track)| track.limb.joints());
-        let feet = points.iter().flatten().flatten().map(|(joint, _)| *joint);
-        let needed = skeleton.with_ancestors(limbs.chain(feet));
-        let ground = task.ground_m();
-        let mut found = Self::default();
-        let mut sums = [(0.0f64, 0.0f64); 4];
-        let mut world = WorldPose::default();
-        for frame in 0..clip.frames() {
-            clip.world_pose_of(frame, &needed, &mut world);
-            let mut add = |at: usize, off: Vec3| {
-                let off = f64::from(off.length()) * 100.0;
-                sums[at] = (sums[at].0.max(off), sums[at].1 + off);
-            };
-            let outside = |pose: &LimbPose, axis: Vec3| {
-                let flexion = pose.flexion(axis);
-                let allowed = LIMITS.least - TOLERANCE_RADIANS..=LIMITS.most + TOLERANCE_RADIANS;
-                !allowed.contains(&flexion)
-            };
-            for (side, track) in legs() {
-                let pose = track.limb.pose(&world);
-                add(side, world.positions[track.limb.joints()[2]] - goals.feet[side][frame]);
-                found.beyond_limits += usize::from(outside(&pose, track.axis));
+    fn reach(&self, limb: usize, frames: f64) -> LimbReach {
+        let (worst_cm, sum) = self.off_cm[limb];
+        LimbReach { worst_cm, mean_cm: sum / frames }
+    }
+
+    fn add(&mut self, world: &WorldPose, tracks: &Tracks, goals: &Goals, frame: usize) {
+        let mut off = |at: usize, off: Vec3, pose: &LimbPose, axis: Vec3| {
+            let off = f64::from(off.length()) * 100.0;
+            let sums = &mut self.off_cm[at];
+            *sums = (sums.0.max(off), sums.1 + off);
+            let flexion = pose.flexion(axis);
+            let allowed = LIMITS.least - TOLERANCE_RADIANS..=LIMITS.most + TOLERANCE_RADIANS;
+            self.beyond_limits += usize::from(!allowed.contains(&flexion));
+        };
+        for side in 0..2 {
+            if let Some((leg, _)) = &tracks.legs[side] {
+                let place = world.positions[leg.limb.joints()[2]];
+                off(side, place - goals.feet[side][frame], &leg.limb.pose(world), leg.axis);
             }
-            for (side, track) in arms() {
-                let pose = track.limb.pose(&world);
-                add(2 + side, pose.line() - goals.hands[side][frame]);
-                found.beyond_limits += usize::from(outside(&pose, track.axis));
+            if let Some(arm) = &tracks.arms[side] {
+                let pose = arm.limb.pose(world);
+                off(2 + side, pose.line() - goals.hands[side][frame], &pose, arm.axis);
             }
-            let lowest = (points.iter().flatten().flatten())
-                .map(|&(joint, point)| world.point(joint, point).y)
-                .fold(f32::INFINITY, f32::min);
-            found.depth_m = found.depth_m.max(ground - lowest);
         }
-        let frames = clip.frames().max(1) as f64;
-        let reach = |(worst_cm, sum): (f64, f64)| LimbReach { worst_cm, mean_cm: sum / frames };
-        found.feet = [0, 1].map(|side| tracks.legs[side].is_some().then(|| reach(sums[side])));
-        found.hands = [0, 1].map(|side| tracks.arms[side].is_some().then(|| reach(sums[2 + side])));
-        found
     }
 }

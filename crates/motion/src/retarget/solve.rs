@@ -5,6 +5,7 @@ use super::{Task, feet, hands};
 use crate::clip::{Clip, ClipError};
 use crate::transition::{Flexion, LimbPose, hips};
 use glam::{Quat, Vec3};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// The flexions of knees and elbows: from 2° to 155°.
@@ -20,74 +21,89 @@ pub(super) struct Goals {
     pub(super) hands: [Vec<Vec3>; 2],
 }
 
-/// The solved clip, with the goals and the tracks from which its errors are measured.
-pub(super) struct Solved {
-    pub(super) clip: Clip,
+/// The solution of all frames: the movements of limbs and hips, and the rotations so far.
+#[derive(Debug)]
+pub(super) struct Solution {
     pub(super) goals: Goals,
-    pub(super) tracks: Tracks,
+    /// The shifts of the ends of limbs, in proportion to their weights, metres; empty for limbs
+    /// that one of the bodies lacks.
+    foot_shifts: [Vec<Vec3>; 2],
+    hand_shifts: [Vec<Vec3>; 2],
+    /// The amount by which the body is raised, and more in each frame, metres.
+    rise: f32,
+    heights: Vec<f32>,
+    rotations: Vec<Quat>,
 }
 
-/// Returns the clip with feet and hands at their places.
-pub(super) fn solve(task: &Task) -> Result<Solved, ClipError> {
-    let tracks = Tracks::of(task);
-    let (feet, mut hand_shifts) = (feet::goals(task, &tracks), hands::shifts(&tracks));
-    let goals = goals(&tracks, &feet, &hand_shifts);
-    let (mut foot_shifts, weights) = (feet.shifts, task.options);
-    let frames = task.plain.frames();
-    let legs = tracks.legs.iter().filter(|leg| leg.is_some()).count().max(1);
-    let given = (0..2).filter(|&side| tracks.legs[side].is_some());
-    let rise = feet.rise * given.map(|side| weights.feet[side]).sum::<f32>() / legs as f32;
-    for (shifts, weight) in foot_shifts.iter_mut().zip(weights.feet) {
-        for shift in shifts {
-            // The body is raised by `rise` only, so that the rest is left to this leg.
-            *shift = (*shift + Vec3::Y * feet.rise) * weight - Vec3::Y * rise;
+impl Solution {
+    /// Finds the movements of limbs and hips.
+    pub(super) fn new(task: &Task, tracks: &Tracks) -> Self {
+        let (feet, mut hand_shifts) = (feet::goals(task, tracks), hands::shifts(tracks));
+        let goals = goals(tracks, &feet, &hand_shifts);
+        let (mut foot_shifts, weights) = (feet.shifts, task.options);
+        let frames = task.plain.frames();
+        let legs = tracks.legs.iter().filter(|leg| leg.is_some()).count().max(1);
+        let given = (0..2).filter(|&side| tracks.legs[side].is_some());
+        let rise = feet.rise * given.map(|side| weights.feet[side]).sum::<f32>() / legs as f32;
+        for (shifts, weight) in foot_shifts.iter_mut().zip(weights.feet) {
+            for shift in shifts {
+                // The body is raised by `rise` only, so that the rest is left to this leg.
+                *shift = (*shift + Vec3::Y * feet.rise) * weight - Vec3::Y * rise;
+            }
         }
-    }
-    for (shifts, weight) in hand_shifts.iter_mut().zip(weights.hands) {
-        for shift in shifts {
-            *shift *= weight;
+        for (shifts, weight) in hand_shifts.iter_mut().zip(weights.hands) {
+            for shift in shifts {
+                *shift *= weight;
+            }
         }
+        let heights = if weights.feet == [0.0; 2] {
+            vec![0.0; frames]
+        } else {
+            let (posed, shifts): (Vec<Vec<LimbPose>>, Vec<Vec<Vec3>>) = (0..2)
+                .filter_map(|side| {
+                    let (leg, _) = tracks.legs[side].as_ref()?;
+                    Some((leg.posed.clone(), foot_shifts[side].clone()))
+                })
+                .unzip();
+            let mut heights = hips::heights(&posed, &shifts, task.plain.fps());
+            heights.resize(frames, 0.0);
+            heights
+        };
+        let rotations = Vec::with_capacity(frames * task.target.skeleton.len());
+        Self { goals, foot_shifts, hand_shifts, rise, heights, rotations }
     }
-    let heights = if weights.feet == [0.0; 2] {
-        vec![0.0; frames]
-    } else {
-        let (posed, shifts): (Vec<Vec<LimbPose>>, Vec<Vec<Vec3>>) = (0..2)
-            .filter_map(|side| {
-                let (leg, _) = tracks.legs[side].as_ref()?;
-                Some((leg.posed.clone(), foot_shifts[side].clone()))
-            })
-            .unzip();
-        let mut heights = hips::heights(&posed, &shifts, task.plain.fps());
-        heights.resize(frames, 0.0);
-        heights
-    };
-    let mut rotations: Vec<Quat> =
-        (0..frames).flat_map(|frame| task.plain.rotations(frame)).copied().collect();
-    let joints = task.target.skeleton.len();
-    let legs = (tracks.legs.iter().flatten().map(|(leg, _)| leg)).zip(
-        (0..2)
-            .filter(|&side| tracks.legs[side].is_some())
-            .map(|side| (&foot_shifts[side], weights.feet[side], 1.0)),
-    );
-    let arms = (tracks.arms.iter().flatten()).zip(
-        (0..2)
-            .filter(|&side| tracks.arms[side].is_some())
-            .map(|side| (&hand_shifts[side], weights.hands[side], 0.0)),
-    );
-    for (track, (shifts, weight, with_hips)) in legs.chain(arms) {
-        if weight > 0.0 {
-            for (frame, local) in rotations.chunks_exact_mut(joints).enumerate() {
-                let shift = shifts[frame] - Vec3::Y * (heights[frame] * with_hips);
-                turn(track, frame, shift, local);
+
+    /// Moves the limbs in these frames, which follow those that are done.
+    pub(super) fn turn(&mut self, task: &Task, tracks: &Tracks, frames: Range<usize>) {
+        for frame in frames {
+            let first = self.rotations.len();
+            self.rotations.extend_from_slice(task.plain.rotations(frame));
+            let local = &mut self.rotations[first..];
+            for side in 0..2 {
+                if let Some((leg, _)) = &tracks.legs[side]
+                    && task.options.feet[side] > 0.0
+                {
+                    let shift = self.foot_shifts[side][frame] - Vec3::Y * self.heights[frame];
+                    turn(leg, frame, shift, local);
+                }
+                if let Some(arm) = &tracks.arms[side]
+                    && task.options.hands[side] > 0.0
+                {
+                    turn(arm, frame, self.hand_shifts[side][frame], local);
+                }
             }
         }
     }
-    let roots = task.plain.root_translations().iter().zip(&heights);
-    let roots = roots.map(|(root, height)| *root + Vec3::Y * (rise + height)).collect();
-    let skeleton = Arc::clone(task.target.skeleton);
-    let made = Clip::new(task.plain.name(), skeleton, task.plain.fps(), rotations, roots)?;
-    let clip = made.with_provenance(task.plain.provenance());
-    Ok(Solved { clip, goals, tracks })
+
+    /// Returns the clip with feet and hands at their places, when all frames are done.
+    pub(super) fn clip(&mut self, task: &Task) -> Result<Clip, ClipError> {
+        let roots = task.plain.root_translations().iter().zip(&self.heights);
+        let roots = roots.map(|(root, height)| *root + Vec3::Y * (self.rise + height)).collect();
+        let (skeleton, rotations) =
+            (Arc::clone(&task.target.skeleton), std::mem::take(&mut self.rotations));
+        let made = Clip::new(task.plain.name(), skeleton, task.plain.fps(), rotations, roots)?;
+        Ok(made.with_provenance(task.plain.provenance()))
+    }
 }
 
 /// Writes the rotations that move the end of a limb by `shift` relative to its start.

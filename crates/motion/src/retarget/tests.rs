@@ -2,18 +2,19 @@
 
 use super::*;
 use crate::clip::fixtures::wander;
-use crate::clip::{ContactOptions, Contacts};
+use crate::clip::{ContactOptions, Contacts, retarget};
 use crate::skeleton::{Joint, fixtures};
 use crate::synth::{Action, Params, synthesize};
 use glam::Quat;
 use proptest::prelude::*;
+use std::ops::ControlFlow;
 
 fn synthesised(action: Action) -> Motion {
     Motion::analyze(synthesize(&Params::new(action)).unwrap().clip)
 }
 
-fn body<'a>(skeleton: &'a Arc<Skeleton>, roles: &'a Roles) -> TargetBody<'a> {
-    TargetBody { skeleton, roles, model: None }
+fn body(skeleton: &Arc<Skeleton>, roles: &Roles) -> TargetBody {
+    TargetBody::at_rest(skeleton, roles)
 }
 
 fn full(source: &Motion, skeleton: &Arc<Skeleton>) -> RetargetedMotion {
@@ -52,6 +53,30 @@ fn retarget_motion_to_the_same_rig_is_the_clip() {
     for (new, &old) in order.iter().enumerate() {
         let (a, b) = (walk.clip().world_pose(40), made.clip.world_pose(40));
         assert!(a.positions[old].distance(b.positions[new]) < 1e-5);
+    }
+}
+
+/// Slices of any length give the same bits as one, and their progress grows.
+#[test]
+fn motion_retargeting_in_slices_equals_retarget_motion() {
+    let walk = Arc::new(synthesised(Action::Walk));
+    for (name, skeleton, _) in fixtures::all() {
+        let target = body(&skeleton, &Roles::detect(&skeleton));
+        let whole = retarget_motion(&walk, &target, &RetargetOptions::default()).unwrap();
+        let options = RetargetOptions::default();
+        let mut work = MotionRetargeting::new(Arc::clone(&walk), target, options).unwrap();
+        let (mut slices, mut before) = (0, -1.0);
+        let made = loop {
+            assert!(work.progress() > before && work.progress() < 1.0, "{name} {before}");
+            (before, slices) = (work.progress(), slices + 1);
+            work = match work.advance(23).unwrap() {
+                ControlFlow::Continue(rest) => rest,
+                ControlFlow::Break(made) => break made,
+            };
+        };
+        assert_eq!(made.clip, whole.clip, "{name}");
+        assert_eq!(made.report, whole.report, "{name}");
+        assert!(slices > 5 * walk.clip().frames() / 23 || *walk.clip().skeleton() == skeleton);
     }
 }
 
@@ -158,7 +183,7 @@ fn retarget_motion_to_other_rest_poses_keeps_positions() {
     let poses = (0..first.clip.frames())
         .map(|frame| fixtures::turned_pose(&target, &turns, &first.clip.pose(frame)));
     let model = Clip::from_poses("turned", Arc::clone(&turned), walk.clip().fps(), poses).unwrap();
-    let onto = TargetBody { skeleton: &turned, roles: &roles, model: Some(&model) };
+    let onto = TargetBody::of_clip(&model, &roles);
     let third = retarget_motion(&walk, &onto, &RetargetOptions::default()).unwrap();
     let ends = Side::BOTH.into_iter().flat_map(|side| [Role::foot(side), Role::shin(side)]);
     let ends: Vec<Role> = ends.chain([Role::Hips]).collect();

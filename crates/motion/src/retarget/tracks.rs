@@ -2,10 +2,10 @@
 
 use super::{Task, foot_points};
 use crate::clip::Clip;
-use crate::clip::reference_pose;
 use crate::skeleton::{Roles, Side, Skeleton, WorldPose, canonical_stance};
 use crate::transition::{Limb, LimbPose};
 use glam::Vec3;
+use std::ops::Range;
 
 /// The mean sine of the flexion over a clip from which on the motion is believed about the axis of
 /// a knee, even if that contradicts the body at rest: the hind legs of animals bend the other way.
@@ -14,6 +14,7 @@ const OWN_AXIS_SINE: f32 = 0.2;
 const REST_AXIS_SINE: f32 = 0.02;
 
 /// A leg or an arm of both bodies.
+#[derive(Debug)]
 pub(super) struct LimbTrack {
     pub(super) limb: Limb,
     /// The target's limb with the directions of the source's, frame by frame.
@@ -27,6 +28,7 @@ pub(super) struct LimbTrack {
 }
 
 /// The feet of both bodies: ankle, ball and tip in each frame.
+#[derive(Debug)]
 pub(super) struct FootTrack {
     /// The kinds of points that the source has, and the target.
     pub(super) has: [[bool; 3]; 2],
@@ -35,13 +37,18 @@ pub(super) struct FootTrack {
 }
 
 /// Everything that is read of both clips.
+#[derive(Debug)]
 pub(super) struct Tracks {
     /// Legs with their feet, and arms; left, then right.
     pub(super) legs: [Option<(LimbTrack, FootTrack)>; 2],
     pub(super) arms: [Option<LimbTrack>; 2],
+    /// The limbs of the source, and of the target.
+    theirs: Limbs,
+    ours: Limbs,
 }
 
 /// The limbs of one body.
+#[derive(Debug)]
 struct Limbs {
     legs: [Option<Limb>; 2],
     arms: [Option<Limb>; 2],
@@ -64,10 +71,10 @@ impl Limbs {
 }
 
 impl Tracks {
-    /// Reads the limbs that both bodies have.
-    pub(super) fn of(task: &Task) -> Self {
-        let (clip, target) = (task.source.clip(), task.target);
-        let mut ours = Limbs::of(target.skeleton, target.roles);
+    /// Returns tracks of the limbs that both bodies have, without a frame.
+    pub(super) fn new(task: &Task) -> Self {
+        let (clip, target) = (task.source.clip(), &task.target);
+        let mut ours = Limbs::of(&target.skeleton, &target.roles);
         let mut theirs = Limbs::of(clip.skeleton(), task.source.roles());
         for side in 0..2 {
             if ours.legs[side].is_none() || theirs.legs[side].is_none() {
@@ -92,20 +99,25 @@ impl Tracks {
             source: Vec::with_capacity(frames),
             target: Vec::with_capacity(frames),
         };
-        let mut made = Self {
+        Self {
             legs: [0, 1].map(|side| Some((track(&ours.legs[side])?, foot(side)))),
             arms: [0, 1].map(|side| track(&ours.arms[side])),
-        };
-        made.read_source(clip, &theirs);
-        made.read_target(task.plain, &ours);
-        made.find_axes(task);
-        made
+            theirs,
+            ours,
+        }
     }
 
-    fn read_source(&mut self, clip: &Clip, limbs: &Limbs) {
+    /// Adds these frames, which follow those that were read.
+    pub(super) fn read(&mut self, task: &Task, frames: Range<usize>) {
+        self.read_source(task.source.clip(), frames.clone());
+        self.read_target(&task.plain, frames);
+    }
+
+    fn read_source(&mut self, clip: &Clip, frames: Range<usize>) {
+        let limbs = &self.theirs;
         let needed = clip.skeleton().with_ancestors(limbs.joints());
         let mut world = WorldPose::default();
-        for frame in 0..clip.frames() {
+        for frame in frames {
             clip.world_pose_of(frame, &needed, &mut world);
             let read = |limb: &Limb| {
                 let [start, middle, end] = limb.joints().map(|joint| world.positions[joint]);
@@ -123,10 +135,11 @@ impl Tracks {
         }
     }
 
-    fn read_target(&mut self, clip: &Clip, limbs: &Limbs) {
+    fn read_target(&mut self, clip: &Clip, frames: Range<usize>) {
+        let limbs = &self.ours;
         let needed = clip.skeleton().with_ancestors(limbs.joints());
         let mut world = WorldPose::default();
-        for frame in 0..clip.frames() {
+        for frame in frames {
             clip.world_pose_of(frame, &needed, &mut world);
             let push = |track: &mut LimbTrack| {
                 track.posed.push(track.limb.pose(&world));
@@ -144,15 +157,11 @@ impl Tracks {
         }
     }
 
-    /// Finds the axes of knees and elbows: that about which the motion bends them, with the sign
-    /// that the body at rest says where the motion hardly bends them.
-    fn find_axes(&mut self, task: &Task) {
-        let target = task.target;
-        let rest = match target.model {
-            Some(model) => reference_pose(model, target.roles),
-            None => target.skeleton.rest_pose(),
-        };
-        let stance = canonical_stance(target.skeleton, target.roles, &rest);
+    /// Finds the axes of knees and elbows when all frames are read: that about which the motion
+    /// bends them, with the sign that the body at rest says where the motion hardly bends them.
+    pub(super) fn find_axes(&mut self, task: &Task) {
+        let target = &task.target;
+        let stance = canonical_stance(&target.skeleton, &target.roles, &target.reference);
         // A knee bends backwards, an elbow forwards.
         let legs = self.legs.iter_mut().flatten().map(|(leg, _)| (leg, Vec3::NEG_Z));
         let arms = self.arms.iter_mut().flatten().map(|arm| (arm, Vec3::Z));

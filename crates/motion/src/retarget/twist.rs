@@ -1,10 +1,11 @@
 //! Twist that is spread over the joints that a rig has for it.
 
 use super::TargetBody;
-use crate::clip::{Clip, ClipError, stance_for_rest};
+use crate::clip::{Clip, ClipError};
 use crate::math::quat;
 use crate::skeleton::{Role, Roles, Side, Skeleton, is_below};
 use glam::{Quat, Vec3};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A joint beside its bone by more than this share of the bone's length is no twist joint.
@@ -24,47 +25,66 @@ struct TwistJoint {
     share: f32,
 }
 
-/// Returns the clip with the twist of its limbs spread over the target's twist joints; unchanged
-/// for a body without any.
-pub(super) fn spread(clip: Clip, target: &TargetBody) -> Result<Clip, ClipError> {
-    let joints = twist_joints(target.skeleton, target.roles);
-    if joints.is_empty() {
-        return Ok(clip);
-    }
-    let stance = target.model.and_then(|model| stance_for_rest(model, target.roles));
-    // The rotation of every joint in its parent's frame that counts as untwisted.
-    let neutral: Vec<Quat> = (0..target.skeleton.len())
-        .map(|joint| match &stance {
+/// The spreading of twist over the target's twist joints, in slices.
+#[derive(Debug)]
+pub(super) struct TwistSpread {
+    joints: Vec<TwistJoint>,
+    /// The rotation of every joint in its parent's frame that counts as untwisted.
+    neutral: Vec<Quat>,
+    /// The angle of each twist joint's limb in the frame before, radians.
+    before: Vec<f32>,
+    rotations: Vec<Quat>,
+}
+
+impl TwistSpread {
+    /// Prepares spreading for a clip of a body; `None` for a body without twist joints.
+    pub(super) fn new(target: &TargetBody) -> Option<Self> {
+        let joints = twist_joints(&target.skeleton, &target.roles);
+        if joints.is_empty() {
+            return None;
+        }
+        let neutral = |joint: usize| match &target.stance {
             None => Quat::IDENTITY,
             Some(stance) => {
                 let above = target.skeleton.parent(joint).map(|parent| stance.rotations[parent]);
                 above.unwrap_or_default().conjugate() * stance.rotations[joint]
             }
+        };
+        Some(Self {
+            neutral: (0..target.skeleton.len()).map(neutral).collect(),
+            before: vec![0.0; joints.len()],
+            rotations: Vec::new(),
+            joints,
         })
-        .collect();
-    let mut before = vec![0.0f32; joints.len()];
-    let mut rotations = Vec::with_capacity(clip.frames() * target.skeleton.len());
-    for frame in 0..clip.frames() {
-        let first = rotations.len();
-        rotations.extend_from_slice(clip.rotations(frame));
-        let local = &mut rotations[first..];
-        for (twisted, before) in joints.iter().zip(&mut before) {
-            let own = local[twisted.of] * neutral[twisted.of].conjugate();
-            let angle = twist_angle(own, twisted.axis, *before);
-            *before = angle;
-            local[twisted.joint] = quat::renormalize(
-                Quat::from_axis_angle(twisted.axis, angle * twisted.share) * neutral[twisted.joint],
-            );
+    }
+
+    /// Spreads the twist of these frames, which follow those that are done.
+    pub(super) fn spread(&mut self, clip: &Clip, frames: Range<usize>) {
+        for frame in frames {
+            let first = self.rotations.len();
+            self.rotations.extend_from_slice(clip.rotations(frame));
+            let (local, neutral) = (&mut self.rotations[first..], &self.neutral);
+            for (twisted, before) in self.joints.iter().zip(&mut self.before) {
+                let own = local[twisted.of] * neutral[twisted.of].conjugate();
+                let angle = twist_angle(own, twisted.axis, *before);
+                *before = angle;
+                let share = Quat::from_axis_angle(twisted.axis, angle * twisted.share);
+                local[twisted.joint] = quat::renormalize(share * neutral[twisted.joint]);
+            }
         }
     }
-    let made = Clip::new(
-        clip.name(),
-        Arc::clone(clip.skeleton()),
-        clip.fps(),
-        rotations,
-        clip.root_translations().to_vec(),
-    )?;
-    Ok(made.with_translations(clip.translations().to_vec())?.with_provenance(clip.provenance()))
+
+    /// Returns the clip with the twist spread, when all frames are done.
+    pub(super) fn clip(self, clip: &Clip) -> Result<Clip, ClipError> {
+        let made = Clip::new(
+            clip.name(),
+            Arc::clone(clip.skeleton()),
+            clip.fps(),
+            self.rotations,
+            clip.root_translations().to_vec(),
+        )?;
+        Ok(made.with_translations(clip.translations().to_vec())?.with_provenance(clip.provenance()))
+    }
 }
 
 /// Returns the angle of the twist of a rotation about a unit axis, radians: that of swing and
@@ -157,8 +177,9 @@ mod tests {
         let clip =
             Clip::new("twist", Arc::clone(&skeleton), 30.0, rotations, vec![Vec3::ZERO; frames])
                 .unwrap();
-        let body = TargetBody { skeleton: &skeleton, roles: &roles, model: None };
-        let made = spread(clip.clone(), &body).unwrap();
+        let mut twist = TwistSpread::new(&TargetBody::at_rest(&skeleton, &roles)).unwrap();
+        twist.spread(&clip, 0..frames);
+        let made = twist.clip(&clip).unwrap();
         for frame in 0..frames {
             let angle = 0.5 * frame as f32;
             let own = |name: &str| {

@@ -49,7 +49,9 @@ impl<S: HasPart<Pairs> + HasPart<BlendCache>> Lab<S> for BlendLab {
         params: &Params,
         match_window: usize,
     ) -> Result<Option<Inputs>, LabError> {
-        let pair = HasPart::<Pairs>::part(labs).of_slots(&clips.slots)?;
+        let Some(pair) = HasPart::<Pairs>::part(labs).of_slots(&clips.slots, params)? else {
+            return Ok(None);
+        };
         Ok(Some(Inputs::new(HasPart::<BlendCache>::part(labs).inputs(
             &pair,
             params,

@@ -59,8 +59,9 @@ pub(crate) struct LabSet {
 
 impl LabSet {
     /// Returns all sliced work, in the order of scheduling.
-    fn sliced(&self) -> [&dyn Sliced; 8] {
+    fn sliced(&self) -> [&dyn Sliced; 9] {
         [
+            &self.pairs,
             &self.blends,
             &self.registrations,
             &self.views,
@@ -72,8 +73,9 @@ impl LabSet {
         ]
     }
 
-    fn sliced_mut(&mut self) -> [&mut dyn Sliced; 8] {
+    fn sliced_mut(&mut self) -> [&mut dyn Sliced; 9] {
         [
+            &mut self.pairs,
             &mut self.blends,
             &mut self.registrations,
             &mut self.views,

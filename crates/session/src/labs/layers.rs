@@ -38,7 +38,9 @@ impl<S: HasPart<Pairs> + HasPart<LayerCache>> Lab<S> for LayersLab {
         params: &Params,
         _match_window: usize,
     ) -> Result<Option<Inputs>, LabError> {
-        let pair = HasPart::<Pairs>::part(labs).of_slots(&clips.slots)?;
+        let Some(pair) = HasPart::<Pairs>::part(labs).of_slots(&clips.slots, params)? else {
+            return Ok(None);
+        };
         Ok(Some(Inputs::new(HasPart::<LayerCache>::part(labs).inputs(&pair, params)?)))
     }
 }

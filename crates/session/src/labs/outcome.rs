@@ -6,6 +6,7 @@ use segue_motion::clip::{Clip, Motion};
 use segue_motion::gait::GaitFacts;
 use segue_motion::math::Planar;
 use segue_motion::metrics::{MotionTrace, ResultMetrics};
+use segue_motion::retarget::{RetargetErrors, RetargetOptions};
 use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
@@ -102,11 +103,15 @@ pub struct MatchSearch {
 }
 
 /// A report on retargeting B.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct RetargetReport {
     /// The joints of A's skeleton without a counterpart in B, by name, parents first: they keep
     /// their rest pose.
     pub unmatched: Vec<String>,
+    /// The errors that remain.
+    pub errors: RetargetErrors,
+    /// The weights of feet and hands.
+    pub options: RetargetOptions,
 }
 
 /// The cycle that a result repeats.

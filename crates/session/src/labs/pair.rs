@@ -1,10 +1,20 @@
 //! Two clips on one skeleton and at one frame rate.
 
 use super::RetargetReport;
+use super::sliced::{JobKind, Sliced};
 use crate::labs::LabError;
-use segue_motion::clip::{Clip, Interpolation, Motion, resample, retarget_onto};
+use crate::params::{Key, Params};
+use segue_motion::clip::{Clip, Interpolation, Motion, resample};
+use segue_motion::retarget::{MotionRetargeting, RetargetOptions, RetargetedMotion, TargetBody};
 use segue_motion::skeleton::Retargeting;
+use std::ops::ControlFlow;
 use std::sync::Arc;
+
+/// Clips of up to this number of frames are retargeted at once.
+const AT_ONCE: usize = 400;
+/// The number of frames in one slice of work, in one of six passes: about a millisecond in a
+/// browser.
+pub(super) const FRAMES_PER_SLICE: usize = 250;
 
 /// Two clips on one skeleton and at one frame rate.
 #[derive(Debug)]
@@ -15,6 +25,7 @@ pub(crate) struct Pair {
     pub(super) incoming: Arc<Motion>,
     /// The retargeting of B; `None` if its skeleton is A's.
     pub(super) retargeted: Option<Arc<RetargetReport>>,
+    options: RetargetOptions,
 }
 
 impl Pair {
@@ -29,78 +40,240 @@ impl Pair {
         [&self.a, &self.incoming].map(|motion| Arc::clone(motion.clip())).into()
     }
 
-    fn new(a: &Arc<Motion>, b: &Arc<Motion>) -> Result<Self, LabError> {
-        let (incoming, retargeted) = fitted(a, b)?;
-        Ok(Self { a: Arc::clone(a), b: Arc::clone(b), incoming, retargeted })
+    /// Returns whether it is the pair of these clips. Clips of one skeleton need no options.
+    fn is_of(&self, a: &Arc<Motion>, b: &Arc<Motion>, options: RetargetOptions) -> bool {
+        Arc::ptr_eq(&self.a, a)
+            && Arc::ptr_eq(&self.b, b)
+            && (self.options == options || self.retargeted.is_none())
     }
 }
 
-/// Returns B on the skeleton and at the frame rate of A, and the report on retargeting if it was
-/// needed.
-pub(super) fn fitted(
-    a: &Arc<Motion>,
-    b: &Arc<Motion>,
-) -> Result<(Arc<Motion>, Option<Arc<RetargetReport>>), LabError> {
-    let same_skeleton = Arc::ptr_eq(a.clip().skeleton(), b.clip().skeleton())
-        || a.clip().skeleton() == b.clip().skeleton();
-    let same_rate = (a.clip().fps() - b.clip().fps()).abs() <= 1e-4 * a.clip().fps();
-    if same_skeleton && same_rate {
-        return Ok((Arc::clone(b), None));
+/// Returns the options of retargeting that the parameters say.
+pub(super) fn retarget_options(params: &Params) -> RetargetOptions {
+    let weight = |key| params.number(key) as f32;
+    RetargetOptions::weights(weight(Key::RetargetFeet), weight(Key::RetargetHands))
+}
+
+/// B on the skeleton and at the frame rate of A, and the report on retargeting if it was needed.
+pub(super) type FittedClip = (Arc<Motion>, Option<Arc<RetargetReport>>);
+
+/// The fitting of B to the skeleton and the frame rate of A, in slices.
+#[derive(Debug)]
+pub(super) struct Fitting {
+    a: Arc<Motion>,
+    b: Arc<Motion>,
+    options: RetargetOptions,
+    /// B at the frame rate of A.
+    source: Arc<Motion>,
+    work: MotionRetargeting,
+}
+
+impl Fitting {
+    /// Begins to fit B to A. Returns the result at once if both have one skeleton.
+    ///
+    /// Feet that are planted at the rate of A stay so: a clip is resampled before it is retargeted.
+    pub(super) fn new(
+        a: &Arc<Motion>,
+        b: &Arc<Motion>,
+        options: RetargetOptions,
+    ) -> Result<ControlFlow<FittedClip, Self>, LabError> {
+        let same_skeleton = Arc::ptr_eq(a.clip().skeleton(), b.clip().skeleton())
+            || a.clip().skeleton() == b.clip().skeleton();
+        let (rate, rate_b) = (a.clip().fps(), b.clip().fps());
+        let same_rate = (rate - rate_b).abs() <= 1e-4 * rate;
+        if same_skeleton {
+            if same_rate {
+                return Ok(ControlFlow::Break((Arc::clone(b), None)));
+            }
+            let clip = Arc::new(resample(b.clip(), rate, Interpolation::Cubic)?);
+            let motion = Motion::with_roles(clip, b.roles())
+                .with_feet(b.feet())
+                .with_contact_corrections(b.contact_corrections().at_rate(rate / rate_b));
+            return Ok(ControlFlow::Break((Arc::new(like(b, rate, motion)), None)));
+        }
+        let mut source = Arc::clone(b);
+        if !same_rate {
+            let ground_m = b.ground_m();
+            source = Arc::new(b.resampled(rate, Interpolation::Cubic)?.with_ground_m(ground_m));
+        }
+        let work = MotionRetargeting::new(Arc::clone(&source), TargetBody::of(a), options)?;
+        let (a, b) = (Arc::clone(a), Arc::clone(b));
+        Ok(ControlFlow::Continue(Self { a, b, options, source, work }))
     }
-    let mut clip = Arc::clone(b.clip());
-    if !same_skeleton {
-        clip = Arc::new(retarget_onto(&clip, b.roles(), a.clip(), a.roles())?);
+
+    /// Does one slice of up to `frames` frames.
+    pub(super) fn advance(self, frames: usize) -> Result<ControlFlow<FittedClip, Self>, LabError> {
+        let Self { a, b, options, source, work } = self;
+        let RetargetedMotion { clip, report } = match work.advance(frames)? {
+            ControlFlow::Continue(work) => {
+                return Ok(ControlFlow::Continue(Self { a, b, options, source, work }));
+            }
+            ControlFlow::Break(made) => made,
+        };
+        // A foot of the result is held where the source's is planted.
+        let motion = Motion::with_roles(clip, a.roles())
+            .with_feet(b.feet())
+            .with_contacts(source.contacts().clone());
+        let motion = like(&b, a.clip().fps(), motion);
+        let report = RetargetReport { unmatched: unmatched(&a, &b), errors: report, options };
+        Ok(ControlFlow::Break((Arc::new(motion), Some(Arc::new(report)))))
     }
-    if !same_rate {
-        clip = Arc::new(resample(&clip, a.clip().fps(), Interpolation::Cubic)?);
+
+    /// Returns the progress, 0 to 1.
+    pub(super) fn progress(&self) -> f32 {
+        self.work.progress()
     }
-    let roles = if same_skeleton { b.roles().clone() } else { a.roles().clone() };
-    let retargeted = (!same_skeleton).then(|| Arc::new(RetargetReport::between(a, b)));
-    let (rate, rate_b) = (a.clip().fps(), b.clip().fps());
+}
+
+/// Returns a motion that is B at another rate, with B's seams.
+fn like(b: &Motion, rate: f64, motion: Motion) -> Motion {
+    let rate_b = b.clip().fps();
     let seams = b.seams_at(|frame| (frame as f64 * rate / rate_b).round() as usize);
-    let motion = Motion::with_roles(clip, &roles)
-        .with_feet(b.feet())
-        .with_contact_corrections(b.contact_corrections().at_rate(rate / rate_b))
-        .with_seams(seams)
-        .declared_cycle(b.is_cycle());
-    Ok((Arc::new(motion), retargeted))
+    motion.with_seams(seams).declared_cycle(b.is_cycle())
 }
 
-impl RetargetReport {
-    /// Compares the skeletons of `a` and `b`.
-    fn between(a: &Motion, b: &Motion) -> Self {
-        let skeleton = a.clip().skeleton();
-        let way = Retargeting::new(b.clip().skeleton(), b.roles(), skeleton, a.roles());
-        let joints = skeleton.joints().iter().enumerate();
-        let unmoved = joints.filter(|(joint, _)| way.as_ref().is_none_or(|way| !way.moves(*joint)));
-        Self { unmatched: unmoved.map(|(_, joint)| joint.name.clone()).collect() }
-    }
+/// Returns the names of the joints of A's skeleton that B does not move.
+fn unmatched(a: &Motion, b: &Motion) -> Vec<String> {
+    let skeleton = a.clip().skeleton();
+    let way = Retargeting::new(b.clip().skeleton(), b.roles(), skeleton, a.roles());
+    let joints = skeleton.joints().iter().enumerate();
+    let unmoved = joints.filter(|(joint, _)| way.as_ref().is_none_or(|way| !way.moves(*joint)));
+    unmoved.map(|(_, joint)| joint.name.clone()).collect()
 }
 
-/// A cache of the last pair, which labs and panes share.
+/// A cache of pairs, which labs and panes share. Those that no pane asks for any more are dropped.
 #[derive(Debug, Default)]
-pub(crate) struct Pairs(Option<Arc<Pair>>);
+pub(crate) struct Pairs {
+    known: Vec<Known>,
+    under_way: Vec<Pending>,
+    /// Whether a requested pair is available and has not been fetched yet.
+    is_ready: bool,
+}
+
+#[derive(Debug)]
+struct Known {
+    is_wanted: bool,
+    of: (Arc<Motion>, Arc<Motion>, RetargetOptions),
+    pair: Result<Arc<Pair>, LabError>,
+}
+
+#[derive(Debug)]
+struct Pending {
+    is_wanted: bool,
+    fitting: Fitting,
+}
 
 impl Pairs {
     /// Returns the pair of a lab's slots, as [`of`](Self::of) does.
-    pub(crate) fn of_slots(&mut self, slots: &[Arc<Motion>]) -> Result<Arc<Pair>, LabError> {
+    pub(crate) fn of_slots(
+        &mut self,
+        slots: &[Arc<Motion>],
+        params: &Params,
+    ) -> Result<Option<Arc<Pair>>, LabError> {
         match slots {
-            [a, b] => self.of(a, b),
+            [a, b] => self.of(a, b, params),
             _ => Err(LabError::NoPair),
         }
     }
 
-    /// Returns B on the skeleton and at the rate of A.
-    pub(crate) fn of(&mut self, a: &Arc<Motion>, b: &Arc<Motion>) -> Result<Arc<Pair>, LabError> {
-        if let Some(pair) = &self.0
-            && Arc::ptr_eq(&pair.a, a)
-            && Arc::ptr_eq(&pair.b, b)
-        {
-            return Ok(Arc::clone(pair));
+    /// Returns B on the skeleton and at the rate of A; `None` if that takes longer than a frame:
+    /// call [`work`](Self::work), then ask again.
+    pub(crate) fn of(
+        &mut self,
+        a: &Arc<Motion>,
+        b: &Arc<Motion>,
+        params: &Params,
+    ) -> Result<Option<Arc<Pair>>, LabError> {
+        let options = retarget_options(params);
+        let is_it = |known: &&mut Known| match &known.pair {
+            Ok(pair) => pair.is_of(a, b, options),
+            Err(_) => {
+                let (known_a, known_b, by) = &known.of;
+                Arc::ptr_eq(known_a, a) && Arc::ptr_eq(known_b, b) && *by == options
+            }
+        };
+        if let Some(known) = self.known.iter_mut().find(is_it) {
+            known.is_wanted = true;
+            return known.pair.clone().map(Some);
         }
-        let pair = Arc::new(Pair::new(a, b)?);
-        self.0 = Some(Arc::clone(&pair));
-        Ok(pair)
+        let is_it = |pending: &&mut Pending| {
+            let Fitting { a: known_a, b: known_b, options: by, .. } = &pending.fitting;
+            Arc::ptr_eq(known_a, a) && Arc::ptr_eq(known_b, b) && *by == options
+        };
+        if let Some(pending) = self.under_way.iter_mut().find(is_it) {
+            pending.is_wanted = true;
+            return Ok(None);
+        }
+        let mut next = Fitting::new(a, b, options)?;
+        let fitted = loop {
+            next = match next {
+                ControlFlow::Break(fitted) => break fitted,
+                ControlFlow::Continue(fitting) if fitting.source.clip().frames() <= AT_ONCE => {
+                    fitting.advance(AT_ONCE)?
+                }
+                ControlFlow::Continue(fitting) => {
+                    self.under_way.push(Pending { is_wanted: true, fitting });
+                    return Ok(None);
+                }
+            };
+        };
+        self.keep((Arc::clone(a), Arc::clone(b), options), Ok(fitted)).map(Some)
+    }
+
+    fn keep(
+        &mut self,
+        of: (Arc<Motion>, Arc<Motion>, RetargetOptions),
+        fitted: Result<FittedClip, LabError>,
+    ) -> Result<Arc<Pair>, LabError> {
+        let pair = fitted.map(|(incoming, retargeted)| {
+            let (a, b, options) = of.clone();
+            Arc::new(Pair { a, b, incoming, retargeted, options })
+        });
+        self.known.push(Known { is_wanted: true, of, pair: pair.clone() });
+        pair
+    }
+}
+
+impl Sliced for Pairs {
+    fn clear_requests(&mut self) {
+        self.is_ready = false;
+        self.known.retain(|known| known.is_wanted);
+        for known in &mut self.known {
+            known.is_wanted = false;
+        }
+        for pending in &mut self.under_way {
+            pending.is_wanted = false;
+        }
+    }
+
+    fn work(&mut self) -> bool {
+        self.under_way.retain(|pending| pending.is_wanted);
+        if self.under_way.is_empty() {
+            return false;
+        }
+        let Pending { is_wanted, fitting } = self.under_way.remove(0);
+        let of = (Arc::clone(&fitting.a), Arc::clone(&fitting.b), fitting.options);
+        let fitted = match fitting.advance(FRAMES_PER_SLICE) {
+            Ok(ControlFlow::Continue(fitting)) => {
+                self.under_way.insert(0, Pending { is_wanted, fitting });
+                return true;
+            }
+            Ok(ControlFlow::Break(fitted)) => Ok(fitted),
+            Err(error) => Err(error),
+        };
+        // Its error is told when a pane asks for it.
+        self.keep(of, fitted).ok();
+        self.is_ready = true;
+        true
+    }
+
+    fn is_ready(&self) -> bool {
+        self.is_ready
+    }
+
+    fn progress(&self) -> Option<(JobKind, f64)> {
+        let pending = self.under_way.first()?;
+        Some((JobKind::Retargeting, f64::from(pending.fitting.progress())))
     }
 }
 
@@ -135,7 +308,8 @@ mod tests {
             Arc::new(Motion::analyze(synthesize(&params).unwrap().clip))
         };
         let (a, b) = (at(120.0), at(30.0));
-        let (incoming, _) = fitted(&a, &b).unwrap();
+        let fitted = Fitting::new(&a, &b, RetargetOptions::default()).unwrap();
+        let (incoming, _) = fitted.break_value().unwrap();
         assert_eq!(incoming.clip().fps(), 120.0);
         let (made, true_one) =
             (largest_velocity_change(incoming.clip()), largest_velocity_change(a.clip()));

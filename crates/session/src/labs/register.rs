@@ -76,9 +76,17 @@ impl<S: HasPart<Pairs> + HasPart<RegistrationSchedulers>> Lab<S> for RegisterLab
         params: &Params,
         _match_window: usize,
     ) -> Result<Option<Inputs>, LabError> {
-        let pair = HasPart::<Pairs>::part(labs).of_slots(&clips.slots)?;
+        let Some(pair) = HasPart::<Pairs>::part(labs).of_slots(&clips.slots, params)? else {
+            return Ok(None);
+        };
         let weights = params.weighted_clips().iter().map(|(_, weight)| *weight);
-        let also: Vec<_> = clips.motions().into_iter().zip(weights).collect();
+        let more: Result<Vec<_>, LabError> = (clips.motions().iter())
+            .map(|motion| HasPart::<Pairs>::part(labs).of(&pair.a, motion, params))
+            .collect();
+        let Some(more) = more?.into_iter().collect::<Option<Vec<_>>>() else {
+            return Ok(None);
+        };
+        let also: Vec<_> = more.into_iter().zip(weights).collect();
         Ok(HasPart::<RegistrationSchedulers>::part(labs)
             .inputs(&pair, &also, params)?
             .map(Inputs::new))

@@ -9,6 +9,8 @@ pub enum JobKind {
     Registering,
     /// The construction of a motion graph.
     BuildingGraph,
+    /// The retargeting of a clip to another skeleton.
+    Retargeting,
     /// The locking of planted feet.
     HoldingFeet,
     /// The search for faults of a take, and their mends.
@@ -29,6 +31,7 @@ impl JobKind {
             Self::Matching => "matching",
             Self::Registering => "registering",
             Self::BuildingGraph => "graphing",
+            Self::Retargeting => "retargeting",
             Self::HoldingFeet => "holding feet",
             Self::Cleaning => "cleaning",
             Self::BuildingDatabase => "building the database",

@@ -7,6 +7,7 @@ use crate::ui::language::{Text, Word, say};
 use crate::ui::out::{Action, Out};
 use crate::ui::rows::{
     Detail, add_clip_ui, clip_list_ui, clip_sets_ui, compare_ui, foot_rows_ui, param_row_ui,
+    retarget_rows_ui,
 };
 use crate::ui::state::UiState;
 use crate::ui::text;
@@ -84,6 +85,16 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         text::moved_onto_first(graph_clips, |name| session.clip_title(name))
     }) {
         kit::note_ui(&words, palette.muted, ui);
+    }
+    if let Some(clips) = session.graph_clips() {
+        let moved: Vec<_> = (clips.names().iter().enumerate())
+            .filter_map(|(clip, name)| {
+                Some((Some(session.clip_title(name)), &**clips.retargeted(clip)?))
+            })
+            .collect();
+        if !moved.is_empty() {
+            retarget_rows_ui(&moved, session, out, ui);
+        }
     }
 }
 

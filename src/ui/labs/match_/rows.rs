@@ -11,10 +11,12 @@ use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{RichText, Ui, vec2};
+use segue_motion::clip::Motion;
 use segue_motion::matching::RATE;
 use segue_session::choices;
 use segue_session::{Command, Compare, DriveCommand, Key, List, Selected, Session, Value};
 use segue_text::{Message, ToMessage};
+use std::sync::Arc;
 
 /// Draws the rows of the lab.
 pub(crate) fn drive_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
@@ -239,6 +241,15 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     }
     row(Key::Mirrored, session, out, ui);
     row(Key::MatchCycles, session, out, ui);
+    let motions = || {
+        let entries = ids.iter().filter_map(|id| session.library().find(id));
+        entries.filter_map(|entry| entry.motion.as_ref())
+    };
+    let skeleton = |motion: &Arc<Motion>| Arc::clone(motion.clip().skeleton());
+    if motions().skip(1).any(|motion| Some(skeleton(motion)) != motions().next().map(skeleton)) {
+        row(Key::RetargetFeet, session, out, ui);
+        row(Key::RetargetHands, session, out, ui);
+    }
     if session.is_driven() {
         row(Key::Crowd, session, out, ui);
     }

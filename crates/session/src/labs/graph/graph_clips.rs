@@ -2,6 +2,7 @@
 
 use crate::labs::LabError;
 use crate::labs::RetargetReport;
+use crate::labs::pair::FittedClip;
 use segue_motion::clip::Motion;
 use segue_motion::graph::{FrameSet, JoltSearch, WalkProfile};
 use std::sync::Arc;
@@ -19,9 +20,6 @@ pub struct GraphClips {
 
 /// The number of frames of single joints that are measured in one slice.
 const JOINT_FRAMES: usize = 12_000;
-
-/// A clip that was fitted to the first, and the report on its retargeting.
-pub(super) type FittedClip = (Arc<Motion>, Option<Arc<RetargetReport>>);
 
 impl GraphClips {
     /// Returns the clips in order; further measurements are made by [`Self::advance`].

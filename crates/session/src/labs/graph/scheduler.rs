@@ -2,12 +2,11 @@
 
 use super::super::sliced::{JobKind, Sliced};
 use super::built_graph::Building;
-use super::graph_clips::FittedClip;
 use super::requests::{GraphKey, WalkRequest};
 use super::walk_builder::WalkBuilder;
 use super::{BuiltGraph, DistanceField, GraphClips, GraphInputs};
 use crate::labs::LabError;
-use crate::labs::pair::fitted;
+use crate::labs::pair::{FRAMES_PER_SLICE, FittedClip, Fitting, retarget_options};
 use crate::params::{MAX_PANES, Params};
 use segue_motion::clip::Motion;
 use segue_motion::graph::{
@@ -15,6 +14,7 @@ use segue_motion::graph::{
     PausedAllSweep,
 };
 use segue_motion::registration::Progress;
+use segue_motion::retarget::RetargetOptions;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -35,7 +35,10 @@ const MAX_CANDIDATES: usize = 800_000;
 pub(crate) struct GraphScheduler {
     /// The requested clips, by name and motion.
     clips: Vec<(String, Arc<Motion>)>,
+    retarget: RetargetOptions,
     fitted: Vec<FittedClip>,
+    /// The clip that is being fitted.
+    fitting: Option<Fitting>,
     /// The clips while they are measured.
     measuring_clips: Option<Box<GraphClips>>,
     graph_clips: Option<Result<Arc<GraphClips>, LabError>>,
@@ -109,7 +112,7 @@ impl GraphScheduler {
         clips: Vec<(String, Arc<Motion>)>,
         params: &Params,
     ) -> Result<Option<GraphInputs>, LabError> {
-        self.set_clips(clips);
+        self.set_clips(clips, retarget_options(params));
         let wanted = WalkRequest::guided(params, self.guide.as_ref(), self.clips.len())?;
         let known = self.builders.iter().find(|(known, _)| *known == wanted);
         let found = match (known, &self.graph_clips) {
@@ -203,7 +206,8 @@ impl GraphScheduler {
             _ if self.known(wanted.graph).is_some() => return Some(0.85),
             _ => {}
         }
-        let fitted = self.fitted.len() as f64 / self.clips.len().max(1) as f64;
+        let fitting = self.fitting.as_ref().map_or(0.0, |fitting| f64::from(fitting.progress()));
+        let fitted = (self.fitted.len() as f64 + fitting) / self.clips.len().max(1) as f64;
         let pairs = self.all.as_ref().map_or(0.0, |all| share(all.progress()));
         let window = wanted.graph.options.blend_window;
         let swept = if self.fields.iter().any(|field| field.window() == window) {
@@ -248,12 +252,12 @@ impl GraphScheduler {
         first.or_else(|| self.wanted.iter().find(short))
     }
 
-    /// Discards everything for other clips.
-    fn set_clips(&mut self, clips: Vec<(String, Arc<Motion>)>) {
+    /// Discards everything for other clips, and for others on the skeleton of the first.
+    fn set_clips(&mut self, clips: Vec<(String, Arc<Motion>)>, retarget: RetargetOptions) {
         let same = clips.len() == self.clips.len()
             && clips.iter().zip(&self.clips).all(|(a, b)| a.0 == b.0 && Arc::ptr_eq(&a.1, &b.1));
-        if !same {
-            *self = Self { clips, guide: self.guide.take(), ..Self::default() };
+        if !same || retarget != self.retarget {
+            *self = Self { clips, retarget, guide: self.guide.take(), ..Self::default() };
         }
     }
 
@@ -321,7 +325,7 @@ impl GraphScheduler {
         Ok(())
     }
 
-    /// Fits the clips to one skeleton, one in each slice.
+    /// Fits the clips to one skeleton, a part of one in each slice.
     fn ready_graph_clips(&mut self) -> Result<Option<Arc<GraphClips>>, LabError> {
         if let Some(graph_clips) = &self.graph_clips {
             return graph_clips.clone().map(Some);
@@ -329,8 +333,13 @@ impl GraphScheduler {
         if let (Some((name, next)), Some((_, first))) =
             (self.clips.get(self.fitted.len()), self.clips.first())
         {
-            match fitted(first, next) {
-                Ok(ready) => self.fitted.push(ready),
+            let slice = match self.fitting.take() {
+                Some(fitting) => fitting.advance(FRAMES_PER_SLICE),
+                None => Fitting::new(first, next, self.retarget),
+            };
+            match slice {
+                Ok(ControlFlow::Continue(fitting)) => self.fitting = Some(fitting),
+                Ok(ControlFlow::Break(ready)) => self.fitted.push(ready),
                 Err(problem) => {
                     self.graph_clips = Some(Err(LabError::OfClip {
                         name: name.clone(),

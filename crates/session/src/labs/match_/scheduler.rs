@@ -7,6 +7,7 @@ use crate::choices;
 use crate::labs::LabError;
 use crate::labs::Outcome;
 use crate::labs::lab::{LabClips, LabInputs};
+use crate::labs::pair::retarget_options;
 use crate::params::{HandTag, Key, MAX_PANES, Params};
 use segue_motion::clip::Motion;
 use segue_motion::matching::{
@@ -43,6 +44,7 @@ impl Source {
                         choices::Normalisation::Block => Normalisation::Block,
                     },
                 },
+                retarget: retarget_options(params),
                 mirrored: params.is_on(Key::Mirrored),
                 cycles: params.is_on(Key::MatchCycles),
             },
@@ -51,8 +53,8 @@ impl Source {
 
     /// Returns whether only the features differ.
     fn has_clips_of(&self, other: &Self) -> bool {
-        (self.options.mirrored, self.options.cycles)
-            == (other.options.mirrored, other.options.cycles)
+        (self.options.mirrored, self.options.cycles, self.options.retarget)
+            == (other.options.mirrored, other.options.cycles, other.options.retarget)
             && self.clips.len() == other.clips.len()
             && self.clips.iter().zip(&other.clips).all(|(a, b)| Arc::ptr_eq(a, b))
     }

@@ -5,9 +5,8 @@ use super::{DistanceMap, ExtraClip, RegisterInputs, RegisteredKind};
 use crate::choices;
 use crate::labs::LabError;
 use crate::labs::feet::Lock;
-use crate::labs::pair::{Pair, Pairs};
+use crate::labs::pair::Pair;
 use crate::params::{Key, MAX_PANES, Params};
-use segue_motion::clip::Motion;
 use segue_motion::registration::{
     PairTerms, PathEnd, PathError, PathOptions, PausedSweep, Registration, RegistrationOptions,
     RegistrationPath, TimeWarpSearch, limb_weights,
@@ -43,17 +42,17 @@ pub(super) struct FoundRegistration {
 #[derive(Debug, Default)]
 pub(crate) struct RegistrationSchedulers {
     b: RegistrationScheduler,
-    also: Vec<(Pairs, RegistrationScheduler)>,
+    also: Vec<RegistrationScheduler>,
 }
 
 impl RegistrationSchedulers {
     /// Prepares the inputs, with which the result is a pure function; `also` are the further clips
-    /// with their weights. `None` if that takes longer than a frame: call [`work`](Self::work),
-    /// then ask again.
+    /// on A's skeleton, with their weights. `None` if that takes longer than a frame: call
+    /// [`work`](Self::work), then ask again.
     pub(crate) fn inputs(
         &mut self,
         pair: &Arc<Pair>,
-        also: &[(Arc<Motion>, f64)],
+        also: &[(Arc<Pair>, f64)],
         params: &Params,
     ) -> Result<Option<RegisterInputs>, LabError> {
         let pins = params.pins().to_vec();
@@ -62,12 +61,12 @@ impl RegistrationSchedulers {
         let also = if matches!(made, RegisteredKind::Join { .. }) { &[] } else { also };
         self.also.resize_with(also.len(), Default::default);
         let mut more = Vec::with_capacity(also.len());
-        for ((motion, weight), (pairs, scheduler)) in also.iter().zip(&mut self.also) {
-            let pair = pairs.of(&pair.a, motion)?;
+        for ((pair, weight), scheduler) in also.iter().zip(&mut self.also) {
             // Pins are pairs of A and B.
-            let wanted = wanted_of(&pair, params, Vec::new())?;
-            let found = scheduler.found(&pair, wanted)?;
-            more.push(found.map(|found| ExtraClip { pair, found, weight: *weight }));
+            let wanted = wanted_of(pair, params, Vec::new())?;
+            let found = scheduler.found(pair, wanted)?;
+            let (pair, weight) = (Arc::clone(pair), *weight);
+            more.push(found.map(|found| ExtraClip { pair, found, weight }));
         }
         let Some((found, also)) = found.zip(more.into_iter().collect::<Option<Vec<_>>>()) else {
             return Ok(None);
@@ -88,11 +87,11 @@ impl RegistrationSchedulers {
     }
 
     fn all(&self) -> impl Iterator<Item = &RegistrationScheduler> {
-        std::iter::once(&self.b).chain(self.also.iter().map(|(_, scheduler)| scheduler))
+        std::iter::once(&self.b).chain(&self.also)
     }
 
     fn all_mut(&mut self) -> impl Iterator<Item = &mut RegistrationScheduler> {
-        std::iter::once(&mut self.b).chain(self.also.iter_mut().map(|(_, scheduler)| scheduler))
+        std::iter::once(&mut self.b).chain(&mut self.also)
     }
 }
 
