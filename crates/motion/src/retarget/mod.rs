@@ -25,6 +25,8 @@
 //! 7. *Twist.* The twist of hands, feet, upper arms and thighs is spread over the joints that a rig
 //!    has for it.
 //!
+//! A motion that is a cycle stays one: the middle of three repetitions is kept.
+//!
 //! ```
 //! use segue_motion::clip::Motion;
 //! use segue_motion::retarget::{RetargetOptions, TargetBody, retarget_motion};

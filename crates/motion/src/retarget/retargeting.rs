@@ -5,7 +5,9 @@ use super::solve::Solution;
 use super::tracks::Tracks;
 use super::twist::TwistSpread;
 use super::{RetargetErrors, RetargetOptions, RetargetedMotion, TargetBody, Task};
-use crate::clip::{Clip, Directions, Motion, RetargetError};
+use crate::clip::{Clip, ClipError, Directions, Motion, RetargetError};
+use crate::math::Planar;
+use crate::transition::repeat_clip;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -21,6 +23,40 @@ pub struct MotionRetargeting {
     stage: Stage,
     /// The number of frames that this stage has done.
     done: usize,
+    /// The cycle of a motion that is one.
+    cycle: Option<Cycle>,
+}
+
+/// A cycle, of which three repetitions are retargeted: the one in the middle begins as it ends.
+#[derive(Debug)]
+struct Cycle {
+    /// The number of frames after which it begins again.
+    frames: usize,
+    /// The transform from one repetition to the next, at the scale of the source.
+    step: Planar,
+}
+
+impl Cycle {
+    /// Returns the cycle of a motion and three repetitions of it; `None` for one that is no cycle.
+    fn of(motion: &Motion) -> Option<(Self, Motion)> {
+        let frames = motion.clip().frames().checked_sub(1).filter(|&frames| frames > 0)?;
+        let places = motion.ground_frames();
+        let (first, end) = (places.first()?, places.get(frames).filter(|_| motion.is_cycle())?);
+        let step = end.after(&first.inverse());
+        let before = motion.clip().crop(0..frames).ok()?.transformed(&step.inverse());
+        let order: Vec<usize> = (0..3 * frames).map(|frame| frame % frames).collect();
+        let three = Motion::with_roles(repeat_clip(&before, &step, 3).ok()?, motion.roles())
+            .with_contacts(motion.contacts().of_frames(&order))
+            .with_ground_m(motion.ground_m());
+        Some((Self { frames, step }, three))
+    }
+
+    /// Returns the cycle in the middle of its repetitions on a body `scale` times as large.
+    fn middle(&self, three: &Clip, scale: f32) -> Result<Clip, ClipError> {
+        let step = Planar { shift: self.step.shift * f64::from(scale), ..self.step };
+        let middle = three.crop(self.frames..2 * self.frames)?;
+        repeat_clip(&middle, &step, 2)?.crop(0..self.frames + 1)
+    }
 }
 
 #[derive(Debug)]
@@ -33,8 +69,8 @@ enum Stage {
     Moving(Box<(Task, Tracks, Solution)>),
     /// The result is measured.
     Measuring(Box<Measuring>),
-    /// Twist is spread.
-    Twisting(Box<(Clip, RetargetErrors, TwistSpread)>),
+    /// Twist is spread; with the report and the scale of the body.
+    Twisting(Box<(Clip, (RetargetErrors, f32), TwistSpread)>),
 }
 
 #[derive(Debug)]
@@ -59,13 +95,16 @@ impl MotionRetargeting {
     ) -> Result<Self, RetargetError> {
         let (clip, skeleton) = (source.clip(), &target.skeleton);
         let is_same = Arc::ptr_eq(clip.skeleton(), skeleton) || clip.skeleton() == skeleton;
+        let (cycle, three) = Cycle::of(&source).filter(|_| !is_same).unzip();
+        let source = three.map_or(source, Arc::new);
+        let (clip, skeleton) = (source.clip(), &target.skeleton);
         let (from, to) = ((&**clip, source.roles()), (skeleton, &target.roles));
         let directions = (!is_same)
             .then(|| Directions::new(from, to, target.stance.as_ref()))
             .transpose()?
             .map(Box::new);
         let (options, stage) = (options.clamped(), Stage::Directions(directions));
-        Ok(Self { source, target, options, stage, done: 0 })
+        Ok(Self { source, target, options, stage, done: 0, cycle })
     }
 
     /// Processes up to `frames` more frames (at least one) of the present pass, of which there are
@@ -81,10 +120,11 @@ impl MotionRetargeting {
         let next = self.done..self.done.saturating_add(frames.max(1)).min(last);
         let is_last = next.end == last;
         self.done = if is_last { 0 } else { next.end };
+        let cycle = self.cycle.as_ref();
         self.stage = match self.stage {
             Stage::Directions(None) => {
                 let clip = Clip::clone(self.source.clip());
-                return Ok(made(clip, RetargetErrors::default()));
+                return made(clip, RetargetErrors::default(), (None, 1.0));
             }
             Stage::Directions(Some(mut directions)) => {
                 let found = directions.advance(self.source.clip(), frames)?;
@@ -92,7 +132,7 @@ impl MotionRetargeting {
                 match found {
                     None => Stage::Directions(Some(directions)),
                     Some((plain, way)) if way.is_same_rig() => {
-                        return Ok(made(plain, RetargetErrors::default()));
+                        return made(plain, RetargetErrors::default(), (cycle, 1.0));
                     }
                     Some((plain, way)) => {
                         let task = Task {
@@ -137,8 +177,10 @@ impl MotionRetargeting {
                     let Measuring { task, tracks, clip, meter, .. } = *at;
                     let report = meter.finish(&tracks);
                     match TwistSpread::new(&task.target) {
-                        None => return Ok(made(clip, report)),
-                        Some(twist) => Stage::Twisting(Box::new((clip, report, twist))),
+                        None => return made(clip, report, (cycle, task.scale)),
+                        Some(twist) => {
+                            Stage::Twisting(Box::new((clip, (report, task.scale), twist)))
+                        }
                     }
                 } else {
                     Stage::Measuring(at)
@@ -148,8 +190,8 @@ impl MotionRetargeting {
                 let (clip, _, twist) = &mut *at;
                 twist.spread(clip, next);
                 if is_last {
-                    let (clip, report, twist) = *at;
-                    return Ok(made(twist.clip(&clip)?, report));
+                    let (clip, (report, scale), twist) = *at;
+                    return made(twist.clip(&clip)?, report, (cycle, scale));
                 }
                 Stage::Twisting(at)
             }
@@ -185,6 +227,14 @@ impl MotionRetargeting {
     }
 }
 
-fn made(clip: Clip, report: RetargetErrors) -> ControlFlow<RetargetedMotion, MotionRetargeting> {
-    ControlFlow::Break(RetargetedMotion { clip, report })
+fn made(
+    clip: Clip,
+    report: RetargetErrors,
+    (cycle, scale): (Option<&Cycle>, f32),
+) -> Result<ControlFlow<RetargetedMotion, MotionRetargeting>, RetargetError> {
+    let clip = match cycle {
+        Some(cycle) => cycle.middle(&clip, scale)?,
+        None => clip,
+    };
+    Ok(ControlFlow::Break(RetargetedMotion { clip, report }))
 }

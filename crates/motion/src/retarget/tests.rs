@@ -80,6 +80,37 @@ fn motion_retargeting_in_slices_equals_retarget_motion() {
     }
 }
 
+/// A cycle ends as it begins, one step further, and its feet are held over its ends.
+#[test]
+fn retarget_motion_of_a_cycle_is_a_cycle() {
+    let walk = synthesised(Action::Walk);
+    let cycle = crate::gait::GaitCycle::find(&walk).unwrap().looped().clone();
+    let frames = cycle.clip.frames();
+    let source = cycle.repeat(2).unwrap().crop(0..frames + 1).unwrap();
+    let source = Motion::analyze(source).declared_cycle(true);
+    let target = stretched(&fixtures::lafan(), &[(Role::shin, 1.2), (Role::thigh, 1.3)]);
+    let made = full(&source, &target).clip;
+    assert_eq!(made.frames(), frames + 1);
+    for (&first, &last) in made.rotations(0).iter().zip(made.rotations(frames)).skip(1) {
+        assert!(crate::math::quat::angle_between(first, last) < 1e-4);
+    }
+    let roles = Roles::detect(&target);
+    let legs = roles.leg_length(&target).unwrap()
+        / source.roles().leg_length(source.clip().skeleton()).unwrap();
+    let steps = [source.clip(), &made].map(|clip| {
+        let hips = Roles::detect(clip.skeleton()).get(Role::Hips).unwrap();
+        [0, frames].map(|frame| clip.world_pose(frame).positions[hips])
+    });
+    let [own, ours] = steps.map(|[from, to]| to - from);
+    assert!((own * legs).distance(ours) < 1e-3, "{own} {ours}");
+    assert!(ours.y.abs() < 1e-5, "{ours}");
+    // The hips are moved as they would be if the cycle went on: without it, they end elsewhere.
+    let open = full(&source.declared_cycle(false), &target).clip;
+    let height = |clip: &Clip, frame: usize| clip.root_translations()[frame].y;
+    let jump = |clip: &Clip| (height(clip, 0) - height(clip, frames)).abs();
+    assert!(jump(&open) > 1e-4 && jump(&made) < 1e-5, "{} {}", jump(&open), jump(&made));
+}
+
 #[test]
 fn retarget_motion_without_weights_keeps_directions() {
     let walk = synthesised(Action::Walk);
