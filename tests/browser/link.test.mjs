@@ -10,7 +10,7 @@ const SMALL = { viewport: [960, 640] };
 const CHOSEN = {
   a: "idle", b: "jump", leave_a: 0.35, enter_b: 0.25, gait: "run", gait_speed: 3.15, make_seconds: 5.5, lab: "make",
   joint: "left hand & 100 % = #1+2", follow_joint: "Kopf, rechts/\"ü\"", in: 0.25, out: 3.75, t: 1.234, play: false,
-  warp_curve: "0-0,100-100", warp_also: "0.3:walk", pins: "12-30,50-71", path: "AAUAAADIAfAByAF3yAF3rAI", others: "walk,run",
+  warp_curve: "0-0,100-100", warp_also: "0.3:walk", pins: "12-30,50-71", path: "AAUAAADIAfAByAF3yAF3rAI", others: "walk,run", edit_body: "run",
   prefer_clip: "walk", clips: "walk,run(turn_rate:20,lean:2)", go_to: "12.5:1,40:0", walk_path: "0:0,1.5:4", jump: "0:52-1:14",
   character: "somebody~0a1b2c3d", match_clips: "walk,run", tags: "walk:0.2-1.5:exclude", ask_tag: "walk", forbid_tag: "turn", contact_edits: "idle:L2-9;-R4-6", drive: "3c.0.s_1o.0.0",
   more_curves: "height,angle", clean_skip: "spike-34,gap-7",

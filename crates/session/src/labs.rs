@@ -61,3 +61,5 @@ pub(super) use speed::{SpeedInputs, middle_mps};
 
 #[cfg(test)]
 mod foot_lock_tests;
+#[cfg(test)]
+mod retarget_tests;

@@ -1,14 +1,19 @@
 //! The Edit lab: a clip, and what is done to it as a whole.
 
-use crate::ui::kit::{self, Icon, MenuItem};
+use crate::ui::kit::{self, Button, Icon, MenuItem};
 use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
 use crate::ui::out::Out;
-use crate::ui::rows::{Detail, Kept, clip_sets_ui, foot_rows_ui, param_row_ui, slot_row_ui};
+use crate::ui::rows::{
+    Detail, Kept, clip_choice_ui, clip_sets_ui, foot_rows_ui, param_row_ui, retarget_rows_ui,
+    slot_row_ui,
+};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::space;
 use eframe::egui::Ui;
-use segue_session::{ClipEdit, Command, Compare, Key, LabId, Remedy, Session, Slot, edits_of};
+use segue_session::{
+    ClipEdit, Command, Compare, Key, LabId, List, Remedy, Session, Slot, edits_of,
+};
 use segue_text::Message;
 
 /// The lab's part of the page.
@@ -39,6 +44,7 @@ pub(super) fn part_keys(session: &Session) -> Option<[Key; 2]> {
 fn edit_ui(session: &Session, _: &mut UiState, out: &mut Out, ui: &mut Ui) {
     clip_sets_ui(session, out, ui);
     slot_row_ui(Slot::A, session, out, ui);
+    body_ui(session, out, ui);
     for group in [
         &[Key::EditFrom, Key::EditTo, Key::AsLoop, Key::Reverse, Key::Mirror][..],
         &[Key::Resample, Key::Scale][..],
@@ -51,6 +57,21 @@ fn edit_ui(session: &Session, _: &mut UiState, out: &mut Out, ui: &mut Ui) {
     }
     ui.add_space(space::S);
     foot_rows_ui(session, out, ui);
+}
+
+/// Draws the choice of the body, and what retargeting did.
+fn body_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
+    let chosen = session.params().clip_ids(Key::EditBody).first().map_or("", String::as_str);
+    if let Some(id) = clip_choice_ui(text::BODY_OF, chosen, session, ui) {
+        out.set_once(Key::EditBody, List::ClipIds(vec![id]).into());
+    }
+    if !chosen.is_empty() && kit::button_ui(Button::new(text::OWN_BODY).outlined(), ui).clicked() {
+        out.set_once(Key::EditBody, List::ClipIds(Vec::new()).into());
+    }
+    let outcome = session.main_outcome();
+    if let Some(retargeted) = outcome.and_then(|outcome| outcome.retargeted.as_ref()) {
+        retarget_rows_ui(&[(None, &**retargeted)], session, out, ui);
+    }
 }
 
 /// Opens the clip beside its mirror image, or goes back to one pane.

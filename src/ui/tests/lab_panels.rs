@@ -230,3 +230,23 @@ fn slider_of_a_window_ends_with_the_shorter_clip() {
         }
     }
 }
+
+#[test]
+fn clip_on_another_body_has_weights_and_a_table_of_errors() {
+    for (name, size, theme) in
+        [("edit-body-desk-dark", DESK, DARK), ("edit-body-phone-light", PHONE, LIGHT)]
+    {
+        let page = page("lab=edit&a=run&edit_body=edit(a:walk,scale:1.2)&play=off&t=0.5");
+        let mut harness = harness(size, theme, page);
+        harness.get_by_label("Weight of feet");
+        harness.get_by_label("Weight of hands");
+        press(text::RETARGET_ERRORS.english(), &mut harness);
+        for line in ["Left foot off by 0 cm", "Right hand off by", "Slide per stance 0 cm"] {
+            harness.get_by_label_contains(line);
+        }
+        picture(name, &mut harness);
+        press(text::OWN_BODY.english(), &mut harness);
+        assert!(harness.state().session.params().clip_ids(Key::EditBody).is_empty());
+        assert!(harness.query_by_label("Weight of feet").is_none());
+    }
+}

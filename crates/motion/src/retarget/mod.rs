@@ -46,8 +46,8 @@
 //! # What it does not do
 //!
 //! The ground is one plane. Hands are held by shoulders and by each other, not by the ground, by
-//! the body or by props. A limb that one of the bodies lacks gets the directions of its bones alone;
-//! of a body on four legs, those that have the roles of a person's legs and arms are placed.
+//! the body or by props. A limb that one of the bodies lacks gets the directions of its bones
+//! alone; of a body on four legs, those that have the roles of a person's legs and arms are placed.
 //!
 //! # Sources
 //!
@@ -174,8 +174,10 @@ impl TargetBody {
 pub struct RetargetedMotion {
     /// The motion.
     pub clip: Clip,
-    /// The errors that remain.
+    /// The errors that remain; none where both bodies are one rig.
     pub report: RetargetErrors,
+    /// Whether both bodies are one rig: every shared joint keeps its position.
+    pub is_same_rig: bool,
 }
 
 /// Retargets a motion to another body: directions of bones first, then the places of feet and

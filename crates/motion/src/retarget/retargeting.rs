@@ -124,7 +124,7 @@ impl MotionRetargeting {
         self.stage = match self.stage {
             Stage::Directions(None) => {
                 let clip = Clip::clone(self.source.clip());
-                return made(clip, RetargetErrors::default(), (None, 1.0));
+                return made(clip, None, (None, 1.0));
             }
             Stage::Directions(Some(mut directions)) => {
                 let found = directions.advance(self.source.clip(), frames)?;
@@ -132,7 +132,7 @@ impl MotionRetargeting {
                 match found {
                     None => Stage::Directions(Some(directions)),
                     Some((plain, way)) if way.is_same_rig() => {
-                        return made(plain, RetargetErrors::default(), (cycle, 1.0));
+                        return made(plain, None, (cycle, 1.0));
                     }
                     Some((plain, way)) => {
                         let task = Task {
@@ -177,7 +177,7 @@ impl MotionRetargeting {
                     let Measuring { task, tracks, clip, meter, .. } = *at;
                     let report = meter.finish(&tracks);
                     match TwistSpread::new(&task.target) {
-                        None => return made(clip, report, (cycle, task.scale)),
+                        None => return made(clip, Some(report), (cycle, task.scale)),
                         Some(twist) => {
                             Stage::Twisting(Box::new((clip, (report, task.scale), twist)))
                         }
@@ -191,7 +191,7 @@ impl MotionRetargeting {
                 twist.spread(clip, next);
                 if is_last {
                     let (clip, (report, scale), twist) = *at;
-                    return made(twist.clip(&clip)?, report, (cycle, scale));
+                    return made(twist.clip(&clip)?, Some(report), (cycle, scale));
                 }
                 Stage::Twisting(at)
             }
@@ -229,12 +229,13 @@ impl MotionRetargeting {
 
 fn made(
     clip: Clip,
-    report: RetargetErrors,
+    report: Option<RetargetErrors>,
     (cycle, scale): (Option<&Cycle>, f32),
 ) -> Result<ControlFlow<RetargetedMotion, MotionRetargeting>, RetargetError> {
     let clip = match cycle {
         Some(cycle) => cycle.middle(&clip, scale)?,
         None => clip,
     };
-    Ok(ControlFlow::Break(RetargetedMotion { clip, report }))
+    let (report, is_same_rig) = (report.unwrap_or_default(), report.is_none());
+    Ok(ControlFlow::Break(RetargetedMotion { clip, report, is_same_rig }))
 }

@@ -1,13 +1,14 @@
 //! The Edit lab: a clip that is trimmed, mirrored and changed in other ways as a whole.
 
 use super::feet::{Lock, slide, slide_before, with_feet};
-use super::lab::{Inputs, Lab, LabClips, LabInputs, can_change_result};
+use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs, can_change_result};
+use super::pair::{Pair, Pairs};
 use super::{Cycle, CycleMade, Outcome};
 use crate::LabId;
 use crate::choices::{Direction, Repeats, Sides};
 use crate::labs::LabError;
 use crate::metrics::{Metric, MetricId};
-use crate::params::{Key, Kind, PARAMS, Param, Params, Value};
+use crate::params::{Key, Kind, List, PARAMS, Param, Params, Value};
 use segue_motion::clip::{Interpolation, Motion, ground_speed};
 use segue_motion::math::Planar;
 use segue_motion::metrics::worst_foot_slide;
@@ -19,7 +20,17 @@ use std::sync::Arc;
 /// The Edit lab: one clip, edited as a whole.
 pub(super) struct EditLab;
 
-impl<S> Lab<S> for EditLab {
+impl<S: HasPart<Pairs>> Lab<S> for EditLab {
+    fn more_clips(&self, params: &Params) -> Result<Vec<String>, LabError> {
+        Ok(params.clip_ids(Key::EditBody).iter().take(1).cloned().collect())
+    }
+
+    fn without_clip(&self, params: &Params, id: &str) -> Vec<(Key, Value)> {
+        let is_body = params.clip_ids(Key::EditBody).iter().any(|body| body == id);
+        let none = || (Key::EditBody, List::ClipIds(Vec::new()).into());
+        is_body.then(none).into_iter().collect()
+    }
+
     fn result_name(&self, params: &Params, a: Message, _b: Message) -> Message {
         let mut parts = edits_of(params);
         parts.insert(0, a);
@@ -35,6 +46,7 @@ impl<S> Lab<S> for EditLab {
             !matches!(param.kind, Kind::Clip)
                 && param.is_ingredient_of(LabId::Edit)
                 && can_change_result(params, param.key)
+                && !(WEIGHTS.contains(&param.key) && params.clip_ids(Key::EditBody).is_empty())
                 && params.is_changed(param.key)
         };
         !PARAMS.iter().any(changes)
@@ -46,18 +58,30 @@ impl<S> Lab<S> for EditLab {
 
     fn inputs(
         &self,
-        _labs: &mut S,
+        labs: &mut S,
         clips: LabClips,
         params: &Params,
         _match_window: usize,
     ) -> Result<Option<Inputs>, LabError> {
+        let (mut motion, mut on_body) = (Arc::clone(clips.first()?), None);
+        if let Some(body) = clips.more.first() {
+            let pairs = HasPart::<Pairs>::part(labs);
+            let Some(pair) = pairs.on_body(&body.motion, &motion, params)? else {
+                return Ok(None);
+            };
+            (motion, on_body) = (Arc::clone(&pair.incoming), Some(pair));
+        }
         Ok(Some(Inputs::new(EditInputs {
-            motion: Arc::clone(clips.first()?),
+            motion,
+            on_body,
             edits: Edits::of(params),
             foot_lock: Lock::of(params),
         })))
     }
 }
+
+/// The parameters that mean something only on another body.
+const WEIGHTS: [Key; 2] = [Key::RetargetFeet, Key::RetargetHands];
 
 /// An edit of a clip of the library that needs no panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -109,6 +133,9 @@ pub fn edits_of(params: &Params) -> Vec<Message> {
     }
     if edits.is_mirrored {
         done.push("mirrored".into());
+    }
+    if !params.clip_ids(Key::EditBody).is_empty() {
+        done.push("on another body".into());
     }
     let spoken = |key: Key| key.param().spoken(params.get(key));
     if edits.fps.is_some() {
@@ -216,7 +243,9 @@ impl Edits {
 /// The inputs of the result. Equal inputs give equal results.
 #[derive(Clone, Debug)]
 struct EditInputs {
+    /// The clip, on another body if it gets one.
     motion: Arc<Motion>,
+    on_body: Option<Arc<Pair>>,
     edits: Edits,
     foot_lock: Option<Lock>,
 }
@@ -264,7 +293,8 @@ impl LabInputs for EditInputs {
                 distance_cm: 0.0,
             },
         });
-        Ok(Outcome { cycle, metrics, ..Outcome::plain(Arc::new(motion)) })
+        let retargeted = self.on_body.as_ref().and_then(|pair| pair.retargeted.clone());
+        Ok(Outcome { cycle, metrics, retargeted, ..Outcome::plain(Arc::new(motion)) })
     }
 }
 

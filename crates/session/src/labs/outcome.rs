@@ -108,8 +108,8 @@ pub struct RetargetReport {
     /// The joints of A's skeleton without a counterpart in B, by name, parents first: they keep
     /// their rest pose.
     pub unmatched: Vec<String>,
-    /// The errors that remain.
-    pub errors: RetargetErrors,
+    /// The errors that remain; `None` where both bodies are one rig, which needs no weights.
+    pub errors: Option<RetargetErrors>,
     /// The weights of feet and hands.
     pub options: RetargetOptions,
 }

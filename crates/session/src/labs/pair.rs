@@ -16,6 +16,22 @@ const AT_ONCE: usize = 400;
 /// browser.
 pub(super) const FRAMES_PER_SLICE: usize = 250;
 
+/// The frame rate of a clip on the skeleton of another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Rate {
+    /// That of the other clip.
+    OfA,
+    /// Its own.
+    Own,
+}
+
+/// The options by which B is put on A's skeleton.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct FittingOptions {
+    pub(super) rate: Rate,
+    pub(super) retarget: RetargetOptions,
+}
+
 /// Two clips on one skeleton and at one frame rate.
 #[derive(Debug)]
 pub(crate) struct Pair {
@@ -25,7 +41,7 @@ pub(crate) struct Pair {
     pub(super) incoming: Arc<Motion>,
     /// The retargeting of B; `None` if its skeleton is A's.
     pub(super) retargeted: Option<Arc<RetargetReport>>,
-    options: RetargetOptions,
+    options: FittingOptions,
 }
 
 impl Pair {
@@ -41,9 +57,10 @@ impl Pair {
     }
 
     /// Returns whether it is the pair of these clips. Clips of one skeleton need no options.
-    fn is_of(&self, a: &Arc<Motion>, b: &Arc<Motion>, options: RetargetOptions) -> bool {
+    fn is_of(&self, a: &Arc<Motion>, b: &Arc<Motion>, options: FittingOptions) -> bool {
         Arc::ptr_eq(&self.a, a)
             && Arc::ptr_eq(&self.b, b)
+            && self.options.rate == options.rate
             && (self.options == options || self.retargeted.is_none())
     }
 }
@@ -62,8 +79,8 @@ pub(super) type FittedClip = (Arc<Motion>, Option<Arc<RetargetReport>>);
 pub(super) struct Fitting {
     a: Arc<Motion>,
     b: Arc<Motion>,
-    options: RetargetOptions,
-    /// B at the frame rate of A.
+    options: FittingOptions,
+    /// B at the frame rate of the result.
     source: Arc<Motion>,
     work: MotionRetargeting,
 }
@@ -75,11 +92,15 @@ impl Fitting {
     pub(super) fn new(
         a: &Arc<Motion>,
         b: &Arc<Motion>,
-        options: RetargetOptions,
+        options: FittingOptions,
     ) -> Result<ControlFlow<FittedClip, Self>, LabError> {
         let same_skeleton = Arc::ptr_eq(a.clip().skeleton(), b.clip().skeleton())
             || a.clip().skeleton() == b.clip().skeleton();
-        let (rate, rate_b) = (a.clip().fps(), b.clip().fps());
+        let rate_b = b.clip().fps();
+        let rate = match options.rate {
+            Rate::OfA => a.clip().fps(),
+            Rate::Own => rate_b,
+        };
         let same_rate = (rate - rate_b).abs() <= 1e-4 * rate;
         if same_skeleton {
             if same_rate {
@@ -96,7 +117,8 @@ impl Fitting {
             let ground_m = b.ground_m();
             source = Arc::new(b.resampled(rate, Interpolation::Cubic)?.with_ground_m(ground_m));
         }
-        let work = MotionRetargeting::new(Arc::clone(&source), TargetBody::of(a), options)?;
+        let body = TargetBody::of(a);
+        let work = MotionRetargeting::new(Arc::clone(&source), body, options.retarget)?;
         let (a, b) = (Arc::clone(a), Arc::clone(b));
         Ok(ControlFlow::Continue(Self { a, b, options, source, work }))
     }
@@ -104,7 +126,7 @@ impl Fitting {
     /// Does one slice of up to `frames` frames.
     pub(super) fn advance(self, frames: usize) -> Result<ControlFlow<FittedClip, Self>, LabError> {
         let Self { a, b, options, source, work } = self;
-        let RetargetedMotion { clip, report } = match work.advance(frames)? {
+        let RetargetedMotion { clip, report, is_same_rig } = match work.advance(frames)? {
             ControlFlow::Continue(work) => {
                 return Ok(ControlFlow::Continue(Self { a, b, options, source, work }));
             }
@@ -114,8 +136,10 @@ impl Fitting {
         let motion = Motion::with_roles(clip, a.roles())
             .with_feet(b.feet())
             .with_contacts(source.contacts().clone());
-        let motion = like(&b, a.clip().fps(), motion);
-        let report = RetargetReport { unmatched: unmatched(&a, &b), errors: report, options };
+        let motion = like(&b, source.clip().fps(), motion);
+        let (unmatched, options) = (unmatched(&a, &b), options.retarget);
+        let errors = Some(report).filter(|_| !is_same_rig);
+        let report = RetargetReport { unmatched, errors, options };
         Ok(ControlFlow::Break((Arc::new(motion), Some(Arc::new(report)))))
     }
 
@@ -153,7 +177,7 @@ pub(crate) struct Pairs {
 #[derive(Debug)]
 struct Known {
     is_wanted: bool,
-    of: (Arc<Motion>, Arc<Motion>, RetargetOptions),
+    of: (Arc<Motion>, Arc<Motion>, FittingOptions),
     pair: Result<Arc<Pair>, LabError>,
 }
 
@@ -184,7 +208,27 @@ impl Pairs {
         b: &Arc<Motion>,
         params: &Params,
     ) -> Result<Option<Arc<Pair>>, LabError> {
-        let options = retarget_options(params);
+        let retarget = retarget_options(params);
+        self.fitted(a, b, FittingOptions { rate: Rate::OfA, retarget })
+    }
+
+    /// Returns B on the skeleton of A and at its own rate; `None` as for [`of`](Self::of).
+    pub(crate) fn on_body(
+        &mut self,
+        a: &Arc<Motion>,
+        b: &Arc<Motion>,
+        params: &Params,
+    ) -> Result<Option<Arc<Pair>>, LabError> {
+        let retarget = retarget_options(params);
+        self.fitted(a, b, FittingOptions { rate: Rate::Own, retarget })
+    }
+
+    fn fitted(
+        &mut self,
+        a: &Arc<Motion>,
+        b: &Arc<Motion>,
+        options: FittingOptions,
+    ) -> Result<Option<Arc<Pair>>, LabError> {
         let is_it = |known: &&mut Known| match &known.pair {
             Ok(pair) => pair.is_of(a, b, options),
             Err(_) => {
@@ -222,7 +266,7 @@ impl Pairs {
 
     fn keep(
         &mut self,
-        of: (Arc<Motion>, Arc<Motion>, RetargetOptions),
+        of: (Arc<Motion>, Arc<Motion>, FittingOptions),
         fitted: Result<FittedClip, LabError>,
     ) -> Result<Arc<Pair>, LabError> {
         let pair = fitted.map(|(incoming, retargeted)| {
@@ -308,7 +352,8 @@ mod tests {
             Arc::new(Motion::analyze(synthesize(&params).unwrap().clip))
         };
         let (a, b) = (at(120.0), at(30.0));
-        let fitted = Fitting::new(&a, &b, RetargetOptions::default()).unwrap();
+        let options = FittingOptions { rate: Rate::OfA, retarget: RetargetOptions::default() };
+        let fitted = Fitting::new(&a, &b, options).unwrap();
         let (incoming, _) = fitted.break_value().unwrap();
         assert_eq!(incoming.clip().fps(), 120.0);
         let (made, true_one) =

@@ -444,8 +444,15 @@ pub(super) const OF_B: &[LabId] =
     &[LabId::Blend, LabId::Transition, LabId::Speed, LabId::Layers, LabId::Register];
 
 /// The labs that put their clips on one body.
-pub(super) const OF_BODIES: &[LabId] =
-    &[LabId::Transition, LabId::Speed, LabId::Layers, LabId::Register, LabId::Graph, LabId::Match];
+pub(super) const OF_BODIES: &[LabId] = &[
+    LabId::Transition,
+    LabId::Speed,
+    LabId::Layers,
+    LabId::Register,
+    LabId::Graph,
+    LabId::Match,
+    LabId::Edit,
+];
 
 /// The labs that read the feet of their clips, and can lock them.
 pub(super) const OF_FEET: &[LabId] = &[

@@ -161,6 +161,7 @@ macro_rules! parameters {
     AsLoop "as_loop" "Treat as a loop" Lab(Edit), Kind::Choice(Repeats::CHOICES), Start::Choice(Repeats::Once.word()), "", "One cycle: the last frame becomes the first one again, and Speed, Loop and Match take the clip as one whole cycle. The difference between both ends is spread over it.";
     Reverse "reverse" "Direction" Lab(Edit), Kind::Choice(Direction::CHOICES), Start::Choice(Direction::Forwards.word()), "", "Backwards: the last frame plays first. The body faces where it faced, so that it walks backward.";
     Mirror "mirror" "Sides" Lab(Edit), Kind::Choice(Sides::CHOICES), Start::Choice(Sides::Recorded.word()), "", "Mirrored: the left side does what the right one did, in the plane x = 0.";
+    EditBody "edit_body" "Body of" Lab(Edit), Kind::List(ListKind::ClipIds), Start::Text(""), "", "The clip whose body A gets, its skeleton and proportions. Empty: A keeps its own.";
     Resample "resample" "Frame rate" Lab(Edit), auto(5.0, 240.0, 1.0), Start::Auto, "fps", "Higher: more frames, interpolated between those of the clip. The length stays. Auto: as in the clip.";
     Scale "scale" "Scale" Lab(Edit), logarithmic(0.1, 10.0, 0.01), Start::Number(1.0), "×", "Larger: the body and its path grow alike. Angles and times stay.";
     Turn "turn" "Turn" Lab(Edit), number(-180.0, 180.0, 0.5), Start::Number(0.0), "°", "Turns the clip about the position of its first frame; positive is left.";

@@ -6,7 +6,9 @@ use super::requests::{GraphKey, WalkRequest};
 use super::walk_builder::WalkBuilder;
 use super::{BuiltGraph, DistanceField, GraphClips, GraphInputs};
 use crate::labs::LabError;
-use crate::labs::pair::{FRAMES_PER_SLICE, FittedClip, Fitting, retarget_options};
+use crate::labs::pair::{
+    FRAMES_PER_SLICE, FittedClip, Fitting, FittingOptions, Rate, retarget_options,
+};
 use crate::params::{MAX_PANES, Params};
 use segue_motion::clip::Motion;
 use segue_motion::graph::{
@@ -335,7 +337,10 @@ impl GraphScheduler {
         {
             let slice = match self.fitting.take() {
                 Some(fitting) => fitting.advance(FRAMES_PER_SLICE),
-                None => Fitting::new(first, next, self.retarget),
+                None => {
+                    let options = FittingOptions { rate: Rate::OfA, retarget: self.retarget };
+                    Fitting::new(first, next, options)
+                }
             };
             match slice {
                 Ok(ControlFlow::Continue(fitting)) => self.fitting = Some(fitting),
