@@ -18,6 +18,7 @@ const LIFT_SECS: f64 = 0.08;
 const FLAT_SHARE: f32 = 0.3;
 
 /// The places of both feet.
+#[derive(Debug)]
 pub(super) struct FootGoals {
     /// The amount by which the whole body is raised, metres.
     pub(super) rise: f32,

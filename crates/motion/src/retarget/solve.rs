@@ -1,7 +1,8 @@
 //! The solution: hips and limbs for the places of feet and hands.
 
+use super::feet::FootGoals;
 use super::tracks::{LimbTrack, Tracks};
-use super::{Task, feet, hands};
+use super::{Task, hands};
 use crate::clip::{Clip, ClipError};
 use crate::transition::{Flexion, LimbPose, hips};
 use glam::{Quat, Vec3};
@@ -37,8 +38,8 @@ pub(super) struct Solution {
 
 impl Solution {
     /// Finds the movements of limbs and hips.
-    pub(super) fn new(task: &Task, tracks: &Tracks) -> Self {
-        let (feet, mut hand_shifts) = (feet::goals(task, tracks), hands::shifts(tracks));
+    pub(super) fn new(task: &Task, tracks: &Tracks, feet: FootGoals) -> Self {
+        let mut hand_shifts = hands::shifts(tracks);
         let goals = goals(tracks, &feet, &hand_shifts);
         let (mut foot_shifts, weights) = (feet.shifts, task.options);
         let frames = task.plain.frames();
@@ -113,7 +114,7 @@ fn turn(track: &LimbTrack, frame: usize, shift: Vec3, local: &mut [Quat]) {
     track.limb.write(posed, [upper, lower, Quat::IDENTITY], local);
 }
 
-fn goals(tracks: &Tracks, feet: &feet::FootGoals, hand_shifts: &[Vec<Vec3>; 2]) -> Goals {
+fn goals(tracks: &Tracks, feet: &FootGoals, hand_shifts: &[Vec<Vec3>; 2]) -> Goals {
     let foot = |side: usize| {
         let Some((leg, _)) = &tracks.legs[side] else { return Vec::new() };
         let ends = leg.starts.iter().zip(&leg.posed).zip(&feet.shifts[side]);

@@ -294,7 +294,7 @@ impl LabInputs for EditInputs {
             },
         });
         let retargeted = self.on_body.as_ref().and_then(|pair| pair.retargeted.clone());
-        Ok(Outcome { cycle, metrics, retargeted, ..Outcome::plain(Arc::new(motion)) })
+        Ok(Outcome { cycle, retargeted, metrics, ..Outcome::plain(Arc::new(motion)) })
     }
 }
 

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 /// Clips of up to this number of frames are retargeted at once.
 const AT_ONCE: usize = 400;
-/// The number of frames in one slice of work, in one of six passes: about a millisecond in a
+/// The number of frames in one slice of work, in one of several passes: about a millisecond in a
 /// browser.
 pub(super) const FRAMES_PER_SLICE: usize = 250;
 
@@ -30,6 +30,13 @@ pub(super) enum Rate {
 pub(super) struct FittingOptions {
     pub(super) rate: Rate,
     pub(super) retarget: RetargetOptions,
+}
+
+impl FittingOptions {
+    /// Returns the options by which B gets the rate of A, too.
+    pub(super) const fn at_rate_of_a(retarget: RetargetOptions) -> Self {
+        Self { rate: Rate::OfA, retarget }
+    }
 }
 
 /// Two clips on one skeleton and at one frame rate.
@@ -208,8 +215,7 @@ impl Pairs {
         b: &Arc<Motion>,
         params: &Params,
     ) -> Result<Option<Arc<Pair>>, LabError> {
-        let retarget = retarget_options(params);
-        self.fitted(a, b, FittingOptions { rate: Rate::OfA, retarget })
+        self.fitted(a, b, FittingOptions::at_rate_of_a(retarget_options(params)))
     }
 
     /// Returns B on the skeleton of A and at its own rate; `None` as for [`of`](Self::of).
@@ -229,12 +235,10 @@ impl Pairs {
         b: &Arc<Motion>,
         options: FittingOptions,
     ) -> Result<Option<Arc<Pair>>, LabError> {
-        let is_it = |known: &&mut Known| match &known.pair {
-            Ok(pair) => pair.is_of(a, b, options),
-            Err(_) => {
-                let (known_a, known_b, by) = &known.of;
-                Arc::ptr_eq(known_a, a) && Arc::ptr_eq(known_b, b) && *by == options
-            }
+        let is_it = |known: &&mut Known| {
+            let (known_a, known_b, by) = &known.of;
+            let is_it = Arc::ptr_eq(known_a, a) && Arc::ptr_eq(known_b, b) && *by == options;
+            is_it || known.pair.as_ref().is_ok_and(|pair| pair.is_of(a, b, options))
         };
         if let Some(known) = self.known.iter_mut().find(is_it) {
             known.is_wanted = true;
@@ -352,7 +356,7 @@ mod tests {
             Arc::new(Motion::analyze(synthesize(&params).unwrap().clip))
         };
         let (a, b) = (at(120.0), at(30.0));
-        let options = FittingOptions { rate: Rate::OfA, retarget: RetargetOptions::default() };
+        let options = FittingOptions::at_rate_of_a(RetargetOptions::default());
         let fitted = Fitting::new(&a, &b, options).unwrap();
         let (incoming, _) = fitted.break_value().unwrap();
         assert_eq!(incoming.clip().fps(), 120.0);

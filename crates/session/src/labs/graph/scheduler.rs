@@ -6,9 +6,7 @@ use super::requests::{GraphKey, WalkRequest};
 use super::walk_builder::WalkBuilder;
 use super::{BuiltGraph, DistanceField, GraphClips, GraphInputs};
 use crate::labs::LabError;
-use crate::labs::pair::{
-    FRAMES_PER_SLICE, FittedClip, Fitting, FittingOptions, Rate, retarget_options,
-};
+use crate::labs::pair::{FRAMES_PER_SLICE, FittedClip, Fitting, FittingOptions, retarget_options};
 use crate::params::{MAX_PANES, Params};
 use segue_motion::clip::Motion;
 use segue_motion::graph::{
@@ -337,10 +335,7 @@ impl GraphScheduler {
         {
             let slice = match self.fitting.take() {
                 Some(fitting) => fitting.advance(FRAMES_PER_SLICE),
-                None => {
-                    let options = FittingOptions { rate: Rate::OfA, retarget: self.retarget };
-                    Fitting::new(first, next, options)
-                }
+                None => Fitting::new(first, next, FittingOptions::at_rate_of_a(self.retarget)),
             };
             match slice {
                 Ok(ControlFlow::Continue(fitting)) => self.fitting = Some(fitting),
