@@ -1,6 +1,7 @@
 //! Resolution of the clips that labs use: found in the library, synthesised, made again from a
 //! recipe, or requested from the app.
 
+use crate::bone_map::adopt;
 use crate::contact_edits::corrections_of;
 use crate::document::Document;
 use crate::files::FileIntake;
@@ -105,8 +106,13 @@ impl ClipResolver<'_> {
         } else {
             motion
         };
-        self.document.library.change(&id, |entry| entry.motion = Some(Arc::clone(&motion)));
-        Ok(motion)
+        let maps = Arc::clone(self.document.library.bone_maps());
+        self.document.library.change(&id, |entry| {
+            entry.motion = Some(motion);
+            adopt(&maps, entry);
+        });
+        let made = self.document.library.get(&id).and_then(|entry| entry.motion.clone());
+        made.ok_or_else(|| LabError::MissingClip { name: outside::short(&id) })
     }
 
     /// Returns the motions of several clips, with their feet read as the parameters say. Makes or

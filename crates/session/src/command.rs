@@ -8,6 +8,7 @@ use super::pane::NoResult;
 use super::params::{Key, Value, ValueError};
 use super::reading::ReadTask;
 use super::samples::{Sample, SampleSet};
+use crate::bone_map::{BoneMap, BoneMapError};
 use segue_formats::{ImportError, ImportOptions};
 use segue_motion::matching::Control;
 use segue_motion::skeleton::Role;
@@ -101,8 +102,12 @@ pub enum DriveCommand {
 pub enum FileCommand {
     /// Loads all takes of a bundled set into the library.
     LoadSamples(&'static SampleSet),
-    /// Corrects by hand which joint of a clip has a role.
-    CorrectRole(String, Role, Option<usize>),
+    /// Corrects by hand which joints of a clip have roles, in all clips of its rig, as one step.
+    SetRoles(String, Vec<(Role, Option<usize>)>),
+    /// Takes back the corrections of a clip's rig: the roles are those that were found.
+    ResetRoles(String),
+    /// Applies a bone map to the clips that it fits, as one step.
+    ApplyBoneMap(BoneMap),
     /// Reads a clip's file again with other options.
     Reimport(String, ImportOptions),
     /// Reads the clips of a notice again with better options, as one step, and removes the notice.
@@ -120,6 +125,9 @@ pub enum CommandError {
     /// A file that cannot be read.
     #[error(transparent)]
     Import(#[from] ImportError),
+    /// A bone map that cannot be read.
+    #[error(transparent)]
+    BoneMap(#[from] BoneMapError),
     /// A clip that is not there.
     #[error("there is no clip `{id}` in the library", id = short(.0))]
     NoClip(String),

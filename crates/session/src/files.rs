@@ -6,6 +6,7 @@ mod corrections;
 mod intake;
 mod messages;
 mod reread;
+mod roles;
 mod samples;
 mod setup;
 mod skeletons;

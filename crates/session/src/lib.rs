@@ -63,6 +63,7 @@
 //! app may store. A link contains parameters, not data: it names a file by its name and the first
 //! digits of its SHA-256, and the reader of the link must have that file.
 
+pub mod bone_map;
 mod built_in;
 mod clip_info;
 mod clip_resolver;

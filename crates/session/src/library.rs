@@ -1,5 +1,6 @@
 //! The library of clips: built in, dropped, or made in labs.
 
+use super::bone_map::{BoneMap, BoneMaps, MAX_RIGS};
 use super::outside;
 use super::reading::{About, Companion, Content, LARGE_BYTES};
 use super::samples::Sample;
@@ -203,6 +204,8 @@ impl Entry {
 #[derive(Clone, Debug, Default)]
 pub struct Library {
     entries: Vec<Arc<Entry>>,
+    /// The corrected body parts of rigs, also of those that no present clip has.
+    bone_maps: Arc<BoneMaps>,
 }
 
 impl FromIterator<Entry> for Library {
@@ -249,6 +252,27 @@ impl Library {
     #[must_use]
     pub fn get(&self, id: &str) -> Option<&Arc<Entry>> {
         self.entries.iter().find(|entry| entry.id == id)
+    }
+
+    /// Returns the corrected body parts, by rig.
+    #[must_use]
+    pub(crate) fn bone_maps(&self) -> &Arc<BoneMaps> {
+        &self.bone_maps
+    }
+
+    /// Sets the corrected body parts of all rigs.
+    pub(crate) fn set_bone_maps(&mut self, maps: impl Into<Arc<BoneMaps>>) {
+        self.bone_maps = maps.into();
+    }
+
+    /// Remembers the body parts of a rig. Beyond [`MAX_RIGS`] another one is forgotten.
+    pub(crate) fn put_bone_map(&mut self, map: BoneMap) {
+        let maps = Arc::make_mut(&mut self.bone_maps);
+        let is_new = !maps.contains_key(&map.rig);
+        if is_new && maps.len() >= MAX_RIGS {
+            maps.pop_first();
+        }
+        maps.insert(map.rig.clone(), map);
     }
 
     /// Adds a clip at the end, or replaces the one with the same id.

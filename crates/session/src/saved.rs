@@ -1,6 +1,7 @@
 //! The stored state of the work, which survives a reload. The bytes of files are stored separately,
 //! by their SHA-256.
 
+use super::bone_map::{BoneMap, MAX_RIGS};
 use super::library::{Entry, Origin};
 use super::reading::Companion;
 use segue_formats::{FileKind, ImportOptions};
@@ -27,11 +28,15 @@ pub struct Saved {
     pub query: String,
     /// The library in order.
     pub entries: Vec<SavedEntry>,
+    /// The corrected body parts of rigs; states that were stored without this field have none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bone_maps: Vec<BoneMap>,
 }
 
 impl Saved {
     /// Keeps clips in `there`, the stored state, that other windows added: those that are not among
-    /// the `known`. This window never had them, so it cannot have removed them.
+    /// the `known`. This window never had them, so it cannot have removed them. Body parts of rigs
+    /// that this window has not corrected are kept, too.
     #[must_use]
     pub fn with_others_of(mut self, there: &Self, known: &BTreeSet<String>) -> Self {
         let own: BTreeSet<&str> = self.entries.iter().map(|entry| entry.id.as_str()).collect();
@@ -39,6 +44,10 @@ impl Saved {
             |entry: &&SavedEntry| !own.contains(entry.id.as_str()) && !known.contains(&entry.id);
         let others: Vec<SavedEntry> = there.entries.iter().filter(is_of_others).cloned().collect();
         self.entries.extend(others);
+        let is_new = |map: &&BoneMap| self.bone_maps.iter().all(|own| own.rig != map.rig);
+        let others: Vec<BoneMap> = there.bone_maps.iter().filter(is_new).cloned().collect();
+        self.bone_maps.extend(others);
+        self.bone_maps.truncate(MAX_RIGS);
         self
     }
 
@@ -144,7 +153,11 @@ mod tests {
             is_sample: false,
             batch: None,
         };
-        Saved { query: query.to_owned(), entries: ids.iter().map(entry).collect() }
+        Saved {
+            query: query.to_owned(),
+            entries: ids.iter().map(entry).collect(),
+            ..Saved::default()
+        }
     }
 
     fn names(saved: &Saved) -> Vec<&str> {

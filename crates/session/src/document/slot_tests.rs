@@ -123,7 +123,7 @@ fn file_loaded_again_keeps_what_was_set_by_hand() {
     let options = ImportOptions { fps: Some(60.0), ..ImportOptions::default() };
     session.apply(Command::File(FileCommand::Reimport(id.clone(), options))).unwrap();
     session
-        .apply(Command::File(FileCommand::CorrectRole(id.clone(), Role::Head, Some(1))))
+        .apply(Command::File(FileCommand::SetRoles(id.clone(), vec![(Role::Head, Some(1))])))
         .unwrap();
     session.apply(Command::Rename(id.clone(), "my walk".into())).unwrap();
     let before = Arc::clone(session.library().get(&id).unwrap());

@@ -5,6 +5,7 @@ use super::intake::{FileIntake, LoadedFile};
 use super::messages::{notify_all_unread, notify_unread};
 use super::setup::lacks_skeleton;
 use super::skeletons::drop_used_skeletons;
+use crate::bone_map::adopt;
 use crate::document::Document;
 use crate::labs::Slot;
 use crate::library::{Arrival, Entry, Origin, SourceFile, file_id, file_stem};
@@ -13,6 +14,7 @@ use crate::outside;
 use crate::params::{Key, Value};
 use crate::reading::{Content, ReadFile, ReadReport, ReadSetup};
 use segue_formats::{ImportError, ImportOptions};
+use segue_motion::clip::Motion;
 use segue_text::{Message, ToMessage, msg};
 use std::sync::Arc;
 
@@ -150,6 +152,8 @@ impl FileIntake {
         entry: Entry,
         arrival: Arrival,
     ) {
+        let mut entry = entry;
+        adopt(document.library.bone_maps(), &mut entry);
         let id = entry.id.clone();
         let known = document.library.get(&id).cloned();
         match &known {
@@ -237,6 +241,7 @@ pub(super) fn refill(
         let (entries, warnings) = file_entries(file, &Content::Here(Arc::from([])), options)?;
         loaded.warnings.extend(warnings);
         for new in entries {
+            let maps = Arc::clone(document.library.bone_maps());
             document.library.change(&new.id, |entry| {
                 let (Origin::File(file), Origin::File(new_file)) = (&mut entry.origin, new.origin)
                 else {
@@ -251,6 +256,14 @@ pub(super) fn refill(
                 entry.mesh = new.mesh;
                 entry.about = new.about;
                 entry.warnings = new.warnings;
+                // Roles may have been set since the file was sent off.
+                if let (Some(motion), Some(roles)) = (&entry.motion, &entry.roles_by_hand)
+                    && motion.roles() != roles
+                {
+                    let corrected = Motion::clone(motion).with_corrected_roles(roles);
+                    entry.motion = Some(Arc::new(corrected));
+                }
+                adopt(&maps, entry);
             });
             loaded.ids.push(new.id);
         }

@@ -1,6 +1,7 @@
 //! The files that are being added to the library.
 
 use super::setup::setup_for_new;
+use crate::bone_map::is_bone_map;
 use crate::command::{CommandError, FileCommand, Request};
 use crate::document::Document;
 use crate::library::{Arrival, Library};
@@ -131,9 +132,9 @@ impl FileIntake {
     ) -> Result<(), CommandError> {
         match command {
             FileCommand::LoadSamples(set) => self.load_samples(document, notices, set),
-            FileCommand::CorrectRole(id, role, joint) => {
-                self.correct_role(document, &id, role, joint)?;
-            }
+            FileCommand::SetRoles(id, changes) => self.set_roles(document, &id, &changes)?,
+            FileCommand::ResetRoles(id) => self.reset_roles(document, &id)?,
+            FileCommand::ApplyBoneMap(map) => self.apply_bone_map(document, notices, &map),
             FileCommand::Reimport(id, options) => self.reimport(document, &id, &options)?,
             FileCommand::Correct(notice) => self.correct(document, notices, notice),
             FileCommand::StopReading(task) => self.stop_reading(document, task),
@@ -181,6 +182,9 @@ impl FileIntake {
         bytes: Arc<[u8]>,
         arrival: Arrival,
     ) -> Result<LoadedFile, ImportError> {
+        if is_bone_map(&bytes) {
+            return Ok(self.load_bone_map(document, notices, name, &bytes));
+        }
         let (name, setup, size) =
             (&outside::file_name(name), setup_for_new(&document.library), bytes.len() as u64);
         let Some(read) = self.reads.filter(|_| size <= LARGE_BYTES) else {

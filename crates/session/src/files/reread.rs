@@ -11,8 +11,6 @@ use crate::library::{Arrival, Origin, SourceFile};
 use crate::notice::{Level, Notices};
 use crate::reading::Content;
 use segue_formats::{ImportError, ImportOptions};
-use segue_motion::clip::Motion;
-use segue_motion::skeleton::Role;
 use segue_text::ToMessage;
 use std::sync::Arc;
 
@@ -97,38 +95,5 @@ impl FileIntake {
         }
         document.remember_library(&library);
         notices.dismiss(notice);
-    }
-
-    /// Corrects the role of a joint by hand. A file that is large or being read is read again with
-    /// it.
-    pub(crate) fn correct_role(
-        &mut self,
-        document: &mut Document,
-        id: &str,
-        role: Role,
-        joint: Option<usize>,
-    ) -> Result<(), CommandError> {
-        let entry = document.clip(id)?;
-        let motion =
-            entry.motion.as_ref().ok_or(CommandError::NotPossible("the clip is not loaded yet"))?;
-        if joint.is_some_and(|joint| joint >= motion.clip().skeleton().len()) {
-            return Err(CommandError::NotPossible("the skeleton has no such joint"));
-        }
-        let mut roles = motion.roles().clone();
-        roles.set(role, joint);
-        let file = match &entry.origin {
-            Origin::File(file) if file.is_large() || self.is_read_again(file) => Some(file.clone()),
-            _ => None,
-        };
-        if let Some(file) = file {
-            document.change_entry(id, |entry| entry.roles_by_hand = Some(roles))?;
-            self.read_again(document, file, None);
-            return Ok(());
-        }
-        let corrected = Arc::new(Motion::clone(motion).with_corrected_roles(&roles));
-        document.change_entry(id, |entry| {
-            entry.motion = Some(corrected);
-            entry.roles_by_hand = Some(roles);
-        })
     }
 }

@@ -1,6 +1,7 @@
 //! Bundled takes: requested, and added to their entries of the library.
 
 use super::intake::{AwaitedSamples, FileIntake, Purpose};
+use crate::bone_map::adopt;
 use crate::command::Request;
 use crate::document::Document;
 use crate::library::Origin;
@@ -89,6 +90,7 @@ impl FileIntake {
     ) -> Result<(), ImportError> {
         let setup = ReadSetup {
             options: ImportOptions { max_bytes: MAX_SAMPLE_BYTES, ..ImportOptions::default() },
+            bone_maps: Arc::clone(document.library.bone_maps()),
             ..ReadSetup::default()
         };
         let Some(read) = self.reads else {
@@ -150,6 +152,7 @@ impl FileIntake {
         self.samples.samples.retain(|awaited| *awaited != sample);
         if !clips.clips.is_empty() {
             let clip = clips.clips.swap_remove(0);
+            let maps = Arc::clone(document.library.bone_maps());
             document.library.change(sample.id, |entry| {
                 let motion = match &entry.roles_by_hand {
                     Some(roles) => clip.motion.with_corrected_roles(roles),
@@ -159,6 +162,7 @@ impl FileIntake {
                 entry.unread = None;
                 entry.about = Some(clip.about);
                 entry.warnings = clips.warnings;
+                adopt(&maps, entry);
             });
         }
         Ok(())

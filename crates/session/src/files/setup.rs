@@ -12,6 +12,7 @@ pub(super) fn setup_of(library: &Library, file: &SourceFile) -> ReadSetup {
     ReadSetup {
         options: file.options,
         roles: roles_by_hand(library, file),
+        bone_maps: Arc::clone(library.bone_maps()),
         companions: match &file.companion {
             Some(companion) => vec![Companion::clone(companion)],
             None if file.kind.takes_skeleton() => companions(library),
@@ -24,7 +25,11 @@ pub(super) fn setup_of(library: &Library, file: &SourceFile) -> ReadSetup {
 
 /// Returns the setup for reading a new file.
 pub(crate) fn setup_for_new(library: &Library) -> ReadSetup {
-    ReadSetup { companions: companions(library), ..ReadSetup::default() }
+    ReadSetup {
+        companions: companions(library),
+        bone_maps: Arc::clone(library.bone_maps()),
+        ..ReadSetup::default()
+    }
 }
 
 /// Returns the roles that were corrected by hand, by the index of the clip in its file.

@@ -33,7 +33,7 @@ fn roles_corrected_by_hand_survive_a_reload_for_every_kind_of_clip() {
     let ids = [file.as_str(), "run(turn_rate:20)", "idle", sample.id];
     for id in ids {
         session
-            .apply(Command::File(FileCommand::CorrectRole(id.into(), Role::Head, Some(1))))
+            .apply(Command::File(FileCommand::SetRoles(id.into(), vec![(Role::Head, Some(1))])))
             .unwrap();
     }
     let mut restored = reloaded(&session, &bytes);
@@ -70,7 +70,7 @@ fn roles_of_missing_joints_are_ignored() {
     let mut session = Session::new();
     settle(&mut session);
     session
-        .apply(Command::File(FileCommand::CorrectRole("idle".into(), Role::Head, Some(1))))
+        .apply(Command::File(FileCommand::SetRoles("idle".into(), vec![(Role::Head, Some(1))])))
         .unwrap();
     let mut saved = session.saved();
     let entry = saved.entries.iter_mut().find(|entry| entry.id == "idle").unwrap();

@@ -130,10 +130,9 @@ fn large_file_is_read_elsewhere_and_joins_the_library() {
 
     // Correcting its roles reads it again, also elsewhere.
     session
-        .apply(Command::File(FileCommand::CorrectRole(
+        .apply(Command::File(FileCommand::SetRoles(
             loaded.ids[0].clone(),
-            segue_motion::skeleton::Role::Head,
-            Some(1),
+            vec![(segue_motion::skeleton::Role::Head, Some(1))],
         )))
         .unwrap();
     let again = asked(&mut session);

@@ -5,6 +5,7 @@ mod wire;
 
 pub use wire::{Parcel, Unpacker, WireError};
 
+use super::bone_map::{BoneMaps, mapped};
 use super::convert::{ConvertOptions, ConvertedClip, convert_file};
 use super::outside;
 use segue_formats::acclaim::{self, AcclaimSkeleton};
@@ -58,6 +59,9 @@ pub struct ReadSetup {
     pub options: ImportOptions,
     /// Roles that were set by hand, by the index of the clip in the file.
     pub roles: BTreeMap<usize, Roles>,
+    /// The corrected body parts of rigs.
+    #[serde(default)]
+    pub(crate) bone_maps: Arc<BoneMaps>,
     /// Files that it may depend on: skeletons for the motion of another file.
     pub companions: Vec<Companion>,
     /// SHA-256 of the file's bytes, if it is known already; lower-case hexadecimal.
@@ -421,7 +425,9 @@ impl ReadClips {
         Self {
             warnings: imported.warnings.iter().map(ToMessage::to_message).collect(),
             clips: (imported.clips.into_iter().enumerate())
-                .map(|(index, clip)| ReadClip::new(clip, setup.roles.get(&index).cloned()))
+                .map(|(index, clip)| {
+                    ReadClip::new(clip, setup.roles.get(&index).cloned(), &setup.bone_maps)
+                })
                 .collect(),
             ..Self::default()
         }
@@ -475,10 +481,11 @@ impl From<&ImportedClip> for About {
 }
 
 impl ReadClip {
-    fn new(imported: ImportedClip, roles: Option<Roles>) -> Self {
+    fn new(imported: ImportedClip, roles: Option<Roles>, maps: &BoneMaps) -> Self {
         let about = About::from(&imported);
-        let roles =
-            roles.or(imported.roles).unwrap_or_else(|| Roles::detect(imported.clip.skeleton()));
+        let skeleton = imported.clip.skeleton();
+        let roles = roles.or(imported.roles).unwrap_or_else(|| Roles::detect(skeleton));
+        let roles = mapped(maps, skeleton, &roles).unwrap_or(roles);
         Self { mesh: imported.mesh, motion: Motion::with_roles(imported.clip, &roles), about }
     }
 }

@@ -81,7 +81,7 @@ fn role_corrected_by_hand_keeps_the_seams_of_a_kept_result() {
     let id = join(&mut session, "start", "walk");
     let seams = motion(&session, &id).seams().to_vec();
     assert_eq!(seams.len(), 1);
-    let correction = FileCommand::CorrectRole(id.clone(), Role::Head, None);
+    let correction = FileCommand::SetRoles(id.clone(), vec![(Role::Head, None)]);
     session.apply(Command::File(correction)).unwrap();
     // After a reload, the result is made again from its recipe.
     let mut restored = Session::new();

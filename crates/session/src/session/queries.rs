@@ -2,6 +2,7 @@
 
 use super::Session;
 use crate::Selected;
+use crate::bone_map::rig_of;
 use crate::clip_info::ClipInfo;
 use crate::contact_edits::{ContactClip, corrections_of, with_named_edits};
 use crate::labs::lab::Beside;
@@ -66,6 +67,24 @@ impl Session {
             }
         }
         clips
+    }
+
+    /// Returns the number of clips with the rig of a clip, which corrections of its body parts apply
+    /// to; clips that are not read yet do not count.
+    #[must_use]
+    pub fn clips_of_rig(&self, id: &str) -> usize {
+        let library = &self.document.library;
+        let skeleton = |entry: &Entry| Some(Arc::clone(entry.motion.as_ref()?.clip().skeleton()));
+        let Some(own) = library.get(id).and_then(|entry| skeleton(entry)) else {
+            return 0;
+        };
+        let rig = rig_of(&own);
+        let is_of_rig = |entry: &Arc<Entry>| {
+            skeleton(entry).is_some_and(|other| {
+                Arc::ptr_eq(&own, &other) || (own.len() == other.len() && rig_of(&other) == rig)
+            })
+        };
+        library.entries().iter().filter(|entry| is_of_rig(entry)).count()
     }
 
     /// Returns the query string that shows this state to somebody else, without `?`: the size of

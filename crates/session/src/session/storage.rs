@@ -2,6 +2,7 @@
 
 use super::Session;
 use super::queries::query_of;
+use crate::bone_map::{BoneMaps, MAX_RIGS};
 use crate::contact_edits::keep_edits_of_files;
 use crate::document::Document;
 use crate::files::{is_as_it_came, stored_entries};
@@ -26,6 +27,7 @@ impl Session {
                 .iter()
                 .map(|entry| SavedEntry::from(&**entry))
                 .collect(),
+            bone_maps: self.document.library.bone_maps().values().cloned().collect(),
         }
     }
 
@@ -43,6 +45,7 @@ impl Session {
         if !entries.is_empty() {
             self.document.library = entries.into_iter().collect();
         }
+        self.document.library.set_bone_maps(stored_maps(saved));
         // A language that was chosen by hand stays when the page is opened with a link, unless the
         // link names another.
         self.keep_language(saved);
@@ -64,6 +67,9 @@ impl Session {
     pub fn restore_late(&mut self, saved: &Saved, content_of: impl FnMut(&str) -> Option<Content>) {
         let (entries, lost) = stored_entries(&self.document.library, &saved.entries, content_of);
         let before = std::mem::take(&mut self.document.library);
+        let mut maps = stored_maps(saved);
+        maps.extend(BoneMaps::clone(before.bone_maps()));
+        self.document.library.set_bone_maps(maps);
         let mut came = Vec::new();
         for entry in entries {
             let entry = match before.get(&entry.id) {
@@ -142,4 +148,10 @@ impl Session {
             self.document.set_unchecked(key, chosen);
         }
     }
+}
+
+/// Returns the stored body parts by rig.
+fn stored_maps(saved: &Saved) -> BoneMaps {
+    let maps = saved.bone_maps.iter().take(MAX_RIGS);
+    maps.map(|map| (map.rig.clone(), map.clone())).collect()
 }
