@@ -147,7 +147,8 @@ mod tests {
     use crate::platform::work::clip_of;
 
     fn saved(query: &str, ids: &[&str]) -> Saved {
-        Saved { query: query.to_owned(), entries: ids.iter().map(|id| clip_of(id)).collect() }
+        let entries = ids.iter().map(|id| clip_of(id)).collect();
+        Saved { query: query.to_owned(), entries, ..Saved::default() }
     }
 
     fn clip_record(at_ms: f64, id: &str) -> (String, String) {

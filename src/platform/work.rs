@@ -86,6 +86,7 @@ mod tests {
             saved: Saved {
                 query: "t=1".to_owned(),
                 entries: ["idle", "a~11", "b~22", "c~33"].map(clip_of).into(),
+                ..Saved::default()
             },
             known: BTreeSet::new(),
             files: [("22".to_owned(), FileBytes::Here(Arc::from([2_u8])))].into(),

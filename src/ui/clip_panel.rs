@@ -1,5 +1,6 @@
 //! The details of a clip and their corrections: below its row in the library, and in the View lab.
 
+use super::bone_map::bone_map_ui;
 use super::kit::{self, Tree, TreeRow};
 use super::language::{Text, Word, say};
 use super::out::Out;
@@ -11,7 +12,7 @@ use eframe::egui::{RichText, Ui};
 use segue_formats::ImportOptions;
 use segue_motion::clip::{Motion, UpAxis, ground_speed};
 use segue_motion::math::sort::sort_by_key;
-use segue_motion::skeleton::{Channel, Role, Skeleton};
+use segue_motion::skeleton::{Channel, Skeleton};
 use segue_session::{
     Command, Entry, FileCommand, Key, Origin, Session, SourceFile, Value, format_number, joint_of,
     word_of_joint,
@@ -52,8 +53,8 @@ pub(crate) fn clip_panel_ui(
     ui.add_space(space::XS);
     state.joints_open |= kit::folded_ui(text::JOINTS, ui, |ui| joints_ui(motion, session, out, ui));
     let is_asked_for = body_parts_asked_for(&entry.id, ui);
-    kit::folded_unless_ui(is_asked_for, text::BODY_PARTS, ui, |ui| {
-        roles_ui(entry, motion, out, ui);
+    state.joints_open |= kit::folded_unless_ui(is_asked_for, text::BODY_PARTS, ui, |ui| {
+        bone_map_ui(entry, motion, session, &mut state.bone_map, out, ui);
     });
 }
 
@@ -213,23 +214,6 @@ fn joints_ui(motion: &Motion, session: &Session, out: &mut Out, ui: &mut Ui) {
     };
     if let Some(joint) = kit::tree_ui(&tree, row, ui) {
         out.set_once(Key::Joint, Value::Text(word_of_joint(motion, joint).to_owned()));
-    }
-}
-
-fn roles_ui(entry: &Entry, motion: &Motion, out: &mut Out, ui: &mut Ui) {
-    sentence_ui(text::BODY_PARTS_HELP, palette_of(ui).muted, ui);
-    let joints = motion.clip().skeleton().joints().iter().enumerate();
-    let mut options = vec![(None, Text::from(text::NOBODY))];
-    options.extend(joints.map(|(index, joint)| (Some(index), Text::Data(&joint.name))));
-    for role in Role::ALL {
-        let label = Word::new(role.name());
-        if let Some(joint) = kit::choice_row_ui(label, motion.roles().get(role), &options, ui) {
-            out.commands.push(Command::File(FileCommand::CorrectRole(
-                entry.id.clone(),
-                role,
-                joint,
-            )));
-        }
     }
 }
 

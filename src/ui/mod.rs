@@ -1,6 +1,7 @@
 //! The user interface: the theme, the kit of widgets, and the panels built from them.
 
 mod appearance;
+mod bone_map;
 mod clip_drag;
 mod clip_panel;
 mod commands;

@@ -1,5 +1,6 @@
 //! The state of the interface between frames.
 
+use super::bone_map::BoneMapState;
 use super::convert_panel::ConvertState;
 use super::labs::states::LabStates;
 use super::language::Language;
@@ -113,6 +114,8 @@ pub(crate) struct UiState {
     pub(crate) joints_open: bool,
     /// Whether the chosen joint is marked on the stage because it was chosen there.
     pub(crate) joint_marked: bool,
+    /// The editor of body parts.
+    pub(crate) bone_map: BoneMapState,
     /// The state of the labs.
     pub(crate) labs: LabStates,
     /// The input of the gamepad; `None` without one.
@@ -175,6 +178,7 @@ impl Default for UiState {
             typed_fps: None,
             details: None,
             joints_open: false,
+            bone_map: BoneMapState::default(),
             joint_marked: false,
             labs: LabStates::default(),
             gamepad: None,

@@ -23,6 +23,7 @@ use segue_session::{
 use std::fmt::Write as _;
 use std::sync::Arc;
 
+mod bone_map;
 mod chinese;
 mod clean;
 mod clips;

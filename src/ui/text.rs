@@ -9,6 +9,7 @@
     reason = "a message takes over the parts that it is made of"
 )]
 
+mod bone_map;
 mod clean;
 mod convert;
 mod edit;
@@ -25,6 +26,7 @@ mod speed;
 mod stage;
 mod transition;
 
+pub(crate) use bone_map::*;
 pub(crate) use clean::*;
 pub(crate) use convert::*;
 pub(crate) use edit::*;

@@ -297,6 +297,7 @@ mod tests {
             saved: Saved {
                 query: query.to_owned(),
                 entries: files.iter().map(|key| clip_of(&format!("{key}~{key}"))).collect(),
+                ..Saved::default()
             },
             known: files.iter().chain(removed).map(|key| format!("{key}~{key}")).collect(),
             files: files

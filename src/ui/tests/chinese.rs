@@ -17,7 +17,7 @@ const AS_IT_IS: [&str; 44] = [
     "NSF", "EIA", "XYZ", "ZXY", "YXZ", "English",
 ];
 
-fn pack() -> LanguagePack {
+pub(super) fn pack() -> LanguagePack {
     let file = |name: &str| {
         fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/lang/").to_owned() + name)
             .expect("a file of the language")
@@ -26,7 +26,7 @@ fn pack() -> LanguagePack {
 }
 
 /// Returns the language of the pack.
-fn language() -> Language {
+pub(super) fn language() -> Language {
     Language::of_tag("zh-Hant").expect("a language")
 }
 

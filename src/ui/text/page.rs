@@ -130,8 +130,6 @@ pub(crate) const JOINTS: Word = Word::new("Joints");
 pub(crate) const JOINT_TREE: Word = Word::new("Joints of the clip");
 pub(crate) const MADE_BODY: Word = Word::new("generated from the skeleton");
 pub(crate) const BODY_PARTS: Word = Word::new("Body parts");
-pub(crate) const BODY_PARTS_HELP: Word =
-    Word::new("The joint of each body part, found by name or by shape. Change what is wrong.");
 pub(crate) const UNIT: Word = Word::new("Unit");
 pub(crate) const UP_AXIS: Word = Word::new("Up axis");
 pub(crate) const AS_FOUND: Word = Word::new("as detected");
