@@ -23,7 +23,7 @@ pub(super) fn backend_of(query: &str) -> Option<String> {
 
 /// Returns `query` with the `backend=` of `old`, except [`FALLBACK`].
 #[cfg_attr(
-    not(target_arch = "wasm32"),
+    not(any(target_arch = "wasm32", test)),
     expect(dead_code, reason = "a window has no address to keep it in")
 )]
 pub(super) fn with_backend_of(query: &str, old: &str) -> String {
