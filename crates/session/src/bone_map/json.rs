@@ -78,6 +78,7 @@ struct File<'a> {
     roles: &'a BTreeMap<Role, Option<String>>,
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
 fn by_word<S: Serializer>(
     roles: &&BTreeMap<Role, Option<String>>,
     serializer: S,
