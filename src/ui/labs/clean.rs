@@ -29,7 +29,7 @@ pub(super) const LAB: LabUi = LabUi {
 };
 
 /// The most faults of a kind that are listed.
-const MOST_LISTED: usize = 12;
+const MAX_LISTED: usize = 12;
 
 fn title(shown: &Shown<'_>) -> Title {
     let is_on = shown.params.choice::<Mending>() == Mending::Mended;
@@ -95,11 +95,11 @@ fn faults_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         let mended = of_kind().filter(|found| facts.mends && found.is_chosen).count();
         ui.add_space(space::XS);
         kit::note_ui(&text::faults_of_kind(kind, numbers.len(), mended), palette_of(ui).text, ui);
-        for (index, found) in of_kind().take(MOST_LISTED).enumerate() {
+        for (index, found) in of_kind().take(MAX_LISTED).enumerate() {
             ui.push_id((kind, index), |ui| fault_ui(found, facts, outcome, session, out, ui));
         }
-        if numbers.len() > MOST_LISTED {
-            kit::note_ui(&text::more_faults(numbers.len() - MOST_LISTED), muted, ui);
+        if numbers.len() > MAX_LISTED {
+            kit::note_ui(&text::more_faults(numbers.len() - MAX_LISTED), muted, ui);
         }
     }
 }

@@ -21,7 +21,7 @@ const TOLERANCE: f64 = 1e-3;
 /// Means of the height of the pelvis' up direction that differ by less decide nothing.
 const CLEARLY_UPRIGHT: f64 = 0.05;
 /// A robot that travels less than this shows no direction, metres.
-const LEAST_TRAVEL: f64 = 0.5;
+const MIN_TRAVEL: f64 = 0.5;
 /// The memory that a row becomes, bytes: a pose, and the rotations of all joints.
 const BYTES_PER_ROW: u64 = 800;
 /// Larger magnitudes come from overflow, not from measurement.
@@ -294,7 +294,7 @@ fn quaternion_order(table: &Table, tally: &mut Tally) -> Order {
     };
     let (last, first) = (ahead(Order::ScalarLast), ahead(Order::ScalarFirst));
     let order =
-        if first > LEAST_TRAVEL && first > last { Order::ScalarFirst } else { Order::ScalarLast };
+        if first > MIN_TRAVEL && first > last { Order::ScalarFirst } else { Order::ScalarLast };
     tally.add(WarningKind::QuaternionOrder { scalar_first: order == Order::ScalarFirst }, None);
     order
 }
