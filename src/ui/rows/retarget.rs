@@ -1,4 +1,4 @@
-//! What retargeting did, and the weights of feet and hands.
+//! The retargeting errors, and the weights of feet and hands.
 
 use super::{Detail, param_row_ui};
 use crate::ui::kit;

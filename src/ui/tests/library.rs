@@ -173,7 +173,7 @@ fn search_shows_clips_by_name_until_escape() {
     harness.key_press(Keyboard::Escape);
     harness.run();
     assert!(clip_row("Stand", &harness).is_some());
-    // What is not found is said.
+    // A search without a match shows a message.
     harness.state_mut().state.library.search = "no such name".into();
     harness.run();
     harness.get_by_label(text::NO_SUCH_CLIP.english());

@@ -111,7 +111,7 @@ fn swipe(from: egui::Pos2, way: Vec2, frames: usize, harness: &mut Harness<'_, P
         step(finger(TouchPhase::Move, at), harness);
     }
     step(finger(TouchPhase::End, from + way), harness);
-    // What was scrolled rolls on for a while.
+    // Kinetic scrolling continues for a while.
     harness.run_steps(120);
 }
 

@@ -7,7 +7,7 @@ use segue_text::{Message, msg};
 /// The line about the Clean lab.
 pub(crate) const CLEAN_ABOUT: Word =
     Word::new("Finds the faults of a recorded take, and mends them.");
-/// What there is to say beyond the line about the Clean lab.
+/// The help text of the Clean lab.
 pub(crate) const CLEAN_DETAILS: Word = Word::new(
     "A take is compared with itself: what a joint never does elsewhere is no movement. Mends are applied from top to bottom.",
 );

@@ -136,7 +136,7 @@ struct Entry<'a> {
     /// Negative for a group, positive for a parameter of that group.
     group: i8,
     name: &'a [u8],
-    /// What follows the name and the link.
+    /// The bytes after the name and the offset of the next entry.
     data: &'a [u8],
     /// The offset of the next entry; `None` for the last.
     next: Option<usize>,

@@ -56,7 +56,7 @@ const UNUSED: [&str; 7] =
 const TELLING: [&str; 7] =
     ["poses", "trans", "pose_body", "posed_joints", "global_rot_mats", "rotations", "v_template"];
 
-/// What the arrays of an archive are.
+/// The content of an archive of arrays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Content {
     Motion,

@@ -106,7 +106,7 @@ pub(super) struct Hinge {
     pub(super) is_knee: bool,
 }
 
-/// What the roles of joints say about a body.
+/// The parts of a body that are known from the roles of its joints.
 pub(super) struct Anatomy {
     roles: Roles,
     pub(super) hips: Option<usize>,
