@@ -65,7 +65,7 @@ fn clean_ui(session: &Session, _: &mut UiState, out: &mut Out, ui: &mut Ui) {
         }
     }
     ui.add_space(space::S);
-    kit::folded_ui(text::TRY_FAULTS, ui, |ui| {
+    kit::folded_ui(text::INJECT_FAULTS, ui, |ui| {
         row(Key::CleanFaults, out, ui);
         row(Key::CleanSeed, out, ui);
     });
@@ -78,8 +78,8 @@ fn faults_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let Some((outcome, facts)) = main_facts(session) else {
         return kit::note_ui(text::LOOKING_FOR_FAULTS, muted, ui);
     };
-    if facts.put_in > 0 {
-        kit::note_ui(&text::put_in(facts.put_in), muted, ui);
+    if facts.injected > 0 {
+        kit::note_ui(&text::injected(facts.injected), muted, ui);
     }
     if facts.faults.is_empty() {
         return kit::note_ui(text::NO_FAULTS, muted, ui);

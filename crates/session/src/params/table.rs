@@ -180,8 +180,8 @@ macro_rules! parameters {
     CleanEnds "clean_ends" "Ends" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Cuts off a T-pose in front of the motion, and standing still at the ends.";
     CleanSkating "clean_skating" "Foot skating" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Holds planted feet that slide in place.";
     CleanSkip "clean_skip" "Left alone" Lab(Clean), Kind::List(ListKind::FaultPlaces), Start::Text(""), "", "Faults that are not mended although their kind is: the kind and the first frame of each, as in spike-34,gap-120." [PlaceInA];
-    CleanFaults "clean_faults" "Faults put in" Lab(Clean), number(0.0, 20.0, 1.0), Start::Number(0.0), "", "Puts this number of faults into the clip, to see how they are found: spikes, gaps, swapped sides and jitter by turns.";
-    CleanSeed "clean_seed" "Seed of the faults" Lab(Clean), number(0.0, 999.0, 1.0), Start::Number(1.0), "", "Chooses where the faults are put in; the same seed puts them in the same places.";
+    CleanFaults "clean_faults" "Injected faults" Lab(Clean), number(0.0, 20.0, 1.0), Start::Number(0.0), "", "Injects this number of faults into the clip, to see how well they are found: spikes, gaps, swapped sides and jitter in turn.";
+    CleanSeed "clean_seed" "Seed of the faults" Lab(Clean), number(0.0, 999.0, 1.0), Start::Number(1.0), "", "Chooses where the faults are injected; the same seed gives the same places.";
 
     Gait "gait" "Motion" Lab(Make), Kind::Choice(MadeAction::CHOICES), Start::Choice(MadeAction::Walk.word()), "", "The action to synthesise.";
     GaitSpeed "gait_speed" "Speed" Lab(Make), auto(0.4, 6.5, 0.05), Start::Auto, "m/s", "The speed of a walk (0.4 to 2.2) or a run (1.8 to 6.5).";
