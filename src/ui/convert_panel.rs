@@ -102,7 +102,7 @@ fn start_ui(session: &Session, state: &mut ConvertState, out: &mut Out, ui: &mut
     });
 }
 
-/// Draws what came of the files: first those that failed, then those with oddities.
+/// Draws the results of the files: first those that failed, then those with warnings.
 fn table_ui(rows: &[ConversionRow], ui: &mut Ui) {
     if rows.is_empty() {
         return;

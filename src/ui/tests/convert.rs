@@ -73,7 +73,7 @@ fn conversion_table_begins_with_what_failed() {
         let top = |label: &str| harness.get_by_label(label).rect().top();
         let (failed, odd) = (top("broken/cut.bvh"), top("set/robot.csv → set/robot.bvh"));
         assert!(failed < odd && odd < top("set/walk.fbx → set/walk.bvh"));
-        harness.get_by_label("2 saved, 1 of them with oddities; 1 failed");
+        harness.get_by_label("2 saved, 1 of them with warnings; 1 failed");
     }
 }
 
