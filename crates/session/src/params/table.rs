@@ -172,7 +172,7 @@ macro_rules! parameters {
     CleanSure "clean_sure" "Minimum confidence" Lab(Clean), number(0.0, 95.0, 5.0), Start::Number(50.0), "%", "Faults that are less certain than this are listed, and left alone. Higher: fewer mends.";
     CleanSwaps "clean_swaps" "Swapped sides" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Swaps left and right back where they are swapped.";
     CleanGaps "clean_gaps" "Gaps" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Fills frames in which a limb or the body holds still between moving frames.";
-    CleanSpikes "clean_spikes" "Spikes" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Draws frames anew in which a joint leaves its way, and turns joints back that turned over.";
+    CleanSpikes "clean_spikes" "Spikes" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Rebuilds frames in which a joint leaves its trajectory, and undoes flips.";
     CleanJitter "clean_jitter" "Jitter" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Filters noise, only where there is some.";
     CleanCutoff "clean_cutoff" "Cut-off" Lab(Clean), auto(2.0, 60.0, 0.5), Start::Auto, "Hz", "The frequency above which jitter is filtered. Higher: quick movements stay, and more of the noise. Auto: by the noise of each joint.";
     CleanDrift "clean_drift" "Drift" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Moves the body back where it drifts or turns evenly over planted feet.";
