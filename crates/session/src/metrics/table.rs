@@ -85,7 +85,7 @@ metrics! {
     LoopVelocitySeam "loop_seam_dps" "Velocity seam", DegreesPerSec, Lower by 5.0,
         "The largest difference of a joint's angular velocity between the end of the cycle and its beginning.",
         "0 is best: no joint changes its velocity where the loop closes.";
-    BareSeam "loop_before_deg" "Bare seam", Degrees, Neutral,
+    GapBeforeClosing "loop_before_deg" "Gap before closing" or "Gap", Degrees, Neutral,
         "The seam without any correction: the angle that the method had to close.",
         "The smaller it is, the less the motion is changed. Above about 30°, choose other ends.";
     // A displacement of 1 cm, as for a sliding foot.
