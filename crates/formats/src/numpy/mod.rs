@@ -22,9 +22,11 @@
 mod array;
 mod body;
 mod bundle;
+mod container;
 mod features;
 mod header;
 mod model;
+mod model_clip;
 mod own;
 mod pickle;
 mod plain;
@@ -36,16 +38,16 @@ mod take;
 mod turns;
 mod write;
 
-pub(super) use bundle::entry_paths;
 pub(super) use header::is_npy;
-pub use model::{SmplModel, model_clip, read_model};
+pub use model::{SmplModel, read_model};
+pub use model_clip::model_clip;
 pub use write::write_npz;
 
 use crate::assemble::assemble;
 use crate::error::{Fault, ImportError};
 use crate::warning::Tally;
 use crate::{ImportOptions, ImportedFile, archive, check_size, has_extension, stem};
-use bundle::{read_npy, read_npz};
+use container::{entry_paths, read_npy, read_npz};
 use segue_text::{Message, msg};
 
 /// The arrays that no motion needs, some of them large.
