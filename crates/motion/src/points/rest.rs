@@ -1,7 +1,7 @@
 //! The rest pose: shapes of clusters, directions of bones, and what the roles of joints say.
 
+use super::body::Body;
 use super::gaps::Track;
-use super::solve::Body;
 use crate::math::{quat, stats};
 use crate::skeleton::{Role, Roles, Side, Skeleton};
 use glam::{Mat3, Quat, Vec3};
