@@ -6,7 +6,9 @@
 //! sends back what a reader does with them.
 
 mod aria;
+mod element;
 mod elements;
+mod numbers;
 #[cfg(test)]
 mod tests;
 mod tree;
@@ -49,7 +51,7 @@ impl Outline {
     /// is not there any more: nothing happens.
     pub(crate) fn request(&self, number: u32, deed: Deed) {
         let mut tree = self.tree();
-        let Some(target_node) = tree.nodes.get(&number).copied() else {
+        let Some(target_node) = tree.numbers.node(number) else {
             return;
         };
         let (action, data) = match deed {

@@ -1,7 +1,8 @@
 //! The elements of one frame, made from the nodes of its widgets.
 
 use super::aria::{aria_role, state};
-use super::tree::{Element, Range, Tree};
+use super::element::{Element, Range};
+use super::numbers::Numbers;
 use eframe::egui::accesskit::{Action, HasPopup, Node, NodeId, Role};
 use std::collections::HashMap;
 
@@ -10,17 +11,13 @@ pub(super) struct Found<'a> {
     pub(super) all: &'a HashMap<NodeId, &'a Node>,
     pub(super) zoom: f64,
     pub(super) elements: Vec<Element>,
+    pub(super) numbers: &'a mut Numbers,
 }
 
 impl Found<'_> {
     /// Adds the elements in a node, and returns the numbers of those directly in it. Containers
     /// without a name give way to their contents.
-    pub(super) fn children_of(
-        &mut self,
-        id: NodeId,
-        is_in_menu: bool,
-        tree: &mut Tree,
-    ) -> Vec<u32> {
+    pub(super) fn children_of(&mut self, id: NodeId, is_in_menu: bool) -> Vec<u32> {
         let Some(&node) = self.all.get(&id) else {
             return Vec::new();
         };
@@ -33,9 +30,9 @@ impl Found<'_> {
                 continue;
             }
             let is_in_menu = is_in_menu || child.role() == Role::Menu;
-            let inner = self.children_of(child_id, is_in_menu, tree);
+            let inner = self.children_of(child_id, is_in_menu);
             if let Some(mut element) = self.element(child, inner.clone()) {
-                element.number = tree.number_of(child_id);
+                element.number = self.numbers.number_of(child_id);
                 if !is_in_menu && element.role.starts_with("menuitem") {
                     // The items of a list that always stands open.
                     element.role = "button";
