@@ -5,18 +5,9 @@ use super::language::Word;
 use super::out::Out;
 use super::state::UiState;
 use super::text;
-use eframe::egui::{Rect, Ui};
+use eframe::egui::Ui;
 use segue_session::{Command, FileCommand, Level, Notices, Session};
 use segue_text::Message;
-
-/// The place of the chip: the row with the heading of a panel.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct NoticePlace {
-    /// The row.
-    pub(crate) row: Rect,
-    /// Where its heading ends.
-    pub(crate) heading_end: f32,
-}
 
 /// The text of the chip.
 #[derive(Clone, Debug, Default, PartialEq)]

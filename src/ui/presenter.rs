@@ -7,7 +7,7 @@ use super::language::{Text, say};
 use super::lessons_panel::go_to;
 use super::out::{Action, Out};
 use super::stage::{Paint, stage_panel_ui};
-use super::state::{Layout, UiState};
+use super::state::{Layout, Presenter, UiState};
 use super::text;
 use super::theme::{Theme, Type, palette_of, space, theme_of};
 use super::timeline::scrub_ui;
@@ -23,37 +23,6 @@ use segue_text::{Message, msg};
 const SHOWN_SECS: f64 = 2.5;
 /// Radius of the ring around the pointer, points.
 const HALO: f32 = 30.0;
-
-/// The state of the presenter mode.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Presenter {
-    /// Whether the stage is shown alone.
-    pub(crate) is_on: bool,
-    /// The pane of a comparison that is shown alone; `None` for all of them.
-    pub(crate) pane: Option<usize>,
-    /// Whether the window was on the whole screen in the last frame.
-    was_fullscreen: bool,
-    /// Until when the bar is shown, seconds of egui's clock.
-    shown_until: f64,
-    /// The steps that were asked for while a lesson was being loaded; back is negative.
-    steps_to_go: i32,
-}
-
-impl Presenter {
-    /// Notes whether the window is on the whole screen. A browser leaves it by Escape without a
-    /// word to the page, and the mode ends with it.
-    pub(crate) fn note_fullscreen(&mut self, is_fullscreen: bool) {
-        if self.is_on && self.was_fullscreen && !is_fullscreen {
-            self.is_on = false;
-        }
-        self.was_fullscreen = self.is_on && is_fullscreen;
-    }
-
-    /// Returns the pane that is shown alone, where there are several.
-    pub(crate) fn pane_alone(&self, count: usize) -> Option<usize> {
-        self.pane.filter(|&pane| self.is_on && count > 1 && pane < count)
-    }
-}
 
 /// Begins to present, or ends it.
 pub(crate) fn toggle(state: &mut UiState, out: &mut Out) {
@@ -241,20 +210,4 @@ fn halo_ui(ui: &Ui) {
         palette.accent.gamma_multiply(0.16),
         Stroke::new(3.0, palette.accent.gamma_multiply(0.7)),
     );
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn presenting_ends_when_the_browser_leaves_the_whole_screen() {
-        let mut presenter = Presenter { is_on: true, ..Presenter::default() };
-        presenter.note_fullscreen(false);
-        assert!(presenter.is_on, "the browser may have refused the whole screen");
-        presenter.note_fullscreen(true);
-        assert!(presenter.is_on);
-        presenter.note_fullscreen(false);
-        assert!(!presenter.is_on);
-    }
 }

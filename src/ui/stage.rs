@@ -27,8 +27,6 @@ use crate::ui::theme::{palette_of, space, theme_of};
 use eframe::egui::{self, Event, Rect, Response, Sense, Ui, pos2, vec2};
 use segue_session::{Command, Session};
 
-pub(crate) use self::swipe::Swipe;
-
 /// Draws the 3D picture: the whole stage, and for each pane that is shown its index in the session
 /// and its place.
 pub(crate) type Paint<'a> = &'a mut dyn FnMut(Rect, &[(usize, Rect)], &mut Ui);

@@ -1,14 +1,21 @@
 //! The state of the interface between frames.
 
+mod convert;
+mod notices;
+mod presenter;
+mod strip;
+mod swipe;
+
+pub(crate) use convert::{ConvertShown, ConvertState};
+pub(crate) use notices::NoticePlace;
+pub(crate) use presenter::Presenter;
+pub(crate) use strip::StripState;
+pub(crate) use swipe::Swipe;
+
 use super::bone_map::BoneMapState;
-use super::convert_panel::ConvertState;
 use super::labs::states::LabStates;
 use super::language::Language;
 use super::library_panel::LibraryState;
-use super::notices::NoticePlace;
-use super::presenter::Presenter;
-use super::stage::Swipe;
-use super::stage::strip::StripState;
 use eframe::egui::Rect;
 use glam::{DVec2, Vec3};
 use segue_scene::Camera;

@@ -1,8 +1,8 @@
 //! The panel in which many files are converted.
 
 use super::*;
-use crate::ui::convert_panel::ConvertShown;
 use crate::ui::out::ConvertAction;
+use crate::ui::state::ConvertShown;
 use segue_session::convert::ConversionRow;
 use std::sync::Arc;
 
