@@ -42,8 +42,7 @@ impl Tree {
         let root = update.tree.as_ref()?.root;
         let all: HashMap<NodeId, &Node> =
             update.nodes.iter().map(|(id, node)| (*id, node)).collect();
-        let mut found =
-            Found { all: &all, zoom, elements: Vec::new(), numbers: &mut self.numbers };
+        let mut found = Found { all: &all, zoom, elements: Vec::new(), numbers: &mut self.numbers };
         let mut top = found.children_of(root, false);
         found.sort_parts(&mut top);
         let elements = found.elements;
@@ -62,8 +61,7 @@ impl Tree {
         for number in &changes.gone {
             self.numbers.forget(*number);
         }
-        let focus =
-            self.numbers.known(update.focus).filter(|number| now.contains_key(number));
+        let focus = self.numbers.known(update.focus).filter(|number| now.contains_key(number));
         changes.focus = focus.unwrap_or(0);
         let is_same = changes.elements.is_empty() && changes.gone.is_empty() && focus == self.focus;
         self.elements = now;

@@ -5,8 +5,8 @@
 mod buttons;
 mod help;
 mod keys;
+mod trigger;
 
-use buttons::name_of;
 pub(crate) use buttons::{command_button_ui, command_icon_ui, command_item_ui};
 pub(crate) use help::help;
 #[cfg(all(test, feature = "ui-tests"))]
@@ -19,15 +19,15 @@ use super::labs::toggle_compare;
 use super::language::Word;
 use super::lessons_panel::{self, toggle_lessons};
 use super::out::{Action, Out};
-use super::presenter;
+use super::presenter::steps::{go_to_step, toggle_presenter};
 use super::stage::framing::frame_everything;
 use super::state::UiState;
 use super::text;
 use super::theme::theme_of;
 use eframe::egui::{Key as Keyboard, Ui};
-use keys::{COMMAND, COMMAND_SHIFT, Focus, NONE, SHIFT, Trigger};
 use segue_session::choices::{Camera, Follow, Look};
 use segue_session::{Command, Key, Kind, PlaybackCommand, Session, Slot, Value};
+use trigger::{COMMAND, COMMAND_SHIFT, Focus, NONE, SHIFT, Trigger};
 
 /// A command that a button, a line of a menu or a key gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -185,7 +185,12 @@ impl UiCommand {
 
     /// Returns the name of its button.
     pub(super) fn name(self, state: &UiState) -> Word {
-        name_of(self, state)
+        match self {
+            Self::Present if state.presenter.is_on => text::STOP_PRESENTING,
+            Self::SwitchLanguage => state.language.next().switch(),
+            Self::ToggleProjector => text::PROJECTOR,
+            _ => self.row().text,
+        }
     }
 
     /// Returns whether the command has switched something on.
@@ -257,9 +262,9 @@ impl UiCommand {
             Self::CopyLink => out.actions.push(Action::CopyLink),
             Self::CopyLinkAsShown => out.actions.push(Action::CopyLinkAsShown),
             Self::CopyReport => out.actions.push(Action::CopyReport),
-            Self::Present => presenter::toggle(state, out),
-            Self::NextStep => presenter::go(true, session, state, out),
-            Self::PreviousStep => presenter::go(false, session, state, out),
+            Self::Present => toggle_presenter(state, out),
+            Self::NextStep => go_to_step(true, session, state, out),
+            Self::PreviousStep => go_to_step(false, session, state, out),
             Self::OpenLibrary => state.library_open = true,
             Self::ConvertFiles => state.convert.is_open = true,
             Self::ToggleTheme => {
@@ -287,7 +292,7 @@ fn close(session: &Session, state: &mut UiState, out: &mut Out) {
         return;
     }
     if state.presenter.is_on && !state.help_open {
-        return presenter::toggle(state, out);
+        return toggle_presenter(state, out);
     }
     let lies_in_front = state.help_open || state.library_open || state.drawing.is_some();
     if lessons_panel::is_open(session) && !lies_in_front {

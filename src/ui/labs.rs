@@ -36,8 +36,8 @@ use super::text;
 use super::theme::space;
 use eframe::egui::{Align, Layout, Ui, UiBuilder};
 use graph::seed_detail;
-use lab_ui::{Compares, LabUi};
-use segue_session::{Command, Group, Key, Kind, LabId, Mark, PARAMS, Session, Slot};
+use lab_ui::LabUi;
+use segue_session::{Group, Key, Kind, LabId, Mark, PARAMS, Session, Slot};
 
 /// Returns the part of the page that a lab has.
 fn of(lab: LabId) -> &'static LabUi {
@@ -62,14 +62,7 @@ fn of(lab: LabId) -> &'static LabUi {
 /// Opens "full, half, third" of the lab's first number, or the lab's own comparison, or goes back
 /// to one pane.
 pub(crate) fn toggle_compare(session: &Session, out: &mut Out) {
-    if session.panes().len() > 1 {
-        out.compare(None);
-        return;
-    }
-    match of(session.params().lab()).compares {
-        Compares::Key(key) => out.commands.push(Command::Compare(key)),
-        Compares::Own(compare) => compare(session, out),
-    }
+    of(session.params().lab()).compares.toggle(session, out);
 }
 
 /// Returns the title of a pane that is compared with no other.

@@ -4,9 +4,6 @@ mod arrange;
 mod files;
 mod row;
 mod selection;
-mod state;
-
-pub(crate) use state::{ClipOrder, LibraryState};
 
 use self::arrange::{Section, arrange};
 use self::files::files_ui;
@@ -16,7 +13,7 @@ use super::commands::{UiCommand, command_icon_ui};
 use super::kit::{self, Button, Icon, MenuItem};
 use super::language::{Text, Word, say};
 use super::out::Out;
-use super::state::{NoticePlace, UiState};
+use super::state::{ClipOrder, NoticePlace, UiState};
 use super::text;
 use super::theme::{palette_of, space, theme_of};
 use eframe::egui::accesskit::Role;

@@ -1,13 +1,14 @@
 //! The presenter mode: the stage alone, for a class. It is a state of the interface and in no link.
 
+pub(crate) mod steps;
+
 use super::appearance::stage_theme;
 use super::commands::{UiCommand, command_button_ui};
 use super::kit::{self, Button, Icon};
 use super::language::{Text, say};
-use super::lessons_panel::go_to;
-use super::out::{Action, Out};
+use super::out::Out;
 use super::stage::{Paint, stage_panel_ui};
-use super::state::{Layout, Presenter, UiState};
+use super::state::{Layout, UiState};
 use super::text;
 use super::theme::{Theme, Type, palette_of, space, theme_of};
 use super::timeline::scrub_ui;
@@ -16,91 +17,13 @@ use eframe::egui::{
     self, Align, CentralPanel, Event, Frame, Id, LayerId, Layout as Flow, Margin, Order, Panel,
     Popup, RichText, Stroke, Ui,
 };
-use segue_session::{Command, Key, Kind, Lesson, PlaybackCommand, Session, Value};
-use segue_text::{Message, msg};
+use segue_session::{Command, Key, PlaybackCommand, Session};
+use steps::{step_name, take_requested_step};
 
 /// Seconds until the bar leaves after the last movement.
 const SHOWN_SECS: f64 = 2.5;
 /// Radius of the ring around the pointer, points.
 const HALO: f32 = 30.0;
-
-/// Begins to present, or ends it.
-pub(crate) fn toggle(state: &mut UiState, out: &mut Out) {
-    let is_on = !state.presenter.is_on;
-    state.presenter = Presenter { is_on, ..Presenter::default() };
-    (state.help_open, state.library_open) = (false, false);
-    out.actions.push(Action::Fullscreen(is_on));
-}
-
-/// Goes to the next or the previous lesson where one is open, else to the next pane of a
-/// comparison, else to the next lab.
-pub(crate) fn go(forward: bool, session: &Session, state: &mut UiState, out: &mut Out) {
-    state.presenter.shown_until = f64::INFINITY;
-    let count = session.panes().len();
-    match session.lesson() {
-        Some(Lesson::Page(page)) => {
-            if let Some(to) = if forward { page.next } else { page.previous } {
-                go_to(&to, out);
-            }
-        }
-        Some(Lesson::Contents(page)) => {
-            if let Some(first) = page.entries().next().filter(|_| forward) {
-                out.commands.push(Command::Try(first.query));
-            }
-        }
-        Some(Lesson::Waiting) => state.presenter.steps_to_go += if forward { 1 } else { -1 },
-        Some(Lesson::Failed(_)) => {}
-        None if count > 1 => {
-            // All panes, then each alone.
-            let at = state.presenter.pane_alone(count).map_or(0, |pane| pane + 1);
-            let next = if forward { at + 1 } else { at + count } % (count + 1);
-            state.presenter.pane = next.checked_sub(1);
-        }
-        None => {
-            let Kind::Choice(labs) = Key::Lab.param().kind else { return };
-            let open = session.params().lab().word();
-            let at = labs.iter().position(|lab| lab.key == open).unwrap_or_default();
-            let next = if forward { Some(at + 1) } else { at.checked_sub(1) };
-            if let Some(lab) = next.and_then(|next| labs.get(next)) {
-                out.set_once(Key::Lab, Value::Choice(lab.key));
-            }
-        }
-    }
-}
-
-/// Goes one of the steps that were asked for while a lesson was being loaded.
-fn go_on(session: &Session, state: &mut UiState, out: &mut Out) {
-    let steps = state.presenter.steps_to_go;
-    match session.lesson() {
-        _ if steps == 0 => {}
-        Some(Lesson::Waiting) => {}
-        Some(Lesson::Page(_) | Lesson::Contents(_)) => {
-            state.presenter.steps_to_go -= steps.signum();
-            go(steps > 0, session, state, out);
-        }
-        Some(Lesson::Failed(_)) | None => state.presenter.steps_to_go = 0,
-    }
-}
-
-/// Returns the step that is shown: the lesson, the pane, or the lab.
-fn step_name(session: &Session, state: &UiState) -> Message {
-    let panes = session.panes();
-    match session.lesson() {
-        Some(Lesson::Page(page)) => msg!(
-            "{number} / {of} · {title}",
-            number = page.number,
-            of = page.of,
-            title = page.page.title.clone()
-        ),
-        Some(Lesson::Contents(page)) => Message::data(page.title.clone()),
-        _ if panes.len() > 1 => state
-            .presenter
-            .pane_alone(panes.len())
-            .and_then(|pane| session.variant_name(panes.get(pane)?))
-            .unwrap_or_else(|| text::ALL_PANES.into()),
-        _ => Key::Lab.param().spoken(session.params().get(Key::Lab)),
-    }
-}
 
 /// Draws the page of a presenter: the stage, and over it a bar while the pointer moves.
 pub(crate) fn presenter_ui(
@@ -110,7 +33,7 @@ pub(crate) fn presenter_ui(
     paint: Paint<'_>,
     ui: &mut Ui,
 ) {
-    go_on(session, state, out);
+    take_requested_step(session, state, out);
     let is_shown = note_movement(state, ui);
     let opacity = ui.ctx().animate_bool(Id::unique("presenter bar"), is_shown);
     // The room for the bar stays empty without it: over the stage it would cover the numbers.

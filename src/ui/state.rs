@@ -1,12 +1,14 @@
 //! The state of the interface between frames.
 
 mod convert;
+mod library;
 mod notices;
 mod presenter;
 mod strip;
 mod swipe;
 
 pub(crate) use convert::{ConvertShown, ConvertState};
+pub(crate) use library::{ClipOrder, HeldKeys, LibraryState};
 pub(crate) use notices::NoticePlace;
 pub(crate) use presenter::Presenter;
 pub(crate) use strip::StripState;
@@ -15,7 +17,6 @@ pub(crate) use swipe::Swipe;
 use super::bone_map::BoneMapState;
 use super::labs::states::LabStates;
 use super::language::Language;
-use super::library_panel::LibraryState;
 use eframe::egui::Rect;
 use glam::{DVec2, Vec3};
 use segue_scene::Camera;

@@ -3,10 +3,9 @@
 use super::keys::keys_of;
 use super::{Target, UiCommand};
 use crate::ui::kit::{self, Button, MenuItem};
-use crate::ui::language::{Text, Word, say};
+use crate::ui::language::{Text, say};
 use crate::ui::out::Out;
 use crate::ui::state::UiState;
-use crate::ui::text;
 use eframe::egui::Ui;
 use segue_session::Session;
 
@@ -20,7 +19,7 @@ pub(crate) fn command_icon_ui(
 ) {
     let row = command.row();
     let button = match row.icon {
-        Some(icon) => Button::icon_only(icon, name_of(command, state)),
+        Some(icon) => Button::icon_only(icon, command.name(state)),
         None => Button::new(row.text).quiet(),
     };
     command_button_ui(command, button, session, state, out, ui);
@@ -36,7 +35,7 @@ pub(crate) fn command_button_ui(
     ui: &mut Ui,
 ) {
     let row = command.row();
-    let name = name_of(command, state);
+    let name = command.name(state);
     let button = button.name(name).hint(Text::EMPTY).selected(command.is_on(session));
     let enabled = command.is_enabled(session, state);
     let response = ui.add_enabled_ui(enabled, |ui| kit::button_ui(button, ui)).inner;
@@ -60,20 +59,10 @@ pub(crate) fn command_item_ui(
     ui: &mut Ui,
 ) {
     let shortcut = keys_of(&[command]);
-    let (text, icon) = (name_of(command, state), command.row().icon);
+    let (text, icon) = (command.name(state), command.row().icon);
     let item = MenuItem { text: text.into(), icon, shortcut: (&shortcut).into(), chosen: None };
     let enabled = command.is_enabled(session, state);
     if ui.add_enabled_ui(enabled, |ui| kit::menu_item_ui(item, ui)).inner.clicked() {
         command.run(&mut Target { session, state, out, ui });
-    }
-}
-
-/// Returns the name of a command where its label alone is not enough.
-pub(super) fn name_of(command: UiCommand, state: &UiState) -> Word {
-    match command {
-        UiCommand::Present if state.presenter.is_on => text::STOP_PRESENTING,
-        UiCommand::SwitchLanguage => state.language.next().switch(),
-        UiCommand::ToggleProjector => text::PROJECTOR,
-        _ => command.row().text,
     }
 }

@@ -6,14 +6,14 @@ use crate::ui::rows::Kept;
 use crate::ui::state::UiState;
 use eframe::egui::Ui;
 use glam::DVec2;
-use segue_session::{Key, Pane, Params, Session};
+use segue_session::{Command, Key, Pane, Params, Session};
 use segue_text::Message;
 
 /// A lab's part of the page; each lab's own file has one, as `LAB`.
 pub(crate) struct LabUi {
     /// The rows of its panel.
     pub(crate) panel_ui: fn(&Session, &mut UiState, &mut Out, &mut Ui),
-    /// A line about it, and what there is to say beyond that.
+    /// The line about it, and its help text.
     pub(crate) about: [Word; 2],
     /// The motion of a pane that is kept and saved.
     pub(crate) kept: fn(&Session, usize) -> Kept,
@@ -36,6 +36,17 @@ pub(crate) enum Compares {
     Key(Key),
     /// A choice of the lab's own.
     Own(fn(&Session, &mut Out)),
+}
+
+impl Compares {
+    /// Opens the comparison, or goes back to one pane.
+    pub(crate) fn toggle(&self, session: &Session, out: &mut Out) {
+        match self {
+            _ if session.panes().len() > 1 => out.compare(None),
+            Self::Key(key) => out.commands.push(Command::Compare(*key)),
+            Self::Own(compare) => compare(session, out),
+        }
+    }
 }
 
 /// The content of a pane.

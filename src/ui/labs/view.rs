@@ -3,7 +3,6 @@
 use crate::ui::clip_panel::clip_panel_ui;
 use crate::ui::kit::{self, Button};
 use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
-use crate::ui::labs::toggle_compare;
 use crate::ui::out::Out;
 use crate::ui::rows::{Detail, Kept, clip_choice_ui, foot_rows_ui, param_row_ui, slot_row_ui};
 use crate::ui::state::UiState;
@@ -82,6 +81,6 @@ fn compared_clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         text::COMPARE_CLIPS
     };
     if kit::button_ui(Button::new(label).hint(text::COMPARE_CLIPS_HELP), ui).clicked() {
-        toggle_compare(session, out);
+        LAB.compares.toggle(session, out);
     }
 }

@@ -1,9 +1,9 @@
 //! The strip below the stage: the numbers of every pane, in the same places below each, or the
 //! reason why a pane has none.
 
+use super::columns::shown_panes;
 use super::explanation::{Explained, explanation_ui};
 use super::pane::{problem_below, problem_height, problem_ui};
-use super::shown_panes;
 use crate::ui::kit::{self, Button, GridRoom, Icon, Metric, MetricGrid, Rank};
 use crate::ui::language::Word;
 use crate::ui::out::Out;

@@ -16,6 +16,11 @@ pub(crate) struct Presenter {
 }
 
 impl Presenter {
+    /// Returns the state in which the mode begins, or is over.
+    pub(crate) fn new(is_on: bool) -> Self {
+        Self { is_on, ..Self::default() }
+    }
+
     /// Records whether the window is in full screen. A browser leaves full screen on Escape without
     /// telling the page, and the mode ends with it.
     pub(crate) fn note_fullscreen(&mut self, is_fullscreen: bool) {
