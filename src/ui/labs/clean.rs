@@ -3,7 +3,7 @@
 use crate::ui::kit::{self, Button, Icon, Moment};
 use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
 use crate::ui::out::Out;
-use crate::ui::rows::{Detail, Kept, clip_sets_ui, param_row_ui, slot_row_ui};
+use crate::ui::rows::{Detail, KeepOffer, clip_sets_ui, param_row_ui, slot_row_ui};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{palette_of, space};
@@ -21,7 +21,7 @@ use segue_text::Message;
 pub(super) const LAB: LabUi = LabUi {
     panel_ui: clean_ui,
     about: [text::CLEAN_ABOUT, text::CLEAN_DETAILS],
-    kept: |_, pane| Kept::result(pane),
+    kept: |_, pane| KeepOffer::result(pane),
     compares: Compares::Own(compare_mends),
     title,
     hint: |_| None,

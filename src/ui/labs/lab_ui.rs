@@ -2,7 +2,7 @@
 
 use crate::ui::language::Word;
 use crate::ui::out::Out;
-use crate::ui::rows::Kept;
+use crate::ui::rows::KeepOffer;
 use crate::ui::state::UiState;
 use eframe::egui::Ui;
 use glam::DVec2;
@@ -16,7 +16,7 @@ pub(crate) struct LabUi {
     /// The line about it, and its help text.
     pub(crate) about: [Word; 2],
     /// The motion of a pane that is kept and saved.
-    pub(crate) kept: fn(&Session, usize) -> Kept,
+    pub(crate) kept: fn(&Session, usize) -> KeepOffer,
     /// The start of its comparison.
     pub(crate) compares: Compares,
     /// The title of a pane.
