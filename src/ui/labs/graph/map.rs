@@ -34,7 +34,7 @@ pub(crate) fn map_panel_ui(session: &Session, state: &mut UiState, out: &mut Out
 }
 
 /// The drawn parts of a graph, by the indices of the whole graph's transitions.
-pub(crate) struct Drawn {
+pub(crate) struct MapDrawing {
     built: Arc<BuiltGraph>,
     choices: Option<Arc<Choices>>,
     pub(super) ends: Vec<[Place; 2]>,
@@ -43,7 +43,7 @@ pub(crate) struct Drawn {
     pub(super) stretches: Vec<Stretch>,
 }
 
-impl Drawn {
+impl MapDrawing {
     /// Returns the parts, made anew when the graph or its probabilities have changed.
     pub(super) fn of(built: &Arc<BuiltGraph>, walk: Option<&Walk>, ui: &Ui) -> Arc<Self> {
         let id = Id::unique("graph drawn");
@@ -153,7 +153,7 @@ pub(crate) fn map_ui(
     let Some(field) = session.graph_field() else {
         return;
     };
-    let drawn = built.map(|built| Drawn::of(built, walk.map(|walk| &**walk), ui));
+    let drawn = built.map(|built| MapDrawing::of(built, walk.map(|walk| &**walk), ui));
     let set = graph_clips.set();
     let parts: Vec<(usize, Message)> = (graph_clips.names().iter().enumerate())
         .filter_map(|(clip, name)| {
