@@ -264,7 +264,7 @@ fn sides_ui(map: &HeatMap<'_>, axes: &Axes, stripes: f32, ui: &Ui) {
 
 /// The last place of the pin that is held.
 #[derive(Clone, Copy, Debug)]
-struct Held(Option<[f64; 2]>);
+struct HeldPin(Option<[f64; 2]>);
 
 /// Makes a target of a fingertip's size of each pin. Returns the one that is used.
 fn touched_pins(map: &HeatMap<'_>, axes: &Axes, id: Id, ui: &Ui) -> Option<Response> {
@@ -328,20 +328,20 @@ fn events(
     if response.drag_started() {
         let origin =
             ui.input(|input| input.pointer.press_origin()).or(response.interact_pointer_pos());
-        ui.data_mut(|data| data.insert_temp(held_id, Held(origin.and_then(near))));
+        ui.data_mut(|data| data.insert_temp(held_id, HeldPin(origin.and_then(near))));
     }
     if let (true, Some(pos)) = (response.dragged(), response.interact_pointer_pos()) {
-        let Held(from) = ui.data(|data| data.get_temp(held_id)).unwrap_or(Held(None));
+        let HeldPin(from) = ui.data(|data| data.get_temp(held_id)).unwrap_or(HeldPin(None));
         let to = axes.secs(pos);
         let stays = axes.rect.expand(OUT).contains(pos);
         match (stays, from) {
             (true, _) if from != Some(to) => {
                 events.push(HeatMapEvent::Pin { from, to });
-                ui.data_mut(|data| data.insert_temp(held_id, Held(Some(to))));
+                ui.data_mut(|data| data.insert_temp(held_id, HeldPin(Some(to))));
             }
             (false, Some(from)) => {
                 events.push(HeatMapEvent::Unpin(from));
-                ui.data_mut(|data| data.insert_temp(held_id, Held(None)));
+                ui.data_mut(|data| data.insert_temp(held_id, HeldPin(None)));
             }
             _ => {}
         }

@@ -20,7 +20,7 @@ pub(crate) struct PathHand {
     /// The place on the path under the pointer, and its parameter.
     pub(crate) place: Option<(DVec2, f64)>,
     /// The control point that is dragged.
-    pub(crate) held: Option<Held>,
+    pub(crate) held: Option<DraggedPoint>,
     /// Why the last edit was not made.
     pub(crate) said: Option<Message>,
     /// The values that the camera got when the whole path was brought into sight; `None` before.
@@ -29,7 +29,7 @@ pub(crate) struct PathHand {
 
 /// A control point that is dragged.
 #[derive(Clone, Debug)]
-pub(crate) struct Held {
+pub(crate) struct DraggedPoint {
     /// Its index.
     pub(crate) index: usize,
     /// The pane in which it was taken.
