@@ -50,7 +50,7 @@ pub struct MotionTrace {
     root_mps: Vec<f32>,
     rare_mps: f32,
     max_mps: f32,
-    /// From every frame on: the turn of the hips within 0.2 s, degrees.
+    /// Per frame: the turn of the hips over the next 0.2 s, degrees.
     turned_deg: Vec<f32>,
     max_turn_deg: f32,
     stances_cm: Vec<f64>,

@@ -14,7 +14,7 @@ use std::ops::Range;
 /// Time to either side over which a foot that is lifted out of the ground is lifted smoothly,
 /// seconds.
 const LIFT_SECS: f64 = 0.08;
-/// Of the planted frames, the share in which the ankle is lowest: there the sole is flat.
+/// The share of the planted frames, those with the lowest ankle, in which the sole counts as flat.
 const FLAT_SHARE: f32 = 0.3;
 
 /// The places of both feet.
@@ -39,7 +39,7 @@ pub(super) fn goals(task: &Task, tracks: &Tracks) -> FootGoals {
     for &(side, foot) in &feet {
         shifts[side] = (0..foot.source.len()).map(|f| levels.shift(task, foot, f)).collect();
     }
-    // The body is raised as a whole by what planted feet usually need, and each leg by the rest.
+    // Raise the whole body by the typical correction of planted feet, and each leg by the rest.
     let contacts = task.source.contacts();
     let planted = feet.iter().flat_map(|&(side, _)| {
         let heights = shifts[side].iter().enumerate();
