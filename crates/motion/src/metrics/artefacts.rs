@@ -36,7 +36,7 @@ const MIN_STANCE_SECS: f64 = 0.1;
 const MAX_STANCE_MPS: f32 = 0.6;
 /// Skating is measured below this height above the 2nd percentile of the foot's heights, metres.
 const SKATING_M: f32 = 0.025;
-/// A speed exceeds another one if it is higher by more than this factor: less is rounding.
+/// The factor by which a speed must exceed another to count as higher: less is rounding error.
 const SPEED_TOLERANCE: f32 = 1.01;
 
 /// The measurements of a motion that [`Artefacts`] and [`ResultMetrics`](super::ResultMetrics)
@@ -122,7 +122,7 @@ impl MotionTrace {
         others.iter().copied().filter(is_alike).collect()
     }
 
-    /// Returns the turn of the hips within 0.2 s from every frame on, degrees; empty without hip
+    /// Returns the turn of the hips over the 0.2 s after each frame, degrees; empty without hip
     /// joints.
     pub(super) fn turned_deg(&self) -> &[f32] {
         &self.turned_deg

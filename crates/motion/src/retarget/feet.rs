@@ -11,8 +11,7 @@ use crate::transition::envelope::{largest_around, smoothed};
 use glam::Vec3;
 use std::ops::Range;
 
-/// Time to either side over which a foot that is lifted out of the ground is lifted smoothly,
-/// seconds.
+/// The smoothing time, to either side, of lifting a foot out of the ground, seconds.
 const LIFT_SECS: f64 = 0.08;
 /// The share of the planted frames, those with the lowest ankle, in which the sole counts as flat.
 const FLAT_SHARE: f32 = 0.3;
@@ -22,12 +21,12 @@ const FLAT_SHARE: f32 = 0.3;
 pub(super) struct FootGoals {
     /// The amount by which the whole body is raised, metres.
     pub(super) rise: f32,
-    /// The shifts of the ankles from where the directions of the bones put them on the raised body,
-    /// metres; empty for a leg that one of the bodies lacks.
+    /// The shifts of the ankles from their positions by rotations only, on the raised body, metres;
+    /// empty for a leg that one of the bodies lacks.
     pub(super) shifts: [Vec<Vec3>; 2],
 }
 
-/// Returns where the feet go at full weight.
+/// Returns the goals of the feet at full weight.
 pub(super) fn goals(task: &Task, tracks: &Tracks) -> FootGoals {
     let legs =
         || tracks.legs.iter().enumerate().filter_map(|(side, leg)| Some((side, leg.as_ref()?)));
