@@ -1,6 +1,6 @@
-//! The commands of the interface in one table: the label, keys and icon of each, when it can be
-//! given, and what it does. The bar, the menu of a phone, the buttons on the
-//! stage, the list of shortcuts and the keyboard are made from it.
+//! The commands of the interface in one table: the label, shortcuts and icon of each, when it is
+//! enabled, and its effect. The bar, the menu of a phone, the buttons on the stage, the list of
+//! shortcuts and the keyboard use it.
 
 mod buttons;
 mod help;
@@ -29,7 +29,7 @@ use segue_session::choices::{Camera, Follow, Look};
 use segue_session::{Command, Key, Kind, PlaybackCommand, Session, Slot, Value};
 use trigger::{COMMAND, COMMAND_SHIFT, Focus, NONE, SHIFT, Trigger};
 
-/// A command that a button, a line of a menu or a key gives.
+/// A command of a button, a menu item or a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum UiCommand {
     TogglePlay,
@@ -40,7 +40,7 @@ pub(crate) enum UiCommand {
     ToBeginning,
     /// Sets the in or out mark at the playhead.
     Mark(Key),
-    /// Takes the in or out mark away.
+    /// Clears the in or out mark.
     ClearMark(Key),
     Slower,
     Faster,
@@ -58,7 +58,7 @@ pub(crate) enum UiCommand {
     Undo,
     Redo,
     CopyLink,
-    /// Copies the link with what is the reader's own otherwise.
+    /// Copies the link with the look of the page, which otherwise stays the reader's own.
     CopyLinkAsShown,
     CopyReport,
     OpenLibrary,
@@ -77,12 +77,12 @@ pub(crate) enum UiCommand {
     Close,
 }
 
-/// The label of a command, and the ways in which it is given.
+/// The label and the shortcuts of a command.
 #[derive(Clone, Copy, Debug)]
 struct Row {
-    /// The label of its button and of its line in a menu; empty for keys alone.
+    /// The label of its button and menu item; empty for a command without either.
     text: Word,
-    /// The hint on its button; empty where the label says it all.
+    /// The hint on its button; empty where the label suffices.
     tooltip: Word,
     icon: Option<Icon>,
     triggers: &'static [Trigger],
@@ -169,13 +169,13 @@ impl UiCommand {
         }
     }
 
-    /// Returns whether the command can be given now.
+    /// Returns whether the command is enabled.
     fn is_enabled(self, session: &Session, state: &UiState) -> bool {
         match self {
             Self::SwapClips => session.uses(Slot::A) && session.uses(Slot::B),
             Self::Undo => session.can_undo(),
             Self::Redo => session.can_redo(),
-            // A driven character is steered by the arrows.
+            // The arrows steer a driven character.
             Self::StepBack | Self::StepOn | Self::TenBack | Self::TenOn => !session.is_driven(),
             Self::ToggleStrafe => session.is_driven(),
             Self::NextStep | Self::PreviousStep => state.presenter.is_on,
@@ -193,7 +193,7 @@ impl UiCommand {
         }
     }
 
-    /// Returns whether the command has switched something on.
+    /// Returns whether the command's switch is on.
     fn is_on(self, session: &Session) -> bool {
         let params = session.params();
         match self {
@@ -282,8 +282,8 @@ impl UiCommand {
     }
 }
 
-/// Ends the search or the selection in the library, or closes the layers in front of the lesson, or
-/// else the lesson.
+/// Closes the frontmost of: the search or selection in the library, the layers in front of the
+/// lesson, the lesson.
 fn close(session: &Session, state: &mut UiState, out: &mut Out) {
     if !state.help_open && std::mem::take(&mut state.convert.is_open) {
         return;

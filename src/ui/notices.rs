@@ -14,7 +14,7 @@ use segue_text::Message;
 struct Summary {
     text: Message,
     mood: Mood,
-    /// The whole of what is new.
+    /// The full text of the new notices.
     news: Message,
     is_alert: bool,
 }
@@ -74,9 +74,9 @@ fn mood_of(level: Level) -> Mood {
     }
 }
 
-/// Returns what the chip says: failures until they were seen, what is new for a moment, and then
-/// the number of the notices that wait. `seen` is the number of the first notice that was not in
-/// the open list.
+/// Returns the text of the chip: failures until they were seen, new notices for a moment, and then
+/// the number of open notices. `seen` is the number of the first notice that was not in the open
+/// list.
 fn summary_of(notices: &Notices, seen: u64) -> Option<Summary> {
     let list = notices.list();
     let failures: Vec<_> =

@@ -20,7 +20,7 @@ use eframe::egui::{
 use segue_session::{Command, Key, PlaybackCommand, Session};
 use steps::{step_name, take_requested_step};
 
-/// Seconds until the bar leaves after the last movement.
+/// Seconds from the last movement until the bar hides.
 const SHOWN_SECS: f64 = 2.5;
 /// Radius of the ring around the pointer, points.
 const HALO: f32 = 30.0;
@@ -36,7 +36,8 @@ pub(crate) fn presenter_ui(
     take_requested_step(session, state, out);
     let is_shown = note_movement(state, ui);
     let opacity = ui.ctx().animate_bool(Id::unique("presenter bar"), is_shown);
-    // The room for the bar stays empty without it: over the stage it would cover the numbers.
+    // The room for the bar stays reserved while it is hidden: over the stage it would cover the
+    // numbers.
     let look = stage_theme(session, theme_of(ui)).palette();
     let room = Frame::new()
         .fill(look.stage.sky)
@@ -61,8 +62,8 @@ pub(crate) fn presenter_ui(
     halo_ui(ui);
 }
 
-/// Returns whether the bar is shown: for a while after the pointer or a key was used, and as long
-/// as the pointer rests on it.
+/// Returns whether the bar is shown: for a while after input of the pointer or a key, and while the
+/// pointer is over it.
 fn note_movement(state: &mut UiState, ui: &Ui) -> bool {
     let presenter = &mut state.presenter;
     let (now, is_moving, pointer) = ui.input(|input| {
@@ -90,7 +91,7 @@ fn bar_height(ui: &Ui) -> f32 {
     theme_of(ui).row_height().max(34.0) + 2.0 * space::S
 }
 
-/// Draws the bar: play, the time, the way back and forth, and the way out.
+/// Draws the bar: play, the time, the previous and next step, and the button that ends the mode.
 fn bar_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     ui.horizontal_centered(|ui| {

@@ -1,4 +1,4 @@
-//! Commands as buttons and as lines of a menu.
+//! Commands as buttons and menu items.
 
 use super::keys::keys_of;
 use super::{Target, UiCommand};
@@ -25,7 +25,7 @@ pub(crate) fn command_icon_ui(
     command_button_ui(command, button, session, state, out, ui);
 }
 
-/// Shows a button that gives a command. Its tooltip says what it does, and the keys that do it.
+/// Shows a button of a command, with a tooltip about its effect and its shortcuts.
 pub(crate) fn command_button_ui(
     command: UiCommand,
     button: Button<'_>,
@@ -39,7 +39,7 @@ pub(crate) fn command_button_ui(
     let button = button.name(name).hint(Text::EMPTY).selected(command.is_on(session));
     let enabled = command.is_enabled(session, state);
     let response = ui.add_enabled_ui(enabled, |ui| kit::button_ui(button, ui)).inner;
-    // Made only while the pointer is over the button.
+    // Build the tooltip only while the pointer is over the button.
     let response = response.on_hover_ui(|ui| {
         let what = say(if row.tooltip.is_empty() { name } else { row.tooltip }, ui);
         let keys = keys_of(&[command]);
@@ -50,7 +50,7 @@ pub(crate) fn command_button_ui(
     }
 }
 
-/// Shows a line of a menu that gives a command.
+/// Shows a menu item of a command.
 pub(crate) fn command_item_ui(
     command: UiCommand,
     session: &Session,

@@ -1,4 +1,4 @@
-//! The keys that give commands.
+//! The keyboard shortcuts of commands.
 
 use super::trigger::{COMMAND, Focus, NONE, Trigger};
 use super::{Target, UiCommand};
@@ -26,7 +26,7 @@ pub(in crate::ui) const LAB_KEYS: [Keyboard; 14] = [
     Keyboard::Backtick,
 ];
 
-/// The commands that the keyboard gives, besides [`UiCommand::OpenLab`].
+/// The commands with shortcuts, besides [`UiCommand::OpenLab`].
 const WITH_KEYS: [UiCommand; 29] = [
     UiCommand::Redo,
     UiCommand::Undo,
@@ -59,7 +59,7 @@ const WITH_KEYS: [UiCommand; 29] = [
     UiCommand::PreviousStep,
 ];
 
-/// Gives the commands whose keys are pressed, unless text is being typed.
+/// Runs the commands whose shortcuts are pressed, unless text is being typed.
 pub(crate) fn take_keys(session: &Session, state: &mut UiState, out: &mut Out, ui: &Ui) {
     let ctx = ui.ctx();
     if ctx.text_edit_focused() {
@@ -97,7 +97,7 @@ pub(crate) fn take_keys(session: &Session, state: &mut UiState, out: &mut Out, u
         }
     }
     for (index, key) in LAB_KEYS.into_iter().enumerate() {
-        // A map that has the focus is made larger and smaller with these.
+        // These keys zoom a map that has the focus.
         let zooms = matches!(key, Keyboard::Num0 | Keyboard::Minus | Keyboard::Equals);
         let how = if zooms { Focus::Respected } else { Focus::Ignored };
         if is_free(how) && is_pressed(Trigger::Keys(NONE, key)) {
@@ -106,8 +106,8 @@ pub(crate) fn take_keys(session: &Session, state: &mut UiState, out: &mut Out, u
     }
 }
 
-/// Returns the first keys of commands, one behind the other: `Shift ← →`. Only a key that stands
-/// alone has a name to translate, such as `Space`.
+/// Returns the first shortcut of each command, in one text: `Shift ← →`. Only a single key has a
+/// name to translate, such as `Space`.
 pub(super) fn keys_of(commands: &[UiCommand]) -> Message {
     let mut words: Vec<&'static str> = Vec::new();
     for command in commands {

@@ -2,27 +2,27 @@
 
 use eframe::egui::{Key as Keyboard, Modifiers};
 
-/// A way in which the keyboard gives a command.
+/// A shortcut of a command.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Trigger {
     Keys(Modifiers, Keyboard),
-    /// The keys with which the system copies, whatever the keyboard.
+    /// The system's shortcut for copying, on any keyboard.
     Copy,
-    /// A character, wherever it stands on the keyboard.
+    /// A character, wherever it is on the keyboard.
     Typed(&'static str),
 }
 
-/// The cases in which a key is left to the widget that has the focus.
+/// The cases in which a key goes to the focused widget instead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Focus {
     /// No widget uses the key.
     Ignored,
-    /// The key is left to any widget that has the focus.
+    /// The key goes to any focused widget.
     Respected,
-    /// As [`Self::Respected`], but for widgets that were focused by the pointer: after a drag of a
-    /// slider the key plays the motion.
+    /// The key goes to a widget that was focused by the keyboard: after dragging a slider, Space
+    /// still plays the motion.
     RespectedByKeyboard,
-    /// The key is left to a menu that is open, which closes itself.
+    /// The key goes to an open menu, which closes itself.
     MenuRespected,
 }
 

@@ -262,18 +262,18 @@ fn sides_ui(map: &HeatMap<'_>, axes: &Axes, stripes: f32, ui: &Ui) {
     }
 }
 
-/// The last place of the pin that is held.
+/// The last position of the pin that is being dragged; `None` for a drag without a pin.
 #[derive(Clone, Copy, Debug)]
 struct HeldPin(Option<[f64; 2]>);
 
-/// Makes a target of a fingertip's size of each pin. Returns the one that is used.
+/// Adds a touch target to each pin. Returns the one in use.
 fn touched_pins(map: &HeatMap<'_>, axes: &Axes, id: Id, ui: &Ui) -> Option<Response> {
     let side = theme_of(ui).hit();
     let pins = map.pins.iter().enumerate().map(|(index, &pin)| {
         let target = Rect::from_center_size(axes.at(pin), vec2(side, side));
         ui.interact(target, id.with(("pin", index)), Sense::click_and_drag())
     });
-    // All of them are made, so that each stays the widget that it was.
+    // Add all of them, so that each keeps its widget id.
     pins.fold(None, |used, pin| {
         let is_used = pin.dragged() || pin.drag_stopped() || pin.clicked();
         if is_used { Some(pin) } else { used }

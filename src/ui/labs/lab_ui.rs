@@ -1,4 +1,4 @@
-//! The parts that every lab has on the page, as types.
+//! The types of a lab's part of the page.
 
 use crate::ui::language::Word;
 use crate::ui::out::Out;
@@ -23,7 +23,7 @@ pub(crate) struct LabUi {
     pub(crate) title: fn(&Shown<'_>) -> Title,
     /// The hint over the stage.
     pub(crate) hint: fn(&Session) -> Option<Word>,
-    /// Takes a line that was drawn over the ground; `None` where none can be drawn.
+    /// Handles a line that was drawn on the ground; `None` where none can be drawn.
     pub(crate) take_line: Option<TakeLine>,
 }
 
@@ -34,7 +34,7 @@ pub(crate) type TakeLine = fn(&[DVec2], &Session, &mut UiState, &mut Out);
 pub(crate) enum Compares {
     /// A parameter: the value that is set, and others.
     Key(Key),
-    /// A choice of the lab's own.
+    /// A comparison of the lab's own.
     Own(fn(&Session, &mut Out)),
 }
 
@@ -68,7 +68,7 @@ impl Shown<'_> {
         self.session.library().find(id).map(|entry| entry.title())
     }
 
-    /// Returns the word on screen of a parameter's value.
+    /// Returns the text on screen for a parameter's value.
     pub(crate) fn spoken(&self, key: Key) -> Message {
         key.param().spoken(self.params.get(key))
     }

@@ -34,7 +34,7 @@ pub(crate) fn go_to_step(forward: bool, session: &Session, state: &mut UiState, 
         Some(Lesson::Waiting) => state.presenter.steps_to_go += if forward { 1 } else { -1 },
         Some(Lesson::Failed(_)) => {}
         None if count > 1 => {
-            // All panes, then each alone.
+            // First all panes, then each alone.
             let at = state.presenter.pane_alone(count).map_or(0, |pane| pane + 1);
             let next = if forward { at + 1 } else { at + count } % (count + 1);
             state.presenter.pane = next.checked_sub(1);
