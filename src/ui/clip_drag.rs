@@ -87,6 +87,19 @@ pub(crate) fn dragged_clip_ui(session: &Session, ui: &Ui) {
     kit::paint::put(&painter, at.center(), Align2::CENTER_CENTER, galley);
 }
 
+/// Takes a clip that was dropped on the place of a slot.
+pub(crate) fn take_drop_on_slot(
+    slot: Slot,
+    place: Rect,
+    session: &Session,
+    out: &mut Out,
+    ui: &Ui,
+) {
+    if let Some(id) = clip_dropped_on(place, session, |clip| text::use_as(clip, slot), ui) {
+        out.commands.push(Command::Assign(slot, id));
+    }
+}
+
 /// Takes a clip that was dropped on a pane of the stage: among compared clips it takes the pane's
 /// place, otherwise it becomes A.
 pub(crate) fn take_drop_on_pane(

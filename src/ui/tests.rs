@@ -17,8 +17,8 @@ use segue_session::choices::{Mistake, Selected as _};
 use segue_session::export::{ExportFormat, ExportOptions, export};
 use segue_session::reading::Content;
 use segue_session::{
-    Command, Entry, FileCommand, Key, Kind, Level, List, Origin, Outcome, PageMemory, Session,
-    Slot, SourceFile, StorageState, Value,
+    Command, Entry, FileCommand, Key, Kind, LabId, Level, List, Origin, Outcome, PageMemory,
+    Session, Slot, SourceFile, StorageState, Value,
 };
 use std::fmt::Write as _;
 use std::sync::Arc;

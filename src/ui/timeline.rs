@@ -12,6 +12,7 @@ use self::events::timeline_event;
 use self::tracks::{
     feet_names, hard_turns, named_outcomes, round_name, seams, stripes, tracks, whole_track,
 };
+use crate::ui::clip_drag::take_drop_on_slot;
 use crate::ui::kit::{self, Curves, Part, Series, Timeline};
 use crate::ui::labs::in_time;
 use crate::ui::language::Word;
@@ -23,7 +24,7 @@ use crate::ui::transport_row::{Playhead, transport_row_ui};
 use eframe::egui::Ui;
 use segue_motion::skeleton::Role;
 use segue_session::choices;
-use segue_session::{Key, Pane, Session, frame_at};
+use segue_session::{Key, Pane, Session, Slot, frame_at};
 use segue_text::{Message, msg};
 
 /// Draws the seconds alone, with the playhead and the ends of the loop.
@@ -41,7 +42,7 @@ pub(crate) fn scrub_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         out_point: params.optional(Key::Out),
         ..Timeline::default()
     };
-    for event in kit::timeline_ui(&timeline, ui) {
+    for event in kit::timeline_ui(&timeline, ui).events {
         timeline_event(event, &[], session, outcome, out);
     }
 }
@@ -150,8 +151,19 @@ pub(crate) fn timeline_panel_ui(
         moments: &seams,
         curves: if layout == Layout::Phone { &[] } else { &curves },
     };
-    for event in kit::timeline_ui(&timeline, ui) {
+    let response = kit::timeline_ui(&timeline, ui);
+    for event in response.events {
         timeline_event(event, &clips, session, outcome, out);
+    }
+    for (track, bar) in tracks.iter().zip(response.bars) {
+        let slot = match track.part {
+            Part::A => Slot::A,
+            Part::B => Slot::B,
+            Part::Result | Part::None => continue,
+        };
+        if session.uses(slot) {
+            take_drop_on_slot(slot, bar, session, out, ui);
+        }
     }
 }
 

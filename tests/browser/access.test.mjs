@@ -83,6 +83,49 @@ onOneBackend("menus, help and contents are elements as the page is", async ({ op
   assert.deepEqual(await faults(page), [], "help");
 });
 
+// Fails when a window over the page, a refusal, the presenter or the other language is wrong for
+// screen readers.
+onOneBackend("dialogs, refusals, the presenter and Chinese are elements as the page is", async ({ open }) => {
+  const { page, segue } = await open("lab=blend&play=off", { viewport: [1280, 800] });
+  const button = (name) => page.getByRole("button", { name, exact: true }).first();
+  const press = async (element) => {
+    await until("it is there", async () => (await element.count()) > 0);
+    await element.focus();
+    await page.keyboard.press("Enter");
+  };
+  const sound = async (what) => {
+    await elements(page);
+    assert.deepEqual(await faults(page), [], what);
+  };
+  const closed = (what) => until(`${what} is closed`, async () => (await page.getByRole("dialog").count()) === 0);
+  await elements(page);
+
+  const number = page.locator("#outline [aria-label='Stage'] button[aria-haspopup]").first();
+  await press(number);
+  await until("the explanation is open", async () => (await page.getByRole("dialog").count()) === 1);
+  await sound("explanation");
+  await page.keyboard.press("Escape");
+  await closed("the explanation");
+
+  await press(button("More"));
+  await press(page.getByRole("menuitem", { name: "Convert many files…" }));
+  await until("the converter is open", async () => (await page.getByRole("dialog", { name: "Convert many files" }).count()) === 1);
+  await sound("converter");
+  await page.keyboard.press("Escape");
+  await closed("the converter");
+
+  await segue("set", { lab: "speed", a: "idle", b: "idle" });
+  await until("the refusal is told", async () => (await segue("panes"))[0].refusal);
+  await sound("refusal");
+  await segue("set", { lang: "zh-Hant", lab: "match" });
+  await until("the page is Chinese", () => page.evaluate(() => document.documentElement.lang === "zh-Hant"));
+  await sound("Chinese");
+  await segue("set", { lang: "en", lab: "blend", a: "walk", b: "run" });
+  await page.locator("#segue").press("p");
+  await until("the stage stands alone", async () => (await page.getByRole("region", { name: "Library" }).count()) === 0);
+  await sound("presenter");
+});
+
 // Fails when Tab does not begin at the first element, leaves the reading order, or loses a press
 // during a slow frame.
 onOneBackend("Tab follows the reading order, and its first stop skips to the parameters", async ({ open }) => {

@@ -538,7 +538,7 @@ fn time_ui(mock: &mut Mock, phone: bool, ui: &mut Ui) {
         moments: &moments,
         curves: if phone { &[] } else { &curves },
     };
-    for event in timeline_ui(&timeline, ui) {
+    for event in timeline_ui(&timeline, ui).events {
         match event {
             TimelineEvent::Seek(time) => mock.now = time,
             TimelineEvent::SetTransitionStart(time) => mock.transition.0 = time,

@@ -11,9 +11,9 @@ use super::words;
 use crate::ui::language::{Text, Word, say};
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{
-    Align, Align2, Color32, CursorIcon, Frame, Id, Layout, Margin, Popup, PopupCloseBehavior, Rect,
-    RectAlign, Response, Role, ScrollArea, Sense, Shadow, Stroke, StrokeKind, Ui, UiBuilder,
-    WidgetInfo, pos2, vec2,
+    Align, Align2, Color32, CursorIcon, Frame, Id, Label, Layout, Margin, Popup,
+    PopupCloseBehavior, Rect, RectAlign, Response, Role, ScrollArea, Sense, Shadow, Stroke,
+    StrokeKind, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 use segue_text::Message;
 
@@ -61,10 +61,9 @@ pub(crate) fn notice_ui(notice: &Notice<'_>, ui: &mut Ui) -> Option<NoticeEvent>
         let sign_rect =
             Align2::LEFT_TOP.anchor_size(row.left_top() + vec2(0.0, 1.0), vec2(sign, sign));
         paint_icon(notice.mood.icon(), sign_rect, ink, ui.painter());
-        let at = put(ui.painter(), row.left_top() + vec2(text_left, 0.0), Align2::LEFT_TOP, text);
+        let at = Rect::from_min_size(row.left_top() + vec2(text_left, 0.0), text.size());
+        ui.put(at, Label::new(text).selectable(true));
         let english = notice.text.to_string();
-        let label = ui.interact(at, ui.make_persistent_id(("notice", &english)), Sense::hover());
-        describe(&label, &WidgetInfo::labeled(Role::Label, true, say(notice.text, ui)));
         let close =
             Rect::from_min_size(pos2(row.right() - hit + 4.0, row.top() - 4.0), vec2(hit, hit));
         let close_id = ui.make_persistent_id(("dismiss", &english));

@@ -391,7 +391,7 @@ fn timeline() -> Harness<'static, Timed> {
             }],
             ..Timeline::default()
         };
-        for event in timeline_ui(&view, ui) {
+        for event in timeline_ui(&view, ui).events {
             match event {
                 TimelineEvent::Seek(time) => state.now = time,
                 TimelineEvent::SetTransitionStart(time) => state.transition.0 = time,

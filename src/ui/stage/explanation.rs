@@ -84,8 +84,8 @@ fn content_ui(of: &Explained<'_>, session: &Session, out: &mut Out, ui: &mut Ui)
     });
 }
 
-/// Draws a text that wraps.
+/// Draws a text that wraps and can be selected.
 fn line_ui(text: Text<'_>, step: Type, color: Color32, ui: &mut Ui) {
     let text = RichText::new(say(text, ui)).font(theme_of(ui).font(step)).color(color);
-    ui.add(Label::new(text).wrap());
+    ui.add(Label::new(text).wrap().selectable(true));
 }

@@ -31,7 +31,12 @@ pub(super) fn language() -> Language {
 }
 
 /// Returns a page in Chinese.
-fn chinese(size: Vec2, theme: Theme, link: &str, pack: &LanguagePack) -> Harness<'static, Page> {
+pub(super) fn chinese(
+    size: Vec2,
+    theme: Theme,
+    link: &str,
+    pack: &LanguagePack,
+) -> Harness<'static, Page> {
     let mut page = page(link);
     page.state.language = language();
     let mut harness = harness(size, theme, page);

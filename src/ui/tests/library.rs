@@ -403,6 +403,30 @@ fn row_is_dragged_to_a_slot_a_pane_and_a_list() {
 }
 
 #[test]
+fn row_is_dragged_to_a_bar_of_the_timeline_and_the_map_of_a_graph() {
+    let mut blend = harness(DESK, DARK, page("lab=blend&a=walk&b=run&play=off"));
+    // The bar of A ends in the transition and that of B begins there, a row below.
+    let edge = |name: &str, harness: &Harness<'_, Page>| harness.get_by_label(name).rect();
+    let bar_of_a = edge("Transition start", &blend).center_top() + vec2(-40.0, 18.0);
+    drag("Stand", bar_of_a, &mut blend);
+    assert_eq!(slots(&blend), ["idle", "run"]);
+    let bar_of_b = edge("Transition end", &blend).center_top() + vec2(40.0, 42.0);
+    drag("Walk", bar_of_b, &mut blend);
+    assert_eq!(slots(&blend), ["idle", "walk"]);
+
+    let mut page = page("lab=graph&clips=walk,walk_left&walk_seconds=10&play=off");
+    page.state.library_open = true;
+    let mut graph = harness(DESK, DARK, page);
+    for _ in 0..2 {
+        let map = graph.get_by_label(text::ALL_DISTANCES.english()).rect();
+        drag("Run", map.center(), &mut graph);
+        assert_eq!(graph.state().session.graph_clip_ids(), ["walk", "walk_left", "run"]);
+        while graph.state_mut().session.work() {}
+        graph.run();
+    }
+}
+
+#[test]
 fn row_is_worked_by_the_keyboard() {
     let mut harness = harness(DESK, DARK, page("lab=blend&a=walk&b=run&play=off"));
     let focus = |harness: &mut Harness<'_, Page>| {

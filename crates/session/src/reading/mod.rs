@@ -61,7 +61,7 @@ pub struct ReadSetup {
     pub roles: BTreeMap<usize, Roles>,
     /// The corrected body parts of rigs.
     #[serde(default)]
-    pub(crate) bone_maps: Arc<BoneMaps>,
+    pub bone_maps: Arc<BoneMaps>,
     /// Files that it may depend on: skeletons for the motion of another file.
     pub companions: Vec<Companion>,
     /// SHA-256 of the file's bytes, if it is known already; lower-case hexadecimal.

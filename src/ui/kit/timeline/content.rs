@@ -3,7 +3,7 @@
 use super::super::chip::Part;
 use super::super::curves::Curves;
 use crate::ui::language::{Text, Word};
-use eframe::egui::Color32;
+use eframe::egui::{Color32, Rect};
 use segue_motion::clip::StanceEnd;
 use segue_text::Message;
 use std::ops::Range;
@@ -125,6 +125,15 @@ pub(crate) enum StanceEvent {
     },
     /// Take back all corrections.
     Reset,
+}
+
+/// The user's input to a timeline, and the places of its bars.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct TimelineResponse {
+    /// The input, in its order.
+    pub(crate) events: Vec<TimelineEvent>,
+    /// The bar of each track, points.
+    pub(crate) bars: Vec<Rect>,
 }
 
 /// The user's input to a timeline. Times are in seconds, within the timeline.

@@ -14,13 +14,20 @@ use eframe::egui::{
 use segue_motion::math::sort::sort_by;
 use segue_text::msg;
 
-pub(super) fn paint_track(track: &Track<'_>, row: Rangef, axis: TimeAxis, duration: f64, ui: &Ui) {
+/// Draws the bar of a track, and returns its place.
+pub(super) fn paint_track(
+    track: &Track<'_>,
+    row: Rangef,
+    axis: TimeAxis,
+    duration: f64,
+    ui: &Ui,
+) -> Rect {
     let palette = palette_of(ui);
     let (fill, ink) = track.part.fill(palette);
     let (start, end) = (track.start.clamp(0.0, duration), track.end.clamp(0.0, duration));
     let bar = Rect::from_x_y_ranges(axis.x_of(start)..=axis.x_of(end), row);
     if bar.width() < 1.0 {
-        return;
+        return bar;
     }
     // A fade ends in a faint colour, not in none: the bar's shape stays in sight to its end.
     let faint = palette.panel.lerp_to_gamma(fill, 0.14);
@@ -48,6 +55,7 @@ pub(super) fn paint_track(track: &Track<'_>, row: Rangef, axis: TimeAxis, durati
     if name.size().x < bar.width() * (1.0 - fade_in - fade_out).max(0.2) {
         put(ui.painter(), pos2(x, row.center()), anchor, name);
     }
+    bar
 }
 
 /// Draws seconds along the bottom, and hairlines up through the curves.

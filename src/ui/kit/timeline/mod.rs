@@ -21,13 +21,13 @@ use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{Align2, Id, Rangef, Rect, Sense, Ui, pos2};
 
 pub(crate) use self::content::{
-    Moment, StanceEdit, StanceEvent, Stripe, Timeline, TimelineEvent, Track,
+    Moment, StanceEdit, StanceEvent, Stripe, Timeline, TimelineEvent, TimelineResponse, Track,
 };
 pub(crate) use self::stances::corrected_hint;
 
 /// Draws the bars, the curves, and the playhead over both. Press anywhere to go there, drag to
 /// scrub, use the arrow keys for frames.
-pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineEvent> {
+pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> TimelineResponse {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let scale = theme.scale();
     let id = ui.make_persistent_id("timeline");
@@ -99,6 +99,7 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
         ruler,
         ui,
     );
+    let mut tracks = Vec::new();
     for (index, track) in timeline.tracks.iter().enumerate() {
         let y = bars.top() + head + index as f32 * pitch;
         let row = Rangef::new(y, y + bar_height);
@@ -110,7 +111,7 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
             );
             put(ui.painter(), pos2(bars.left(), row.center()), Align2::LEFT_CENTER, label);
         }
-        paint_track(track, row, axis, timeline.duration, ui);
+        tracks.push(paint_track(track, row, axis, timeline.duration, ui));
     }
     let mut rows = Vec::new();
     let mut below = bars.top() + tracks_height;
@@ -203,7 +204,7 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
     paint_playhead(axis.x_of(now), bars.top(), plot_row.bottom(), &scrub, ui);
     focus_ring(area, radius::S, &scrub, ui);
     hover_ui(&plots, axis, &scrub, ui);
-    events
+    TimelineResponse { events, bars: tracks }
 }
 
 /// Returns the lower edge on the page that the timeline drawn last needs: its curves fill all the

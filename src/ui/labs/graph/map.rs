@@ -1,7 +1,8 @@
 //! The distances of all windows as a picture, with the transitions on it.
 
 use super::jump::{jump_words, named, open_jump, point_at};
-use super::table;
+use super::{rows, table};
+use crate::ui::clip_drag::clip_dropped_on;
 use crate::ui::kit::{self, Fate, Matrix, MatrixMark, Stretch, TILE, Tile};
 use crate::ui::out::Out;
 use crate::ui::state::UiState;
@@ -182,7 +183,12 @@ pub(crate) fn map_ui(
     };
     let mut tiles = Tiles::of(field, ui);
     let ctx = ui.ctx().clone();
-    let response = kit::matrix_ui(&matrix, most_height, &mut |tile| tiles.texture(tile, &ctx), ui);
+    let mut texture = |tile| tiles.texture(tile, &ctx);
+    let shown = ui.scope(|ui| kit::matrix_ui(&matrix, most_height, &mut texture, ui));
+    let (response, place) = (shown.inner, shown.response.rect);
+    if let Some(id) = clip_dropped_on(place, session, text::add_to_list, ui) {
+        rows::add_clip(id, session, out);
+    }
     let high_cm = tiles.high_cm;
     tiles.keep(ui);
     kit::heat_legend_ui(&text::heat_ends(high_cm), ui);

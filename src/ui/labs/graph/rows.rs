@@ -76,10 +76,8 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         clip_rows_ui(&title, &ids, session, out, ui);
         added = add_clip_ui(session, |entry| !ids.contains(&entry.id), ui);
     });
-    if let Some(id) = added.or(dropped).filter(|id| !ids.contains(id)) {
-        let mut all = ids.clone();
-        all.push(id);
-        set_clips(&all, out);
+    if let Some(id) = added.or(dropped) {
+        add_clip(id, session, out);
     }
     if let Some(words) = session.graph_clips().and_then(|graph_clips| {
         text::moved_onto_first(graph_clips, |name| session.clip_title(name))
@@ -136,6 +134,15 @@ fn clip_rows_ui(title: &Message, ids: &[String], session: &Session, out: &mut Ou
             });
         }
     });
+}
+
+/// Adds a clip to the graph, unless it has it already.
+pub(super) fn add_clip(id: String, session: &Session, out: &mut Out) {
+    let mut ids = session.graph_clip_ids();
+    if !ids.contains(&id) {
+        ids.push(id);
+        set_clips(&ids, out);
+    }
 }
 
 /// Sets the clips of the graph.

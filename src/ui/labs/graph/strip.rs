@@ -68,7 +68,7 @@ fn time_ui(session: &Session, walk: &Walk, out: &mut Out, ui: &mut Ui) {
         moments: &seams,
         ..Timeline::default()
     };
-    for event in kit::timeline_ui(&timeline, ui) {
+    for event in kit::timeline_ui(&timeline, ui).events {
         match event {
             TimelineEvent::Seek(secs) => {
                 out.commands.push(Command::Playback(PlaybackCommand::Seek(secs)));

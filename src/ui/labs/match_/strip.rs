@@ -128,7 +128,7 @@ fn time_ui(
         ..Timeline::default()
     };
     let top = ui.cursor().top();
-    let events = kit::timeline_ui(&timeline, ui);
+    let events = kit::timeline_ui(&timeline, ui).events;
     if nothing_yet {
         let plot = ui.max_rect().with_min_y(top).intersect(ui.min_rect());
         let words = RichText::new(say(text::COSTS_LATER, ui)).font(theme_of(ui).font(Type::Small));
