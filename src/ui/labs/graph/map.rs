@@ -1,7 +1,7 @@
 //! The distances of all windows as a picture, with the transitions on it.
 
 use super::jump::{jump_words, named, open_jump, point_at};
-use super::{rows, table};
+use super::{clips, table};
 use crate::ui::clip_drag::clip_dropped_on;
 use crate::ui::kit::{self, Fate, Matrix, MatrixMark, Stretch, TILE, Tile};
 use crate::ui::out::Out;
@@ -187,7 +187,7 @@ pub(crate) fn map_ui(
     let shown = ui.scope(|ui| kit::matrix_ui(&matrix, most_height, &mut texture, ui));
     let (response, place) = (shown.inner, shown.response.rect);
     if let Some(id) = clip_dropped_on(place, session, text::add_to_list, ui) {
-        rows::add_clip(id, session, out);
+        clips::add_clip(id, session, out);
     }
     let high_cm = tiles.high_cm;
     tiles.keep(ui);

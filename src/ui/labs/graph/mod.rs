@@ -1,6 +1,7 @@
 //! The Graph lab: the clips and the parameters of graph and walk, the picture of all distances, the
 //! graph as bars and arcs, and the table of numbers.
 
+mod clips;
 mod jump;
 mod map;
 mod rows;
