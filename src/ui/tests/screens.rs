@@ -47,8 +47,10 @@ fn timeline_of_every_lab_is_whole_on_every_screen() {
 
 /// With `SEGUE_GALLERY`, writes the pictures by which a change of the whole page is judged.
 #[test]
-#[ignore = "224 pictures, to be looked at"]
 fn every_lab_is_drawn_on_every_screen_in_every_theme_and_language() {
+    if std::env::var_os("SEGUE_GALLERY").is_none() {
+        return;
+    }
     let pack = super::chinese::pack();
     for (screen, size, theme) in [
         ("desk", DESK, DARK),
