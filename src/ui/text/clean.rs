@@ -45,7 +45,7 @@ pub(crate) const fn fault_kind(kind: FaultKind) -> Word {
         FaultKind::Drift => "Drift",
         FaultKind::Ground => "Ground height",
         FaultKind::Ends => "Ends",
-        FaultKind::Skating => "Foot skating",
+        FaultKind::Skating => "Sliding feet",
         FaultKind::Rate => "Frame rate",
     })
 }

@@ -178,7 +178,7 @@ macro_rules! parameters {
     CleanDrift "clean_drift" "Drift" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Moves the body back where it drifts or turns evenly over planted feet.";
     CleanGround "clean_ground" "Ground height" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Brings planted feet to height 0, also where the ground rises evenly.";
     CleanEnds "clean_ends" "Ends" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Cuts off a T-pose in front of the motion, and standing still at the ends.";
-    CleanSkating "clean_skating" "Foot skating" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Holds planted feet that slide in place.";
+    CleanSkating "clean_skating" "Sliding feet" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Holds planted feet that slide in place.";
     CleanSkip "clean_skip" "Left alone" Lab(Clean), Kind::List(ListKind::FaultPlaces), Start::Text(""), "", "Faults that are not mended although their kind is: the kind and the first frame of each, as in spike-34,gap-120." [PlaceInA];
     CleanFaults "clean_faults" "Injected faults" Lab(Clean), number(0.0, 20.0, 1.0), Start::Number(0.0), "", "Injects this number of faults into the clip, to see how well they are found: spikes, gaps, swapped sides and jitter in turn.";
     CleanSeed "clean_seed" "Seed of the faults" Lab(Clean), number(0.0, 999.0, 1.0), Start::Number(1.0), "", "Chooses where the faults are injected; the same seed gives the same places.";
