@@ -6,7 +6,9 @@
 //! sends back what a reader does with them.
 
 mod aria;
+mod element;
 mod elements;
+mod numbers;
 #[cfg(test)]
 mod tests;
 mod tree;
@@ -21,7 +23,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 #[derive(Clone, Default)]
 pub(crate) struct Outline(Arc<Mutex<Tree>>);
 
-/// Something that a reader does with an element.
+/// An action of a screen reader's user on an element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Deed {
     Click,
@@ -30,13 +32,13 @@ pub(crate) enum Deed {
 }
 
 impl Outline {
-    /// Begins to tell the page of the widgets of `ctx`. `show` hands it changes, as JSON.
+    /// Reports changes of the widgets of `ctx` to the page from now on: calls `show` with JSON.
     pub(crate) fn install(&self, ctx: &Context, show: fn(&str)) {
         ctx.add_plugin(OutlinePlugin { outline: self.clone(), show });
     }
 
-    /// Has the tree told from the next frame on: describing every widget costs time, and before
-    /// this nobody listens.
+    /// Starts the reports with the next frame. They are off at first, because describing every
+    /// widget costs time.
     pub(crate) fn enable(&self) {
         self.tree().is_enabled = true;
     }
@@ -45,11 +47,11 @@ impl Outline {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Does something with the element of this number in the next frame. An element that is gone
-    /// is not there any more: nothing happens.
+    /// Performs an action on the element of this number in the next frame; nothing happens if the
+    /// element is gone.
     pub(crate) fn request(&self, number: u32, deed: Deed) {
         let mut tree = self.tree();
-        let Some(target_node) = tree.nodes.get(&number).copied() else {
+        let Some(target_node) = tree.numbers.node(number) else {
             return;
         };
         let (action, data) = match deed {
@@ -61,8 +63,8 @@ impl Outline {
         tree.events.push(Event::AccessKitActionRequest(request));
     }
 
-    /// Passes a key on that was pressed or released on an element. `name` and `code` are those of
-    /// the browser's event.
+    /// Forwards a key press or release on an element. `name` and `code` are those of the browser's
+    /// event.
     pub(crate) fn press(&self, name: &str, code: &str, pressed: bool, modifiers: Modifiers) {
         let physical_key = key_of(code);
         let Some(key) = key_of(name).or(physical_key) else {
@@ -70,21 +72,21 @@ impl Outline {
         };
         let mut tree = self.tree();
         tree.events.push(Event::Key { key, physical_key, pressed, repeat: false, modifiers });
-        // A field may have taken the focus in the meantime: what is typed is text to it.
+        // A field may have taken the focus in the meantime, and needs the typed text.
         let is_text = name.chars().count() == 1 && !modifiers.command && !modifiers.alt;
         if pressed && is_text {
             tree.events.push(Event::Text(name.to_owned()));
         }
     }
 
-    /// Says whether an element of the tree has the keyboard. egui then counts as focused, although
-    /// its canvas is not.
+    /// Sets whether an element of the tree has the keyboard focus. egui then counts as focused,
+    /// although its canvas is not.
     pub(crate) fn set_has_keyboard(&self, has_keyboard: bool) {
         self.tree().has_keyboard = has_keyboard;
     }
 }
 
-/// Returns egui's name of a browser's key.
+/// Returns egui's key for the key name of a browser event.
 fn key_of(name: &str) -> Option<Key> {
     let plain = name.strip_prefix("Key").or_else(|| name.strip_prefix("Digit"));
     Key::from_name(match name {
@@ -93,7 +95,7 @@ fn key_of(name: &str) -> Option<Key> {
     })
 }
 
-/// Takes each frame's nodes, and puts in what was done with the elements.
+/// The plugin that takes each frame's nodes, and adds the reader's events to egui's input.
 struct OutlinePlugin {
     outline: Outline,
     show: fn(&str),

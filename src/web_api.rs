@@ -150,8 +150,8 @@ impl SegueHandle {
         self.listener.replace(Some(listener));
     }
 
-    /// Tells `listener(changes)` after each frame how the elements of the page have to change to be
-    /// those that are drawn; see `web/js/outline.js`.
+    /// Calls `listener(changes)` after each frame with the changes that bring the page's elements
+    /// up to date with the widgets; see `web/js/outline.js`.
     #[wasm_bindgen(js_name = setOutline)]
     pub fn set_outline(&self, listener: Function) {
         OUTLINE_LISTENER.replace(Some(listener));
@@ -159,13 +159,13 @@ impl SegueHandle {
         self.inbox.wake();
     }
 
-    /// Says whether one of those elements has the keyboard.
+    /// Sets whether an element of the outline has the keyboard focus.
     #[wasm_bindgen(js_name = setOutlineFocus)]
     pub fn set_outline_focus(&self, has_keyboard: bool) {
         self.outline.set_has_keyboard(has_keyboard);
     }
 
-    /// Does something with one of those elements: `click`, `focus`, or `value` with a number.
+    /// Performs an action on an element of the outline: `click`, `focus`, or `value` with a number.
     pub fn act(&self, number: u32, action: &str, value: Option<f64>) {
         let deed = match (action, value) {
             ("click", _) => Deed::Click,
@@ -177,8 +177,8 @@ impl SegueHandle {
         self.inbox.wake();
     }
 
-    /// Passes a key on that was pressed or released on one of those elements. `modifiers` is the
-    /// sum of 1 for Shift, 2 for Control, 4 for Alt and 8 for Command.
+    /// Forwards a key press or release on an element of the outline. `modifiers` is the sum of 1
+    /// for Shift, 2 for Control, 4 for Alt and 8 for Command.
     pub fn press(&self, key: &str, code: &str, pressed: bool, modifiers: u8) {
         let [shift, ctrl, alt, mac_cmd] = [1, 2, 4, 8].map(|bit| modifiers & bit != 0);
         let modifiers = Modifiers { alt, ctrl, shift, mac_cmd, command: ctrl || mac_cmd };
@@ -186,8 +186,8 @@ impl SegueHandle {
         self.inbox.wake();
     }
 
-    /// Returns whether the link says that the page is embedded. The page then answers the one
-    /// around it, and stores nothing.
+    /// Returns whether the link says that the page is embedded. An embedded page answers its parent
+    /// page, and stores nothing.
     #[wasm_bindgen(js_name = isEmbedded)]
     pub fn is_embedded(&self) -> bool {
         self.segue.try_borrow().is_ok_and(|segue| segue.is_embedded())
@@ -221,7 +221,7 @@ impl SegueHandle {
         self.changed();
         while self.borrow()?.is_reading(task) {
             sleep(10).await;
-            // A hidden page has no frames that would poll.
+            // Frames do not run on a hidden page, so poll here.
             self.borrow_mut()?.poll();
         }
         self.settled().await?;
@@ -249,7 +249,7 @@ impl SegueHandle {
     /// clip of the library.
     pub async fn loaded(&self) -> Result<JsValue, JsValue> {
         self.opened().await?;
-        // A hidden page has no frames that would poll.
+        // Frames do not run on a hidden page, so poll here.
         while {
             let mut segue = self.borrow_mut()?;
             segue.poll();
@@ -445,7 +445,7 @@ impl SegueHandle {
     /// Waits until everything that depends on the last change is computed.
     async fn settled(&self) -> Result<(), JsValue> {
         loop {
-            // A hidden page has no frames that would poll.
+            // Frames do not run on a hidden page, so poll here.
             let more = {
                 let mut segue = self.borrow_mut()?;
                 segue.poll() || segue.is_busy()

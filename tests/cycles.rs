@@ -111,7 +111,7 @@ fn automatic_cycles_equal_the_exhaustive_search() {
         let least = least_cm(&clip, &contacts, height, &search);
         let looped = close_loop(&source, found.cycle.clone(), &LoopOptions::default()).unwrap();
         eprintln!(
-            "{name:>44}: {:.2} to {:.2} s of {:.2}, {:.2} cm apart (least {least:.2}), bare seam {:.1}°, phases {:.2?} apart",
+            "{name:>44}: {:.2} to {:.2} s of {:.2}, {:.2} cm apart (least {least:.2}), gap {:.1}°, phases {:.2?} apart",
             clip.time_of(found.cycle.start),
             clip.time_of(found.cycle.end),
             clip.duration_secs(),

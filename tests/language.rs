@@ -41,13 +41,14 @@ const TABLES: [&str; 3] = [
 ];
 
 /// Code before a literal that users do not see: reasons for programmers, the log, names of widgets.
-const UNSEEN: [&str; 17] = [
+const UNSEEN: [&str; 18] = [
     "reason = ",
     "expect(",
     "unreachable!(",
     "debug_assert!(",
     "assert!(",
     "Id::unique(",
+    "Id::unique((",
     "Id::new(",
     "Grid::new(",
     "Plot::new(",
@@ -62,8 +63,8 @@ const UNSEEN: [&str; 17] = [
 ];
 
 /// Literals that look like sentences and are not: names of files, of joints and of widgets' memory,
-/// and texts that only the tests of a library read.
-const NO_SENTENCE: [&str; 35] = [
+/// errors that the page's scripts get, and texts that only the tests of a library read.
+const NO_SENTENCE: [&str; 38] = [
     "Lcl Rotation",
     "Lcl Translation",
     "{} and {}",
@@ -93,6 +94,9 @@ const NO_SENTENCE: [&str; 35] = [
     "(pointer: coarse)",
     "BTreeMap<Role, RoleJoint>",
     "LargeFile({} bytes)",
+    "WebGPU: {}. WebGL 2: {}",
+    "the WebGL context was lost",
+    "the browser provides no working WebGL context",
     "a joint that this skeleton does not have",
     "no joint was found for the {}: choose one by hand",
     "`{name}` is the {}: chosen by hand",

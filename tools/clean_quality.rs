@@ -221,7 +221,7 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
         let spoilt = damage(clip, original.roles(), count, arguments.seed + number as u64)?;
         let damages = &spoilt.damages;
         let motion = Arc::new(Motion::with_roles(spoilt.clip, original.roles()));
-        // What is not sure is told, and not mended unless somebody asks for it.
+        // Uncertain faults are listed, and only mended on request.
         let sure = |motion: &Arc<Motion>| -> Vec<Fault> {
             find_faults(motion).into_iter().filter(Fault::is_sure).collect()
         };

@@ -1,4 +1,4 @@
-//! What holds of every motion file that was read, whatever its bytes.
+//! The invariants of every motion file that was read, whatever its bytes.
 
 use segue_formats::ImportedClip;
 use segue_motion::skin::SkinnedMesh;

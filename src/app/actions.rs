@@ -9,8 +9,8 @@ use segue_session::export::file_name;
 use segue_text::{Message, msg};
 
 impl Segue {
-    /// Warns once, before the first file is read, that the page around this one drives it by its
-    /// API, and so can read the files.
+    /// Warns once, before the first file is read, that the embedding page controls Segue through
+    /// its API, and so can read the files.
     pub(super) fn warn_of_host(&mut self) {
         if self.panels.host_reads && !std::mem::replace(&mut self.has_warned_of_host, true) {
             self.session.say(Level::Warning, ui::HOST_READS);

@@ -59,10 +59,10 @@ impl Converter {
         task >= FIRST_TASK
     }
 
-    /// Adds a file, also while others are converted.
+    /// Adds a file; allowed while a conversion is running.
     pub(super) fn add_file(&mut self, name: String, bytes: FileBytes) {
         let bytes = match bytes {
-            // The bytes of a skeleton file go with each task.
+            // Each task carries the bytes of the skeleton files, so they stay in memory.
             FileBytes::Here(bytes) if !is_skeleton(&name) => platform::outside_memory(bytes),
             other => other,
         };
@@ -169,8 +169,8 @@ impl Converter {
         Some(run.conversion.finish())
     }
 
-    /// Returns the skeleton files among those that wait, and leaves them out where there are
-    /// motions that need them.
+    /// Returns the queued skeleton files, and removes them from the queue if there are motions that
+    /// need them.
     fn take_skeletons(&mut self) -> Vec<Companion> {
         let has_motions = self
             .waiting

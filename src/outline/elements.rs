@@ -1,7 +1,8 @@
 //! The elements of one frame, made from the nodes of its widgets.
 
 use super::aria::{aria_role, state};
-use super::tree::{Element, Range, Tree};
+use super::element::{Element, Range};
+use super::numbers::Numbers;
 use eframe::egui::accesskit::{Action, HasPopup, Node, NodeId, Role};
 use std::collections::HashMap;
 
@@ -10,17 +11,13 @@ pub(super) struct Found<'a> {
     pub(super) all: &'a HashMap<NodeId, &'a Node>,
     pub(super) zoom: f64,
     pub(super) elements: Vec<Element>,
+    pub(super) numbers: &'a mut Numbers,
 }
 
 impl Found<'_> {
-    /// Adds the elements in a node, and returns the numbers of those directly in it. Containers
-    /// without a name give way to their contents.
-    pub(super) fn children_of(
-        &mut self,
-        id: NodeId,
-        is_in_menu: bool,
-        tree: &mut Tree,
-    ) -> Vec<u32> {
+    /// Adds the elements in a node, and returns the numbers of its direct children. Containers
+    /// without a name are replaced by their contents.
+    pub(super) fn children_of(&mut self, id: NodeId, is_in_menu: bool) -> Vec<u32> {
         let Some(&node) = self.all.get(&id) else {
             return Vec::new();
         };
@@ -33,11 +30,11 @@ impl Found<'_> {
                 continue;
             }
             let is_in_menu = is_in_menu || child.role() == Role::Menu;
-            let inner = self.children_of(child_id, is_in_menu, tree);
+            let inner = self.children_of(child_id, is_in_menu);
             if let Some(mut element) = self.element(child, inner.clone()) {
-                element.number = tree.number_of(child_id);
+                element.number = self.numbers.number_of(child_id);
                 if !is_in_menu && element.role.starts_with("menuitem") {
-                    // The items of a list that always stands open.
+                    // The items of a list that is always open.
                     element.role = "button";
                     element.state = element.state.map(|(_, value)| ("aria-pressed", value));
                 }
@@ -54,16 +51,16 @@ impl Found<'_> {
         numbers
     }
 
-    /// Returns the element of a node, but for its number; none for a node that tells nothing.
+    /// Returns the element of a node, without its number; `None` for a node without information.
     fn element(&self, node: &Node, children: Vec<u32>) -> Option<Element> {
         let is_text = matches!(node.role(), Role::Label | Role::Heading);
         let name = if is_text { node.value().or(node.label()) } else { node.label() };
         let name = name.map_or_else(|| self.labels(node), str::to_owned);
-        // A container that has nothing but a hint stands for what lies in it.
+        // A container with nothing but a hint is replaced by its contents.
         let is_hint = node.description() == Some(&name) && node.role() == Role::GenericContainer;
         let mut role = aria_role(node, !name.is_empty() && !is_hint)?;
         if role == "button" && !children.is_empty() {
-            // A window that comes to the front when it is pressed.
+            // A window that is raised by a press.
             role = "group";
         }
         if (is_text || role == "group") && name.is_empty() && children.is_empty() {
@@ -108,8 +105,7 @@ impl Found<'_> {
         })
     }
 
-    /// Gives the hint of a container to the first thing in it that can be worked, where that has
-    /// none of its own.
+    /// Gives the hint of a container to the first control in it, unless that has one of its own.
     fn describe(&mut self, inner: &[u32], hint: Option<&str>) {
         let Some(hint) = hint else {
             return;
@@ -125,7 +121,7 @@ impl Found<'_> {
         }
     }
 
-    /// Returns the place of the smallest rectangle around some elements.
+    /// Returns the bounding rectangle of some elements.
     fn around(&self, numbers: &[u32]) -> [i32; 4] {
         let within = self.elements.iter().filter(|element| numbers.contains(&element.number));
         let corners = within.map(|element| element.place).filter(|place| place[2] > 0);
@@ -142,8 +138,8 @@ impl Found<'_> {
         texts.join(" ")
     }
 
-    /// Puts the parts of the page into the order in which they are read: from the bar at the top to
-    /// the timeline, and what lies over the page last.
+    /// Sorts the parts of the page in reading order: from the bar at the top to the timeline,
+    /// overlays last.
     pub(super) fn sort_parts(&self, numbers: &mut [u32]) {
         let of = self.by_number();
         numbers.sort_by_key(|number| {
@@ -161,7 +157,7 @@ impl Found<'_> {
         });
     }
 
-    /// Puts the elements of a line in order, from left to right.
+    /// Sorts the elements of a line from left to right.
     fn sort_line(&self, numbers: &mut [u32]) {
         let of = self.by_number();
         numbers.sort_by_key(|number| of[number].place[0]);

@@ -11,9 +11,9 @@ use super::language::{Word, say};
 use super::out::{Action, Out};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
-use bones::{BoneEvent, bones_ui};
+use bones::{BoneDrag, BoneEvent, bones_ui};
 use eframe::egui::{DragAndDrop, Id, RichText, Ui, vec2};
-use figure::{FigureEvent, figure_ui};
+use figure::{FigureEvent, figure_ui, sign_of};
 use segue_motion::clip::Motion;
 use segue_motion::skeleton::{Role, RoleSource};
 use segue_session::bone_map::{BoneMap, role_changes};
@@ -32,10 +32,6 @@ pub(crate) struct BoneMapState {
     /// Whether a choice on one side leaves the other side alone.
     one_side: bool,
 }
-
-/// A bone that is dragged from the list, by the index of its joint.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct BoneDrag(usize);
 
 /// Draws the editor of a clip's body parts.
 pub(crate) fn bone_map_ui(
@@ -107,16 +103,6 @@ pub(crate) fn bone_map_ui(
             out.commands.push(Command::File(FileCommand::ResetRoles(entry.id.clone())));
         }
     });
-}
-
-/// Returns the sign of a source, and the words for it.
-fn sign_of(source: RoleSource) -> (Icon, Word) {
-    match source {
-        RoleSource::ByHand => (Icon::Pencil, text::FOUND_BY_HAND),
-        RoleSource::ByFile => (Icon::Report, text::FOUND_BY_FILE),
-        RoleSource::ByName => (Icon::Check, text::FOUND_BY_NAME),
-        RoleSource::ByShape => (Icon::Help, text::FOUND_BY_SHAPE),
-    }
 }
 
 /// Draws the number of parts by source, each with its sign: the legend of the slots.

@@ -1,12 +1,12 @@
-//! The commands of the interface in one table: the label, keys and icon of each, when it can be
-//! given, and what it does. The bar, the menu of a phone, the buttons on the
-//! stage, the list of shortcuts and the keyboard are made from it.
+//! The commands of the interface in one table: the label, shortcuts and icon of each, when it is
+//! enabled, and its effect. The bar, the menu of a phone, the buttons on the stage, the list of
+//! shortcuts and the keyboard use it.
 
 mod buttons;
 mod help;
 mod keys;
+mod trigger;
 
-use buttons::name_of;
 pub(crate) use buttons::{command_button_ui, command_icon_ui, command_item_ui};
 pub(crate) use help::help;
 #[cfg(all(test, feature = "ui-tests"))]
@@ -19,17 +19,17 @@ use super::labs::toggle_compare;
 use super::language::Word;
 use super::lessons_panel::{self, toggle_lessons};
 use super::out::{Action, Out};
-use super::presenter;
+use super::presenter::steps::{go_to_step, toggle_presenter};
 use super::stage::framing::frame_everything;
 use super::state::UiState;
 use super::text;
 use super::theme::theme_of;
 use eframe::egui::{Key as Keyboard, Ui};
-use keys::{COMMAND, COMMAND_SHIFT, Focus, NONE, SHIFT, Trigger};
 use segue_session::choices::{Camera, Follow, Look};
 use segue_session::{Command, Key, Kind, PlaybackCommand, Session, Slot, Value};
+use trigger::{COMMAND, COMMAND_SHIFT, Focus, NONE, SHIFT, Trigger};
 
-/// A command that a button, a line of a menu or a key gives.
+/// A command of a button, a menu item or a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum UiCommand {
     TogglePlay,
@@ -40,7 +40,7 @@ pub(crate) enum UiCommand {
     ToBeginning,
     /// Sets the in or out mark at the playhead.
     Mark(Key),
-    /// Takes the in or out mark away.
+    /// Clears the in or out mark.
     ClearMark(Key),
     Slower,
     Faster,
@@ -58,7 +58,7 @@ pub(crate) enum UiCommand {
     Undo,
     Redo,
     CopyLink,
-    /// Copies the link with what is the reader's own otherwise.
+    /// Copies the link with the look of the page, which otherwise stays the reader's own.
     CopyLinkAsShown,
     CopyReport,
     OpenLibrary,
@@ -77,12 +77,12 @@ pub(crate) enum UiCommand {
     Close,
 }
 
-/// The label of a command, and the ways in which it is given.
+/// The label and the shortcuts of a command.
 #[derive(Clone, Copy, Debug)]
 struct Row {
-    /// The label of its button and of its line in a menu; empty for keys alone.
+    /// The label of its button and menu item; empty for a command without either.
     text: Word,
-    /// The hint on its button; empty where the label says it all.
+    /// The hint on its button; empty where the label suffices.
     tooltip: Word,
     icon: Option<Icon>,
     triggers: &'static [Trigger],
@@ -169,13 +169,13 @@ impl UiCommand {
         }
     }
 
-    /// Returns whether the command can be given now.
+    /// Returns whether the command is enabled.
     fn is_enabled(self, session: &Session, state: &UiState) -> bool {
         match self {
             Self::SwapClips => session.uses(Slot::A) && session.uses(Slot::B),
             Self::Undo => session.can_undo(),
             Self::Redo => session.can_redo(),
-            // A driven character is steered by the arrows.
+            // The arrows steer a driven character.
             Self::StepBack | Self::StepOn | Self::TenBack | Self::TenOn => !session.is_driven(),
             Self::ToggleStrafe => session.is_driven(),
             Self::NextStep | Self::PreviousStep => state.presenter.is_on,
@@ -185,10 +185,15 @@ impl UiCommand {
 
     /// Returns the name of its button.
     pub(super) fn name(self, state: &UiState) -> Word {
-        name_of(self, state)
+        match self {
+            Self::Present if state.presenter.is_on => text::STOP_PRESENTING,
+            Self::SwitchLanguage => state.language.next().switch(),
+            Self::ToggleProjector => text::PROJECTOR,
+            _ => self.row().text,
+        }
     }
 
-    /// Returns whether the command has switched something on.
+    /// Returns whether the command's switch is on.
     fn is_on(self, session: &Session) -> bool {
         let params = session.params();
         match self {
@@ -257,9 +262,9 @@ impl UiCommand {
             Self::CopyLink => out.actions.push(Action::CopyLink),
             Self::CopyLinkAsShown => out.actions.push(Action::CopyLinkAsShown),
             Self::CopyReport => out.actions.push(Action::CopyReport),
-            Self::Present => presenter::toggle(state, out),
-            Self::NextStep => presenter::go(true, session, state, out),
-            Self::PreviousStep => presenter::go(false, session, state, out),
+            Self::Present => toggle_presenter(state, out),
+            Self::NextStep => go_to_step(true, session, state, out),
+            Self::PreviousStep => go_to_step(false, session, state, out),
             Self::OpenLibrary => state.library_open = true,
             Self::ConvertFiles => state.convert.is_open = true,
             Self::ToggleTheme => {
@@ -277,8 +282,8 @@ impl UiCommand {
     }
 }
 
-/// Ends the search or the selection in the library, or closes the layers in front of the lesson, or
-/// else the lesson.
+/// Closes the frontmost of: the search or selection in the library, the layers in front of the
+/// lesson, the lesson.
 fn close(session: &Session, state: &mut UiState, out: &mut Out) {
     if !state.help_open && std::mem::take(&mut state.convert.is_open) {
         return;
@@ -287,7 +292,7 @@ fn close(session: &Session, state: &mut UiState, out: &mut Out) {
         return;
     }
     if state.presenter.is_on && !state.help_open {
-        return presenter::toggle(state, out);
+        return toggle_presenter(state, out);
     }
     let lies_in_front = state.help_open || state.library_open || state.drawing.is_some();
     if lessons_panel::is_open(session) && !lies_in_front {

@@ -4,44 +4,17 @@ use super::kit::{self, Button, Icon};
 use super::language::{Text, say};
 use super::out::{Action, ConvertAction, Out};
 use super::rows::format_rows_ui;
-use super::state::UiState;
+use super::state::{ConvertState, UiState};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, RichText, Ui};
 use segue_session::convert::ConversionRow;
-use segue_session::export::ExportOptions;
 use segue_session::{Session, Slot};
-use std::sync::Arc;
 
 /// The width of the panel, points.
 const WIDTH: f32 = 460.0;
 /// The lines of the table that are shown; the archive has them all.
 const MAX_LINES: usize = 200;
-
-/// The state of the panel.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct ConvertState {
-    /// Whether it is open: files that are dropped are then for it.
-    pub(crate) is_open: bool,
-    /// The format and its options.
-    pub(crate) export: ExportOptions,
-    /// Whether motions are put on the body of A.
-    pub(crate) onto_a: bool,
-    /// The files and the conversion under way.
-    pub(crate) shown: ConvertShown,
-}
-
-/// The files of a conversion as the panel shows them.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct ConvertShown {
-    /// The number of files that were added.
-    pub(crate) waiting: usize,
-    /// The share that is done, 0 to 1, and the numbers of files done and in all; `None` while
-    /// nothing is converted.
-    pub(crate) progress: Option<(f32, usize, usize)>,
-    /// The table so far.
-    pub(crate) rows: Arc<Vec<ConversionRow>>,
-}
 
 /// Draws the panel, if it is open.
 pub(super) fn convert_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
@@ -102,7 +75,7 @@ fn start_ui(session: &Session, state: &mut ConvertState, out: &mut Out, ui: &mut
     });
 }
 
-/// Draws what came of the files: first those that failed, then those with oddities.
+/// Draws the results of the files: first those that failed, then those with warnings.
 fn table_ui(rows: &[ConversionRow], ui: &mut Ui) {
     if rows.is_empty() {
         return;

@@ -36,10 +36,10 @@ use super::text;
 use super::theme::space;
 use eframe::egui::{Align, Layout, Ui, UiBuilder};
 use graph::seed_detail;
-use lab_ui::{Compares, LabUi};
-use segue_session::{Command, Group, Key, Kind, LabId, Mark, PARAMS, Session, Slot};
+use lab_ui::LabUi;
+use segue_session::{Group, Key, Kind, LabId, Mark, PARAMS, Session, Slot};
 
-/// Returns the part of the page that a lab has.
+/// Returns a lab's part of the page.
 fn of(lab: LabId) -> &'static LabUi {
     match lab {
         LabId::View => &view::LAB,
@@ -59,20 +59,13 @@ fn of(lab: LabId) -> &'static LabUi {
     }
 }
 
-/// Opens "full, half, third" of the lab's first number, or the lab's own comparison, or goes back
-/// to one pane.
+/// Opens "full, half, third" of the lab's main number, or the lab's own comparison; closes an open
+/// comparison.
 pub(crate) fn toggle_compare(session: &Session, out: &mut Out) {
-    if session.panes().len() > 1 {
-        out.compare(None);
-        return;
-    }
-    match of(session.params().lab()).compares {
-        Compares::Key(key) => out.commands.push(Command::Compare(key)),
-        Compares::Own(compare) => compare(session, out),
-    }
+    of(session.params().lab()).compares.toggle(session, out);
 }
 
-/// Returns the title of a pane that is compared with no other.
+/// Returns the title of a pane without a comparison.
 pub(crate) fn title(shown: &Shown<'_>) -> Title {
     (of(shown.params.lab()).title)(shown)
 }
@@ -92,7 +85,7 @@ pub(crate) fn side_panel_ui(session: &Session, state: &mut UiState, out: &mut Ou
     graph::map_panel_ui(session, state, out, ui);
 }
 
-/// Returns whether the lab has a figure among its parameters that a lesson may speak of.
+/// Returns whether the lab has a figure among its parameters that a lesson may mention.
 pub(crate) fn has_figure(session: &Session) -> bool {
     match session.params().lab() {
         LabId::Register | LabId::Graph => true,

@@ -4,9 +4,6 @@ mod arrange;
 mod files;
 mod row;
 mod selection;
-mod state;
-
-pub(crate) use state::{ClipOrder, LibraryState};
 
 use self::arrange::{Section, arrange};
 use self::files::files_ui;
@@ -15,9 +12,8 @@ use self::selection::selection_ui;
 use super::commands::{UiCommand, command_icon_ui};
 use super::kit::{self, Button, Icon, MenuItem};
 use super::language::{Text, Word, say};
-use super::notices::NoticePlace;
 use super::out::Out;
-use super::state::UiState;
+use super::state::{ClipOrder, NoticePlace, UiState};
 use super::text;
 use super::theme::{palette_of, space, theme_of};
 use eframe::egui::accesskit::Role;

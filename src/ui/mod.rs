@@ -29,12 +29,11 @@ mod top_bar;
 mod transport_row;
 
 pub(crate) use appearance::{stage_look, stage_theme, theme};
-pub(crate) use convert_panel::ConvertShown;
 pub(crate) use labs::on_stage::highlights;
 pub(crate) use language::{Language, LanguagePack, PackError, Word, activate_english, skip_words};
 pub(crate) use out::{Action, ConvertAction};
 pub(crate) use pacing::Pacing;
 pub(crate) use page::show;
-pub(crate) use state::{Filming, Gamepad, UiState};
+pub(crate) use state::{ConvertShown, Filming, Gamepad, UiState};
 pub(crate) use text::{HOST_READS, LINK_COPIED, REPORT_COPIED, TABLE_COPIED};
 pub(crate) use timeline::CurveCache;

@@ -5,25 +5,16 @@ use super::language::Word;
 use super::out::Out;
 use super::state::UiState;
 use super::text;
-use eframe::egui::{Rect, Ui};
+use eframe::egui::Ui;
 use segue_session::{Command, FileCommand, Level, Notices, Session};
 use segue_text::Message;
-
-/// The place of the chip: the row with the heading of a panel.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct NoticePlace {
-    /// The row.
-    pub(crate) row: Rect,
-    /// Where its heading ends.
-    pub(crate) heading_end: f32,
-}
 
 /// The text of the chip.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Summary {
     text: Message,
     mood: Mood,
-    /// The whole of what is new.
+    /// The full text of the new notices.
     news: Message,
     is_alert: bool,
 }
@@ -83,9 +74,9 @@ fn mood_of(level: Level) -> Mood {
     }
 }
 
-/// Returns what the chip says: failures until they were seen, what is new for a moment, and then
-/// the number of the notices that wait. `seen` is the number of the first notice that was not in
-/// the open list.
+/// Returns the text of the chip: failures until they were seen, new notices for a moment, and then
+/// the number of open notices. `seen` is the number of the first notice that was not in the open
+/// list.
 fn summary_of(notices: &Notices, seen: u64) -> Option<Summary> {
     let list = notices.list();
     let failures: Vec<_> =

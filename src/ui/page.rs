@@ -1,16 +1,15 @@
-//! The page: the layout of its panels, at a desk, on a phone, and inside another page.
+//! The page: the layout of its panels, at a desk, on a phone, and embedded.
 
 use super::commands;
 use super::kit;
 use super::labs::{self, in_time, on_stage};
 use super::lessons_panel;
 use super::library_panel;
-use super::notices::NoticePlace;
 use super::out::Out;
 use super::overlays;
 use super::presenter::presenter_ui;
 use super::stage::{Paint, stage_panel_ui};
-use super::state::{Layout, UiState};
+use super::state::{Layout, NoticePlace, UiState};
 use super::text;
 use super::theme::{Theme, palette_of, space, theme_of};
 use super::timeline::{CurveCache, more_height, timeline_panel_ui};
@@ -108,7 +107,7 @@ fn footer_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui)
     let most = ui.available_height();
     let shown =
         panel.resizable(false).show(ui, |ui| labs::lab_footer_ui(session, most, state, out, ui));
-    // The panel takes a new height in the next frame.
+    // The panel gets its new height in the next frame.
     let (id, height) = (shown.response.id.with("height"), shown.response.rect.height());
     if ui.data_mut(|data| std::mem::replace(data.get_temp_mut_or(id, height), height)) != height {
         ui.request_repaint();
@@ -245,7 +244,7 @@ fn lab_side_ui(
         });
 }
 
-/// Draws a lesson, and below it what it speaks of and what the parameters behind it would show.
+/// Draws a lesson, and below it the controls that it mentions and those of the hidden parameters.
 fn lesson_with_controls_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     if lessons_panel::has_controls(session) {
         let most = (CONTROLS_SHARE * ui.available_height()).round();
@@ -272,11 +271,10 @@ fn lesson_with_controls_ui(session: &Session, state: &mut UiState, out: &mut Out
 
 /// The room below a figure for its legend, points.
 const FIGURE_REST: f32 = 40.0;
-/// The greatest share of a lesson's panel that goes to the controls that it speaks of.
+/// The greatest share of a lesson's panel for the controls that it mentions.
 const CONTROLS_SHARE: f32 = 0.45;
 
-/// Notes the height that the panel of the timeline needs to show all of its contents, for the next
-/// frame.
+/// Records the height at which the timeline's panel shows all of its contents, for the next frame.
 fn note_least_height(state: &mut UiState, ui: &Ui) {
     let bottom = kit::take_least_bottom(ui);
     let least = bottom.map_or(0.0, |bottom| bottom - ui.max_rect().top() + 2.0 * space::S);
@@ -369,8 +367,7 @@ fn phone_ui(
     });
 }
 
-/// Draws the page inside another page: the stage, a slim timeline, and the parameters that the link
-/// names.
+/// Draws the embedded page: the stage, a slim timeline, and the parameters that the link names.
 fn embedded_ui(
     session: &Session,
     state: &mut UiState,

@@ -1,11 +1,12 @@
 //! The presenter mode: the stage alone, for a class. It is a state of the interface and in no link.
 
+pub(crate) mod steps;
+
 use super::appearance::stage_theme;
 use super::commands::{UiCommand, command_button_ui};
 use super::kit::{self, Button, Icon};
 use super::language::{Text, say};
-use super::lessons_panel::go_to;
-use super::out::{Action, Out};
+use super::out::Out;
 use super::stage::{Paint, stage_panel_ui};
 use super::state::{Layout, UiState};
 use super::text;
@@ -16,122 +17,13 @@ use eframe::egui::{
     self, Align, CentralPanel, Event, Frame, Id, LayerId, Layout as Flow, Margin, Order, Panel,
     Popup, RichText, Stroke, Ui,
 };
-use segue_session::{Command, Key, Kind, Lesson, PlaybackCommand, Session, Value};
-use segue_text::{Message, msg};
+use segue_session::{Command, Key, PlaybackCommand, Session};
+use steps::{step_name, take_requested_step};
 
-/// Seconds until the bar leaves after the last movement.
+/// Seconds from the last movement until the bar hides.
 const SHOWN_SECS: f64 = 2.5;
 /// Radius of the ring around the pointer, points.
 const HALO: f32 = 30.0;
-
-/// The state of the presenter mode.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Presenter {
-    /// Whether the stage is shown alone.
-    pub(crate) is_on: bool,
-    /// The pane of a comparison that is shown alone; `None` for all of them.
-    pub(crate) pane: Option<usize>,
-    /// Whether the window was on the whole screen in the last frame.
-    was_fullscreen: bool,
-    /// Until when the bar is shown, seconds of egui's clock.
-    shown_until: f64,
-    /// The steps that were asked for while a lesson was being loaded; back is negative.
-    steps_to_go: i32,
-}
-
-impl Presenter {
-    /// Notes whether the window is on the whole screen. A browser leaves it by Escape without a
-    /// word to the page, and the mode ends with it.
-    pub(crate) fn note_fullscreen(&mut self, is_fullscreen: bool) {
-        if self.is_on && self.was_fullscreen && !is_fullscreen {
-            self.is_on = false;
-        }
-        self.was_fullscreen = self.is_on && is_fullscreen;
-    }
-
-    /// Returns the pane that is shown alone, where there are several.
-    pub(crate) fn pane_alone(&self, count: usize) -> Option<usize> {
-        self.pane.filter(|&pane| self.is_on && count > 1 && pane < count)
-    }
-}
-
-/// Begins to present, or ends it.
-pub(crate) fn toggle(state: &mut UiState, out: &mut Out) {
-    let is_on = !state.presenter.is_on;
-    state.presenter = Presenter { is_on, ..Presenter::default() };
-    (state.help_open, state.library_open) = (false, false);
-    out.actions.push(Action::Fullscreen(is_on));
-}
-
-/// Goes to the next or the previous lesson where one is open, else to the next pane of a
-/// comparison, else to the next lab.
-pub(crate) fn go(forward: bool, session: &Session, state: &mut UiState, out: &mut Out) {
-    state.presenter.shown_until = f64::INFINITY;
-    let count = session.panes().len();
-    match session.lesson() {
-        Some(Lesson::Page(page)) => {
-            if let Some(to) = if forward { page.next } else { page.previous } {
-                go_to(&to, out);
-            }
-        }
-        Some(Lesson::Contents(page)) => {
-            if let Some(first) = page.entries().next().filter(|_| forward) {
-                out.commands.push(Command::Try(first.query));
-            }
-        }
-        Some(Lesson::Waiting) => state.presenter.steps_to_go += if forward { 1 } else { -1 },
-        Some(Lesson::Failed(_)) => {}
-        None if count > 1 => {
-            // All panes, then each alone.
-            let at = state.presenter.pane_alone(count).map_or(0, |pane| pane + 1);
-            let next = if forward { at + 1 } else { at + count } % (count + 1);
-            state.presenter.pane = next.checked_sub(1);
-        }
-        None => {
-            let Kind::Choice(labs) = Key::Lab.param().kind else { return };
-            let open = session.params().lab().word();
-            let at = labs.iter().position(|lab| lab.key == open).unwrap_or_default();
-            let next = if forward { Some(at + 1) } else { at.checked_sub(1) };
-            if let Some(lab) = next.and_then(|next| labs.get(next)) {
-                out.set_once(Key::Lab, Value::Choice(lab.key));
-            }
-        }
-    }
-}
-
-/// Goes one of the steps that were asked for while a lesson was being loaded.
-fn go_on(session: &Session, state: &mut UiState, out: &mut Out) {
-    let steps = state.presenter.steps_to_go;
-    match session.lesson() {
-        _ if steps == 0 => {}
-        Some(Lesson::Waiting) => {}
-        Some(Lesson::Page(_) | Lesson::Contents(_)) => {
-            state.presenter.steps_to_go -= steps.signum();
-            go(steps > 0, session, state, out);
-        }
-        Some(Lesson::Failed(_)) | None => state.presenter.steps_to_go = 0,
-    }
-}
-
-/// Returns the step that is shown: the lesson, the pane, or the lab.
-fn step_name(session: &Session, state: &UiState) -> Message {
-    let panes = session.panes();
-    match session.lesson() {
-        Some(Lesson::Page(page)) => msg!(
-            "{number} / {of} · {title}",
-            number = page.number,
-            of = page.of,
-            title = page.page.title.clone()
-        ),
-        Some(Lesson::Contents(page)) => Message::data(page.title.clone()),
-        _ if panes.len() > 1 => state
-            .presenter
-            .pane_alone(panes.len())
-            .and_then(|pane| session.variant_name(panes.get(pane)?))
-            .unwrap_or_else(|| text::ALL_PANES.into()),
-        _ => Key::Lab.param().spoken(session.params().get(Key::Lab)),
-    }
-}
 
 /// Draws the page of a presenter: the stage, and over it a bar while the pointer moves.
 pub(crate) fn presenter_ui(
@@ -141,10 +33,11 @@ pub(crate) fn presenter_ui(
     paint: Paint<'_>,
     ui: &mut Ui,
 ) {
-    go_on(session, state, out);
+    take_requested_step(session, state, out);
     let is_shown = note_movement(state, ui);
     let opacity = ui.ctx().animate_bool(Id::unique("presenter bar"), is_shown);
-    // The room for the bar stays empty without it: over the stage it would cover the numbers.
+    // The room for the bar stays reserved while it is hidden: over the stage it would cover the
+    // numbers.
     let look = stage_theme(session, theme_of(ui)).palette();
     let room = Frame::new()
         .fill(look.stage.sky)
@@ -169,8 +62,8 @@ pub(crate) fn presenter_ui(
     halo_ui(ui);
 }
 
-/// Returns whether the bar is shown: for a while after the pointer or a key was used, and as long
-/// as the pointer rests on it.
+/// Returns whether the bar is shown: for a while after input of the pointer or a key, and while the
+/// pointer is over it.
 fn note_movement(state: &mut UiState, ui: &Ui) -> bool {
     let presenter = &mut state.presenter;
     let (now, is_moving, pointer) = ui.input(|input| {
@@ -198,7 +91,7 @@ fn bar_height(ui: &Ui) -> f32 {
     theme_of(ui).row_height().max(34.0) + 2.0 * space::S
 }
 
-/// Draws the bar: play, the time, the way back and forth, and the way out.
+/// Draws the bar: play, the time, the previous and next step, and the button that ends the mode.
 fn bar_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     ui.horizontal_centered(|ui| {
@@ -241,20 +134,4 @@ fn halo_ui(ui: &Ui) {
         palette.accent.gamma_multiply(0.16),
         Stroke::new(3.0, palette.accent.gamma_multiply(0.7)),
     );
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn presenting_ends_when_the_browser_leaves_the_whole_screen() {
-        let mut presenter = Presenter { is_on: true, ..Presenter::default() };
-        presenter.note_fullscreen(false);
-        assert!(presenter.is_on, "the browser may have refused the whole screen");
-        presenter.note_fullscreen(true);
-        assert!(presenter.is_on);
-        presenter.note_fullscreen(false);
-        assert!(!presenter.is_on);
-    }
 }

@@ -8,7 +8,7 @@ mod retarget;
 mod save;
 
 pub(crate) use clip_sets::clip_sets_ui;
-pub(crate) use footer::{Kept, footer_ui};
+pub(crate) use footer::{KeepOffer, footer_ui};
 pub(crate) use param::{Detail, compare_choice_ui, param_row_ui};
 pub(crate) use remedies::{body_parts_asked_for, remedy_buttons_ui};
 pub(crate) use retarget::retarget_rows_ui;

@@ -2,6 +2,7 @@
 
 mod buttons;
 mod camera;
+mod columns;
 mod explanation;
 pub(crate) mod framing;
 mod pane;
@@ -12,6 +13,7 @@ mod verdicts;
 
 use self::buttons::camera_buttons_ui;
 use self::camera::camera_input;
+use self::columns::shown_panes;
 use self::pane::pane_ui;
 use self::pick::pick_ui;
 use self::strip::Strip;
@@ -24,10 +26,8 @@ use crate::ui::labs::on_stage;
 use crate::ui::out::Out;
 use crate::ui::state::{Layout, UiState};
 use crate::ui::theme::{palette_of, space, theme_of};
-use eframe::egui::{self, Event, Rect, Response, Sense, Ui, pos2, vec2};
+use eframe::egui::{self, Event, Rect, Response, Sense, Ui, vec2};
 use segue_session::{Command, Session};
-
-pub(crate) use self::swipe::Swipe;
 
 /// Draws the 3D picture: the whole stage, and for each pane that is shown its index in the session
 /// and its place.
@@ -108,22 +108,6 @@ fn stage_ui(
 /// The height in which a caption has two lines, points.
 const CAPTION_ROOM: f32 = 68.0;
 
-/// Returns the panes that are shown, and the column of `place` that each has. A phone, or a
-/// presenter, shows one pane at a time.
-fn shown_panes(
-    session: &Session,
-    place: Rect,
-    layout: Layout,
-    state: &UiState,
-) -> Vec<(usize, Rect)> {
-    let count = session.panes().len();
-    let alone = (layout == Layout::Phone).then_some(state.shown_pane);
-    match alone.or(state.presenter.pane_alone(count)) {
-        Some(pane) => vec![(pane, place)],
-        None => columns(place, count).enumerate().collect(),
-    }
-}
-
 /// Draws the note on the last action, or on the character, or the hint of the lab, at the bottom of
 /// `free`: feet stand well above it, while heads reach the titles.
 fn caption_ui(
@@ -171,29 +155,4 @@ fn is_used(response: &Response, out: &Out, ui: &Ui) -> bool {
         _ => false,
     };
     is_pressed || out.commands.iter().any(is_set)
-}
-
-/// Returns the places of panes side by side.
-fn columns(stage: Rect, count: usize) -> impl Iterator<Item = Rect> {
-    let count = count.max(1);
-    let width = stage.width() / count as f32;
-    (0..count).map(move |index| {
-        let left = stage.left() + (width * index as f32).round();
-        let right = stage.left() + (width * (index + 1) as f32).round();
-        Rect::from_min_max(pos2(left, stage.top()), pos2(right, stage.bottom()))
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn columns_fill_the_stage_without_gaps() {
-        let stage = Rect::from_min_size(pos2(10.0, 5.0), vec2(1000.0, 400.0));
-        let panes: Vec<Rect> = columns(stage, 3).collect();
-        assert_eq!(panes[0].left(), 10.0);
-        assert_eq!(panes[2].right(), 1010.0);
-        assert!(panes.windows(2).all(|pair| pair[0].right() == pair[1].left()));
-    }
 }

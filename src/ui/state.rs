@@ -1,21 +1,29 @@
 //! The state of the interface between frames.
 
+mod convert;
+mod library;
+mod notices;
+mod presenter;
+mod strip;
+mod swipe;
+
+pub(crate) use convert::{ConvertShown, ConvertState};
+pub(crate) use library::{ClipOrder, HeldKeys, LibraryState};
+pub(crate) use notices::NoticePlace;
+pub(crate) use presenter::Presenter;
+pub(crate) use strip::StripState;
+pub(crate) use swipe::Swipe;
+
 use super::bone_map::BoneMapState;
-use super::convert_panel::ConvertState;
 use super::labs::states::LabStates;
 use super::language::Language;
-use super::library_panel::LibraryState;
-use super::notices::NoticePlace;
-use super::presenter::Presenter;
-use super::stage::Swipe;
-use super::stage::strip::StripState;
 use eframe::egui::Rect;
 use glam::{DVec2, Vec3};
 use segue_scene::Camera;
 use segue_session::export::ExportOptions;
 use segue_session::{LabId, StorageState};
 
-/// The layouts of the page, by the room that there is.
+/// The layouts of the page, by available width.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Layout {
     /// Everything side by side.
@@ -40,7 +48,7 @@ impl Layout {
     }
 }
 
-/// A text about a clip that is being typed.
+/// A text of a clip that is being typed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Typing {
     /// The clip's id.
@@ -95,7 +103,8 @@ pub(crate) struct UiState {
     pub(crate) answered: Option<String>,
     /// The least height of the timeline that shows all of it, points; of the last frame.
     pub(crate) timeline_least: f32,
-    /// The height of what the lesson speaks of, below its text, points; `None` before it was drawn.
+    /// The height of the controls that the lesson mentions, below its text, points; `None` before
+    /// they were drawn.
     pub(crate) lesson_controls: Option<f32>,
     /// The pane that a phone shows.
     pub(crate) shown_pane: usize,
@@ -133,7 +142,7 @@ pub(crate) struct UiState {
     pub(crate) export: ExportOptions,
     /// Whether the options for saving the result are open.
     pub(crate) save_open: bool,
-    /// Whether all help texts stand open.
+    /// Whether all help texts are open.
     pub(crate) all_help: bool,
     /// The pane whose result is saved.
     pub(crate) saved_pane: usize,
@@ -154,7 +163,7 @@ pub(crate) struct UiState {
     pub(crate) convert: ConvertState,
     /// Whether a page around this one can read the files that are opened here.
     pub(crate) host_reads: bool,
-    /// How far the work is stored; `None` where it is not stored at all.
+    /// The progress of storing the work; `None` where it is not stored at all.
     pub(crate) stored: Option<StorageState>,
 }
 

@@ -114,7 +114,7 @@ export class Outline {
       set("aria-valuemax", range.max?.toString());
       set("aria-valuetext", value);
     } else if (value && !isText) {
-      // What no attribute holds is said with the name, as of a box that shows its choice.
+      // A value without an attribute of its own goes into the name, such as the choice of a combo box.
       set("aria-label", `${name}: ${value}`);
     }
     const [left, top, width, height] = place;
@@ -147,7 +147,7 @@ export class Outline {
     if (this.#sent && focus === this.#sent) return this.#send();
     if (this.#sent && document.activeElement !== document.body) return;
     if (this.#sent) {
-      // What had the keyboard was moved, or is behind something that has opened.
+      // The element with the keyboard focus was moved, or something has opened in front of it.
       const ahead = this.#elements.get(this.#asked || this.#sent);
       if (ahead?.isConnected && !ahead.closest("[inert]")) return this.#place(ahead);
       clearTimeout(this.#late);

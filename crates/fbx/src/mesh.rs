@@ -1,6 +1,6 @@
 //! Skinned meshes as vertices, triangles and weights.
 
-use crate::scene::columns;
+use crate::matrix::columns;
 use std::collections::HashMap;
 use ufbx::{Material, SceneRoot, SkinDeformer};
 

@@ -1,5 +1,6 @@
 //! The tree of nodes of a file, at rest and in its takes.
 
+use crate::matrix::columns;
 use crate::take::{Movement, Take};
 use crate::{Mesh, OpenError, mesh, take};
 use ufbx::{
@@ -245,9 +246,4 @@ fn nodes(root: &SceneRoot) -> Vec<Node> {
         }
     }
     nodes
-}
-
-pub(crate) fn columns(matrix: &ufbx::Matrix) -> [[f64; 3]; 4] {
-    let m = matrix;
-    [[m.m00, m.m10, m.m20], [m.m01, m.m11, m.m21], [m.m02, m.m12, m.m22], [m.m03, m.m13, m.m23]]
 }

@@ -17,7 +17,7 @@ const TRANSFORM: [&str; 10] = [
     "RotationOrder",
 ];
 
-/// The part of a node in a take.
+/// The movement of a node in a take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Movement {
     /// It has no keys: its transform is the one outside of the takes.
@@ -33,11 +33,11 @@ pub enum Movement {
 pub struct Take {
     /// Its name.
     pub name: String,
-    /// The times between which it plays, seconds, as far as the file states them.
+    /// The time range in which it plays, seconds; `None` if the file states none.
     pub span_secs: Option<Range<f64>>,
-    /// The times of all keys of all moving nodes, rising, seconds.
+    /// The times of all keys of all moving nodes, seconds, ascending.
     pub key_secs: Vec<f64>,
-    /// The part of each node.
+    /// Node by node.
     pub movements: Vec<Movement>,
 }
 
@@ -79,8 +79,7 @@ pub(crate) fn take(root: &SceneRoot, stack: &AnimStack) -> Take {
     }
 }
 
-/// Returns whether a curve has the same value everywhere: equal keys, and no tangent that leads
-/// away from them.
+/// Returns whether a curve is constant: equal keys with flat tangents.
 fn is_constant(curve: &AnimCurve) -> bool {
     let keys = curve.keyframes.as_ref();
     let first = keys.first().map_or(0.0, |key| key.value);
@@ -88,8 +87,8 @@ fn is_constant(curve: &AnimCurve) -> bool {
         || keys.len() == 1
 }
 
-/// Moves the nodes that ufbx adds where scale is inherited in another way, with the nodes that
-/// they belong to, and the siblings whose translation they scale.
+/// Marks the scale helpers that ufbx adds as moving with the nodes that they belong to, and the
+/// siblings whose translation they scale as well.
 fn follow_scales(root: &SceneRoot, movements: &mut [Movement]) {
     for (place, node) in root.nodes.into_iter().skip(1).enumerate() {
         let Some(parent) = &node.parent else { continue };
@@ -110,12 +109,12 @@ fn follow_scales(root: &SceneRoot, movements: &mut [Movement]) {
     }
 }
 
-/// The times of keys of curves, most of which have the same ones.
+/// The key times of curves; most curves share theirs.
 #[derive(Default)]
 struct Times {
-    /// Rising, without repetition.
+    /// Ascending, without duplicates.
     all: Vec<f64>,
-    /// Those of the last curve.
+    /// The key times of the last curve.
     last: Vec<f64>,
 }
 
@@ -130,7 +129,7 @@ impl Times {
         self.last.clear();
         self.last.extend(keys.iter().map(|key| key.time));
         self.all.extend(self.last.iter().copied().filter(|time| time.is_finite()));
-        // The list never grows beyond that of one curve and what was there before.
+        // Merging after each curve keeps the list short.
         self.all.sort_by(f64::total_cmp);
         self.all.dedup();
     }

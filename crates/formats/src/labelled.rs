@@ -1,5 +1,4 @@
-//! Labelled points of a file on their way to clips: as a body where the labels tell it, otherwise
-//! as points.
+//! Conversion of labelled points to clips: a body if the labels identify one, otherwise points.
 
 use super::assemble::assemble;
 use super::error::Fault;
@@ -17,20 +16,20 @@ use segue_motion::skeleton::Joint;
 /// Larger magnitudes come from damage, not from measurement.
 const MAX_MAGNITUDE: f32 = 1e9;
 
-/// Frames per second of files that do not say.
+/// The frame rate of files that state none, frames per second.
 const DEFAULT_FPS: f64 = 100.0;
 
 /// Labelled points over time, in the unit and axes of their file.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LabelledPoints {
     pub(super) labels: Vec<String>,
-    /// Frame by frame; not finite is a gap.
+    /// Frame by frame; a position that is not finite is a gap.
     pub(super) positions: Vec<Vec3>,
-    /// Frames per second, if the file says.
+    /// The frame rate that the file states, frames per second.
     pub(super) fps: Option<f64>,
-    /// Metres per unit, if the file says.
+    /// The unit that the file states, metres.
     pub(super) unit: Option<f64>,
-    /// The up axis, if the file says.
+    /// The up axis that the file states.
     pub(super) up: Option<UpAxis>,
 }
 
@@ -53,7 +52,7 @@ impl UnitWord {
 }
 
 impl LabelledPoints {
-    /// Returns the clip of a body with joints where labels tell one, otherwise of the points.
+    /// Returns a clip of a body with joints if the labels identify one, otherwise of the points.
     pub(super) fn into_clips(
         mut self,
         name: &str,
@@ -92,7 +91,7 @@ impl LabelledPoints {
             RawMotion::from_points(fit)
         } else {
             own.up = options.up.or(self.up);
-            // Points have no height that would show their unit.
+            // The unit cannot be inferred from the height of points.
             own.metres_per_unit = set.or(self.unit);
             tally.add(WarningKind::PointsOnly { points: self.labels.len() }, None);
             self.as_joints(tally)
@@ -132,7 +131,7 @@ impl LabelledPoints {
         }
     }
 
-    /// Returns the points as joints without bones: children of a joint in the middle of them.
+    /// Returns the points as joints without bones: children of a joint at their centre.
     fn as_joints(&self, tally: &mut Tally) -> Option<RawMotion> {
         let markers = self.labels.len();
         let frames = self.positions.len().checked_div(markers)?;

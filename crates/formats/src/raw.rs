@@ -1,5 +1,4 @@
-//! A motion on its way from a file to a [`Clip`]: in the file's units and axes, and not yet
-//! checked.
+//! A motion between a file and a [`Clip`]: in the file's units and axes, unchecked.
 
 use super::error::Fault;
 use glam::{Quat, Vec3};
@@ -23,7 +22,7 @@ pub(super) struct RawMotion {
     pub(super) tracks: Vec<(usize, Vec<Vec3>)>,
 }
 
-/// An error that keeps a motion from becoming a clip. The readers rule out both cases.
+/// An error converting a motion to a clip. The readers rule out both cases.
 #[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
 pub(super) enum RawError {
     #[error(transparent)]

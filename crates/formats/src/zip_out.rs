@@ -4,16 +4,16 @@ use flate2::{Compression, Crc, write::DeflateEncoder};
 use std::collections::BTreeSet;
 use std::io::Write as _;
 
-/// The date of the files in an archive, 1 January 1980 in the format of MS-DOS: the same files give
-/// the same bytes at any time.
+/// The date of all entries, 1 January 1980 in MS-DOS format, so that the same files always give the
+/// same bytes.
 const DOS_DATE: u16 = 1 << 5 | 1;
-/// The flag of names that are not ASCII but UTF-8.
+/// The flag for UTF-8 names.
 const UTF8: u16 = 1 << 11;
 const STORED: u16 = 0;
 const DEFLATED: u16 = 8;
-/// The bytes of an entry and of its line in the list beside its name and content.
+/// The size of an entry's headers without its name and content, bytes.
 const OVERHEAD: usize = 30 + 46;
-/// The bytes of the end of an archive.
+/// The size of the end-of-archive record, bytes.
 const END: usize = 22;
 
 /// A file that is ready for an archive.
@@ -51,7 +51,7 @@ pub struct ZipFull;
 #[derive(Clone, Debug, Default)]
 pub struct ZipWriter {
     bytes: Vec<u8>,
-    /// The entries of the list at the end.
+    /// The central directory so far.
     list: Vec<u8>,
     names: BTreeSet<String>,
 }
@@ -160,7 +160,7 @@ mod tests {
         let stored = zip.len();
         let packed = PackedFile::new(text.as_bytes()).unwrap();
         zip.add_packed("走/packed.bvh", &packed).unwrap();
-        // A second one of a name is left out.
+        // A second file of the same name is skipped.
         zip.store("a/stored.bvh", b"other").unwrap();
         assert!(zip.len() - stored < 2000);
         let length = zip.len();

@@ -152,8 +152,7 @@ impl Body {
         self.size.unwrap_or(1.0)
     }
 
-    /// Returns how far the mesh of a character reaches, metres ([`reach_of`]); 0 for a body about
-    /// bones.
+    /// Returns the reach of a character's mesh, metres ([`reach_of`]); 0 for a procedural body.
     pub(crate) fn reach(&self) -> f32 {
         self.reach
     }

@@ -4,8 +4,8 @@ use crate::context::{DrawContext, GHOST_FADE_SECS, PosedResult};
 use crate::{Pane, labs, with_alpha};
 use segue_session::Slot;
 
-/// Adds both sources around the transition, as far as they differ from the result: A appears as its
-/// weight falls, B vanishes as its weight rises.
+/// Adds both sources around the transition, with an opacity by their difference from the result: A
+/// fades in as its weight falls, B fades out as its weight rises.
 pub(crate) fn add_sources(shown: &PosedResult<'_>, context: &mut DrawContext<'_>, pane: &mut Pane) {
     let PosedResult { outcome, now, place, .. } = shown;
     let ghost_alpha = context.colors.ghost_alpha;
@@ -30,8 +30,8 @@ pub(crate) fn add_sources(shown: &PosedResult<'_>, context: &mut DrawContext<'_>
             Slot::A => inside * (1.0 - behind),
             Slot::B => (1.0 - inside) * (1.0 - before),
         };
-        // A ghost has its full opacity from half of the way on: only where it coincides with the
-        // result it must be invisible.
+        // A ghost is fully opaque from halfway on: it must be invisible only where it coincides
+        // with the result.
         let share = (2.0 * share).clamp(0.0, 1.0) as f32;
         if share < 0.02 || !(0.0..=source.motion.clip().duration_secs()).contains(&at) {
             continue;
@@ -41,7 +41,7 @@ pub(crate) fn add_sources(shown: &PosedResult<'_>, context: &mut DrawContext<'_>
     }
 }
 
-/// Adds the clips of a result that could not be made, in its place.
+/// Adds the source clips of a refused result in its place.
 pub(crate) fn add_stand_ins(
     refused: &segue_session::Pane,
     now: f64,

@@ -19,7 +19,7 @@ pub(crate) const MAX_CHARACTERS: usize = 6;
 /// A clip that plays beside the result.
 #[derive(Clone, Debug)]
 pub struct ExtraCharacter {
-    /// The id of the clip, as the link has it.
+    /// The id of the clip in the link.
     pub id: String,
     /// The clip's name on screen.
     pub name: String,
@@ -48,7 +48,7 @@ impl ExtraCharacters {
         self.list.iter().filter_map(ExtraCharacter::duration_secs).fold(0.0, f64::max)
     }
 
-    /// Finds or makes the clips in the list.
+    /// Resolves the clips in the list.
     pub(crate) fn refresh(&mut self, clips: &mut ClipResolver<'_>) {
         self.list.clear();
         if !lab_of(clips.document.params.lab()).has(Beside::ExtraCharacters) {

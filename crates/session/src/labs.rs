@@ -24,6 +24,7 @@ mod remedy;
 mod repetition;
 pub(super) mod sliced;
 mod speed;
+mod transition;
 mod view;
 
 pub(super) use answer::Answer;

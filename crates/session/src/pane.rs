@@ -36,13 +36,13 @@ pub struct Pane {
 /// The relation of an outcome to the present parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum OutcomeState {
-    /// It has earlier parameters; the result of the present ones is being computed.
+    /// The result of earlier parameters, while that of the present ones is being computed.
     #[default]
     Earlier,
-    /// It has the present parameters, and is not finished: its place is not found yet, or its feet
-    /// are not locked.
+    /// A draft of the present parameters: its place has not been found, or its feet are not locked
+    /// yet.
     Draft,
-    /// It is the final result.
+    /// The final result.
     Finished,
 }
 
@@ -64,10 +64,10 @@ pub struct PaneResult<'a> {
 /// The reason why a pane has no result to pass on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error, ToMessage)]
 pub enum NoResult {
-    /// It cannot be made.
+    /// The result is refused.
     #[error("{problem}", problem = .0.to_sentence())]
     Refused(LabError),
-    /// It is not available yet.
+    /// The result is not available yet.
     #[error("the result is still being computed")]
     Awaited,
 }

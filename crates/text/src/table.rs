@@ -13,9 +13,9 @@ pub struct Table {
 /// The reason why a template is not a translation of another.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TemplateError {
-    /// It has a name that the other one does not have.
+    /// It has a name that the other template lacks.
     Unknown(String),
-    /// It lacks a name of the other one.
+    /// It lacks a name of the other template.
     Missing(String),
 }
 

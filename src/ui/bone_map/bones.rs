@@ -19,6 +19,10 @@ pub(super) enum BoneEvent {
     Drag(usize),
 }
 
+/// A bone that is dragged from the list, by the index of its joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct BoneDrag(pub(super) usize);
+
 /// The height above which the list scrolls, points.
 const HEIGHT: f32 = 196.0;
 /// The most bones that are listed; a search finds the others.

@@ -1,8 +1,7 @@
 //! The picture of the body, between two columns of slots.
 
-use super::bones::{BoneEvent, bones_ui};
+use super::bones::{BoneDrag, BoneEvent, bones_ui};
 use super::slots::{column, is_needed, label_of, place_of};
-use super::{BoneDrag, sign_of};
 use crate::ui::kit::paint::{
     PointerKind, Run, focus_ring, full_width, line_of, name_line, pointer_in_use, put,
 };
@@ -235,6 +234,16 @@ impl Figure<'_> {
         let info = WidgetInfo::labeled(WidgetRole::Button, ui.is_enabled(), say(&said, ui));
         describe(&response, &info);
         if is_chosen { response } else { response.on_hover_text(say(&said, ui)) }
+    }
+}
+
+/// Returns the sign of a source, and the words for it.
+pub(super) fn sign_of(source: RoleSource) -> (Icon, Word) {
+    match source {
+        RoleSource::ByHand => (Icon::Pencil, text::FOUND_BY_HAND),
+        RoleSource::ByFile => (Icon::Report, text::FOUND_BY_FILE),
+        RoleSource::ByName => (Icon::Check, text::FOUND_BY_NAME),
+        RoleSource::ByShape => (Icon::Help, text::FOUND_BY_SHAPE),
     }
 }
 

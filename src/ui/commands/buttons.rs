@@ -1,12 +1,11 @@
-//! Commands as buttons and as lines of a menu.
+//! Commands as buttons and menu items.
 
 use super::keys::keys_of;
 use super::{Target, UiCommand};
 use crate::ui::kit::{self, Button, MenuItem};
-use crate::ui::language::{Text, Word, say};
+use crate::ui::language::{Text, say};
 use crate::ui::out::Out;
 use crate::ui::state::UiState;
-use crate::ui::text;
 use eframe::egui::Ui;
 use segue_session::Session;
 
@@ -20,13 +19,13 @@ pub(crate) fn command_icon_ui(
 ) {
     let row = command.row();
     let button = match row.icon {
-        Some(icon) => Button::icon_only(icon, name_of(command, state)),
+        Some(icon) => Button::icon_only(icon, command.name(state)),
         None => Button::new(row.text).quiet(),
     };
     command_button_ui(command, button, session, state, out, ui);
 }
 
-/// Shows a button that gives a command. Its tooltip says what it does, and the keys that do it.
+/// Shows a button of a command, with a tooltip about its effect and its shortcuts.
 pub(crate) fn command_button_ui(
     command: UiCommand,
     button: Button<'_>,
@@ -36,11 +35,11 @@ pub(crate) fn command_button_ui(
     ui: &mut Ui,
 ) {
     let row = command.row();
-    let name = name_of(command, state);
+    let name = command.name(state);
     let button = button.name(name).hint(Text::EMPTY).selected(command.is_on(session));
     let enabled = command.is_enabled(session, state);
     let response = ui.add_enabled_ui(enabled, |ui| kit::button_ui(button, ui)).inner;
-    // Made only while the pointer is over the button.
+    // Build the tooltip only while the pointer is over the button.
     let response = response.on_hover_ui(|ui| {
         let what = say(if row.tooltip.is_empty() { name } else { row.tooltip }, ui);
         let keys = keys_of(&[command]);
@@ -51,7 +50,7 @@ pub(crate) fn command_button_ui(
     }
 }
 
-/// Shows a line of a menu that gives a command.
+/// Shows a menu item of a command.
 pub(crate) fn command_item_ui(
     command: UiCommand,
     session: &Session,
@@ -60,20 +59,10 @@ pub(crate) fn command_item_ui(
     ui: &mut Ui,
 ) {
     let shortcut = keys_of(&[command]);
-    let (text, icon) = (name_of(command, state), command.row().icon);
+    let (text, icon) = (command.name(state), command.row().icon);
     let item = MenuItem { text: text.into(), icon, shortcut: (&shortcut).into(), chosen: None };
     let enabled = command.is_enabled(session, state);
     if ui.add_enabled_ui(enabled, |ui| kit::menu_item_ui(item, ui)).inner.clicked() {
         command.run(&mut Target { session, state, out, ui });
-    }
-}
-
-/// Returns the name of a command where its label alone is not enough.
-pub(super) fn name_of(command: UiCommand, state: &UiState) -> Word {
-    match command {
-        UiCommand::Present if state.presenter.is_on => text::STOP_PRESENTING,
-        UiCommand::SwitchLanguage => state.language.next().switch(),
-        UiCommand::ToggleProjector => text::PROJECTOR,
-        _ => command.row().text,
     }
 }

@@ -1,40 +1,12 @@
-//! The keys that give commands.
+//! The keyboard shortcuts of commands.
 
+use super::trigger::{COMMAND, Focus, NONE, Trigger};
 use super::{Target, UiCommand};
 use crate::ui::out::Out;
 use crate::ui::state::UiState;
-use eframe::egui::{Event, Id, Key as Keyboard, Memory, Modifiers, Popup, Ui};
+use eframe::egui::{Event, Id, Key as Keyboard, Memory, Popup, Ui};
 use segue_session::{Key, Session};
 use segue_text::Message;
-
-/// A way in which the keyboard gives a command.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Trigger {
-    Keys(Modifiers, Keyboard),
-    /// The keys with which the system copies, whatever the keyboard.
-    Copy,
-    /// A character, wherever it stands on the keyboard.
-    Typed(&'static str),
-}
-
-/// The cases in which a key is left to the widget that has the focus.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Focus {
-    /// No widget uses the key.
-    Ignored,
-    /// The key is left to any widget that has the focus.
-    Respected,
-    /// As [`Self::Respected`], but for widgets that were focused by the pointer: after a drag of a
-    /// slider the key plays the motion.
-    RespectedByKeyboard,
-    /// The key is left to a menu that is open, which closes itself.
-    MenuRespected,
-}
-
-pub(super) const NONE: Modifiers = Modifiers::NONE;
-pub(super) const SHIFT: Modifiers = Modifiers::SHIFT;
-pub(super) const COMMAND: Modifiers = Modifiers::COMMAND;
-pub(super) const COMMAND_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// The keys of the labs, from left to right: the digits and the three keys after them.
 pub(in crate::ui) const LAB_KEYS: [Keyboard; 14] = [
@@ -54,7 +26,7 @@ pub(in crate::ui) const LAB_KEYS: [Keyboard; 14] = [
     Keyboard::Backtick,
 ];
 
-/// The commands that the keyboard gives, besides [`UiCommand::OpenLab`].
+/// The commands with shortcuts, besides [`UiCommand::OpenLab`].
 const WITH_KEYS: [UiCommand; 29] = [
     UiCommand::Redo,
     UiCommand::Undo,
@@ -87,7 +59,7 @@ const WITH_KEYS: [UiCommand; 29] = [
     UiCommand::PreviousStep,
 ];
 
-/// Gives the commands whose keys are pressed, unless text is being typed.
+/// Runs the commands whose shortcuts are pressed, unless text is being typed.
 pub(crate) fn take_keys(session: &Session, state: &mut UiState, out: &mut Out, ui: &Ui) {
     let ctx = ui.ctx();
     if ctx.text_edit_focused() {
@@ -125,7 +97,7 @@ pub(crate) fn take_keys(session: &Session, state: &mut UiState, out: &mut Out, u
         }
     }
     for (index, key) in LAB_KEYS.into_iter().enumerate() {
-        // A map that has the focus is made larger and smaller with these.
+        // These keys zoom a map that has the focus.
         let zooms = matches!(key, Keyboard::Num0 | Keyboard::Minus | Keyboard::Equals);
         let how = if zooms { Focus::Respected } else { Focus::Ignored };
         if is_free(how) && is_pressed(Trigger::Keys(NONE, key)) {
@@ -134,8 +106,8 @@ pub(crate) fn take_keys(session: &Session, state: &mut UiState, out: &mut Out, u
     }
 }
 
-/// Returns the first keys of commands, one behind the other: `Shift ← →`. Only a key that stands
-/// alone has a name to translate, such as `Space`.
+/// Returns the first shortcut of each command, in one text: `Shift ← →`. Only a single key has a
+/// name to translate, such as `Space`.
 pub(super) fn keys_of(commands: &[UiCommand]) -> Message {
     let mut words: Vec<&'static str> = Vec::new();
     for command in commands {

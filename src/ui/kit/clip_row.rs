@@ -59,12 +59,12 @@ pub(crate) enum ClipRowEvent {
     Letter(usize),
     /// The action of that index was pressed.
     Action(usize),
-    /// Its menu was asked for: at the pointer, or from the keyboard.
+    /// Its menu was requested by the pointer or the keyboard.
     Menu {
-        /// Whether the pointer asked for it.
+        /// Whether the pointer requested it.
         by_pointer: bool,
     },
-    /// A finger was held on it.
+    /// It was pressed long by a finger.
     Held,
 }
 

@@ -262,18 +262,18 @@ fn sides_ui(map: &HeatMap<'_>, axes: &Axes, stripes: f32, ui: &Ui) {
     }
 }
 
-/// The last place of the pin that is held.
+/// The last position of the pin that is being dragged; `None` for a drag without a pin.
 #[derive(Clone, Copy, Debug)]
-struct Held(Option<[f64; 2]>);
+struct HeldPin(Option<[f64; 2]>);
 
-/// Makes a target of a fingertip's size of each pin. Returns the one that is used.
+/// Adds a touch target to each pin. Returns the one in use.
 fn touched_pins(map: &HeatMap<'_>, axes: &Axes, id: Id, ui: &Ui) -> Option<Response> {
     let side = theme_of(ui).hit();
     let pins = map.pins.iter().enumerate().map(|(index, &pin)| {
         let target = Rect::from_center_size(axes.at(pin), vec2(side, side));
         ui.interact(target, id.with(("pin", index)), Sense::click_and_drag())
     });
-    // All of them are made, so that each stays the widget that it was.
+    // Add all of them, so that each keeps its widget id.
     pins.fold(None, |used, pin| {
         let is_used = pin.dragged() || pin.drag_stopped() || pin.clicked();
         if is_used { Some(pin) } else { used }
@@ -328,20 +328,20 @@ fn events(
     if response.drag_started() {
         let origin =
             ui.input(|input| input.pointer.press_origin()).or(response.interact_pointer_pos());
-        ui.data_mut(|data| data.insert_temp(held_id, Held(origin.and_then(near))));
+        ui.data_mut(|data| data.insert_temp(held_id, HeldPin(origin.and_then(near))));
     }
     if let (true, Some(pos)) = (response.dragged(), response.interact_pointer_pos()) {
-        let Held(from) = ui.data(|data| data.get_temp(held_id)).unwrap_or(Held(None));
+        let HeldPin(from) = ui.data(|data| data.get_temp(held_id)).unwrap_or(HeldPin(None));
         let to = axes.secs(pos);
         let stays = axes.rect.expand(OUT).contains(pos);
         match (stays, from) {
             (true, _) if from != Some(to) => {
                 events.push(HeatMapEvent::Pin { from, to });
-                ui.data_mut(|data| data.insert_temp(held_id, Held(Some(to))));
+                ui.data_mut(|data| data.insert_temp(held_id, HeldPin(Some(to))));
             }
             (false, Some(from)) => {
                 events.push(HeatMapEvent::Unpin(from));
-                ui.data_mut(|data| data.insert_temp(held_id, Held(None)));
+                ui.data_mut(|data| data.insert_temp(held_id, HeldPin(None)));
             }
             _ => {}
         }

@@ -1,4 +1,4 @@
-//! The few words that the kit itself says. All others are handed in by the panels.
+//! The texts of the kit itself. All others are passed in by the panels.
 
 use crate::ui::language::Word;
 
@@ -16,11 +16,11 @@ pub(super) const WORST: Word = Word::new("worst");
 pub(super) const PLAY: Word = Word::new("Play");
 /// The button that pauses playback.
 pub(super) const PAUSE: Word = Word::new("Pause");
-/// The button that goes back by a frame.
+/// The button that steps back by a frame.
 pub(super) const STEP_BACK: Word = Word::new("One frame back");
-/// The button that goes on by a frame.
+/// The button that steps forward by a frame.
 pub(super) const STEP_FORWARD: Word = Word::new("One frame forward");
-/// The switch by which playback starts again at the end.
+/// The switch that loops playback.
 pub(super) const REPEAT: Word = Word::new("Repeat");
 /// The menu of playback speeds.
 pub(super) const SPEED: Word = Word::new("Speed");
@@ -52,7 +52,7 @@ pub(super) const ADD_LEFT_CONTACT: Word = Word::new("Add a left contact at the p
 pub(super) const ADD_RIGHT_CONTACT: Word = Word::new("Add a right contact at the playhead");
 /// The item that removes a contact.
 pub(super) const REMOVE_CONTACT: Word = Word::new("Remove this contact");
-/// The item that takes back the corrections of contacts.
+/// The item that reverts the corrections of contacts.
 pub(super) const RESET_CONTACTS: Word = Word::new("Back to what was found");
 /// The help on a contact.
 pub(super) const STANCE_HELP: Word = Word::new(
@@ -60,7 +60,7 @@ pub(super) const STANCE_HELP: Word = Word::new(
 );
 /// The button that opens the menu of a row.
 pub(super) const MORE: Word = Word::new("More");
-/// The button that empties the field of a search.
+/// The button that clears a search field.
 pub(super) const CLEAR_SEARCH: Word = Word::new("Clear the search");
 /// The name of the list of notices.
 pub(super) const NOTICES: Word = Word::new("Notices");

@@ -4,7 +4,8 @@ use crate::ui::labs::lab_ui::{Compares, Edge, LabUi, Shown, Title};
 use crate::ui::language::Word;
 use crate::ui::out::Out;
 use crate::ui::rows::{
-    Detail, Kept, blend_window_ui, compare_ui, foot_rows_ui, pair_ui, param_row_ui, place_rows_ui,
+    Detail, KeepOffer, blend_window_ui, compare_ui, foot_rows_ui, pair_ui, param_row_ui,
+    place_rows_ui,
 };
 use crate::ui::state::UiState;
 use crate::ui::text;
@@ -17,7 +18,7 @@ use segue_text::msg;
 pub(super) const LAB: LabUi = LabUi {
     panel_ui: blend_ui,
     about: [text::BLEND_ABOUT, text::BLEND_DETAILS],
-    kept: |_, pane| Kept::result(pane),
+    kept: |_, pane| KeepOffer::result(pane),
     compares: Compares::Key(Key::BlendWindow),
     title,
     hint: welcome,

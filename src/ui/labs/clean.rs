@@ -3,7 +3,7 @@
 use crate::ui::kit::{self, Button, Icon, Moment};
 use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
 use crate::ui::out::Out;
-use crate::ui::rows::{Detail, Kept, clip_sets_ui, param_row_ui, slot_row_ui};
+use crate::ui::rows::{Detail, KeepOffer, clip_sets_ui, param_row_ui, slot_row_ui};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{palette_of, space};
@@ -21,7 +21,7 @@ use segue_text::Message;
 pub(super) const LAB: LabUi = LabUi {
     panel_ui: clean_ui,
     about: [text::CLEAN_ABOUT, text::CLEAN_DETAILS],
-    kept: |_, pane| Kept::result(pane),
+    kept: |_, pane| KeepOffer::result(pane),
     compares: Compares::Own(compare_mends),
     title,
     hint: |_| None,
@@ -29,7 +29,7 @@ pub(super) const LAB: LabUi = LabUi {
 };
 
 /// The most faults of a kind that are listed.
-const MOST_LISTED: usize = 12;
+const MAX_LISTED: usize = 12;
 
 fn title(shown: &Shown<'_>) -> Title {
     let is_on = shown.params.choice::<Mending>() == Mending::Mended;
@@ -65,7 +65,7 @@ fn clean_ui(session: &Session, _: &mut UiState, out: &mut Out, ui: &mut Ui) {
         }
     }
     ui.add_space(space::S);
-    kit::folded_ui(text::TRY_FAULTS, ui, |ui| {
+    kit::folded_ui(text::INJECT_FAULTS, ui, |ui| {
         row(Key::CleanFaults, out, ui);
         row(Key::CleanSeed, out, ui);
     });
@@ -78,8 +78,8 @@ fn faults_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let Some((outcome, facts)) = main_facts(session) else {
         return kit::note_ui(text::LOOKING_FOR_FAULTS, muted, ui);
     };
-    if facts.put_in > 0 {
-        kit::note_ui(&text::put_in(facts.put_in), muted, ui);
+    if facts.injected > 0 {
+        kit::note_ui(&text::injected(facts.injected), muted, ui);
     }
     if facts.faults.is_empty() {
         return kit::note_ui(text::NO_FAULTS, muted, ui);
@@ -95,11 +95,11 @@ fn faults_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         let mended = of_kind().filter(|found| facts.mends && found.is_chosen).count();
         ui.add_space(space::XS);
         kit::note_ui(&text::faults_of_kind(kind, numbers.len(), mended), palette_of(ui).text, ui);
-        for (index, found) in of_kind().take(MOST_LISTED).enumerate() {
+        for (index, found) in of_kind().take(MAX_LISTED).enumerate() {
             ui.push_id((kind, index), |ui| fault_ui(found, facts, outcome, session, out, ui));
         }
-        if numbers.len() > MOST_LISTED {
-            kit::note_ui(&text::more_faults(numbers.len() - MOST_LISTED), muted, ui);
+        if numbers.len() > MAX_LISTED {
+            kit::note_ui(&text::more_faults(numbers.len() - MAX_LISTED), muted, ui);
         }
     }
 }

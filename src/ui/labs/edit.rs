@@ -4,7 +4,7 @@ use crate::ui::kit::{self, Button, Icon, MenuItem};
 use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
 use crate::ui::out::Out;
 use crate::ui::rows::{
-    Detail, Kept, clip_choice_ui, clip_sets_ui, foot_rows_ui, param_row_ui, retarget_rows_ui,
+    Detail, KeepOffer, clip_choice_ui, clip_sets_ui, foot_rows_ui, param_row_ui, retarget_rows_ui,
     slot_row_ui,
 };
 use crate::ui::state::UiState;
@@ -20,7 +20,7 @@ use segue_text::Message;
 pub(super) const LAB: LabUi = LabUi {
     panel_ui: edit_ui,
     about: [text::EDIT_ABOUT, text::EDIT_DETAILS],
-    kept: |_, pane| Kept::result(pane),
+    kept: |_, pane| KeepOffer::result(pane),
     compares: Compares::Own(compare_sides),
     title,
     hint: |_| None,

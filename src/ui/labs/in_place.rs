@@ -2,7 +2,7 @@
 
 use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
 use crate::ui::out::Out;
-use crate::ui::rows::{Detail, Kept, clip_sets_ui, foot_rows_ui, param_row_ui, slot_row_ui};
+use crate::ui::rows::{Detail, KeepOffer, clip_sets_ui, foot_rows_ui, param_row_ui, slot_row_ui};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::space;
@@ -13,7 +13,7 @@ use segue_session::{Compare, Key, Session, Slot};
 pub(super) const LAB: LabUi = LabUi {
     panel_ui: in_place_ui,
     about: [text::IN_PLACE_ABOUT, text::IN_PLACE_DETAILS],
-    kept: |_, pane| Kept::result(pane),
+    kept: |_, pane| KeepOffer::result(pane),
     compares: Compares::Own(compare_ways),
     title,
     hint: |_| None,

@@ -1,29 +1,29 @@
-//! The parts that every lab has on the page, as types.
+//! The types of a lab's part of the page.
 
 use crate::ui::language::Word;
 use crate::ui::out::Out;
-use crate::ui::rows::Kept;
+use crate::ui::rows::KeepOffer;
 use crate::ui::state::UiState;
 use eframe::egui::Ui;
 use glam::DVec2;
-use segue_session::{Key, Pane, Params, Session};
+use segue_session::{Command, Key, Pane, Params, Session};
 use segue_text::Message;
 
 /// A lab's part of the page; each lab's own file has one, as `LAB`.
 pub(crate) struct LabUi {
     /// The rows of its panel.
     pub(crate) panel_ui: fn(&Session, &mut UiState, &mut Out, &mut Ui),
-    /// A line about it, and what there is to say beyond that.
+    /// The line about it, and its help text.
     pub(crate) about: [Word; 2],
     /// The motion of a pane that is kept and saved.
-    pub(crate) kept: fn(&Session, usize) -> Kept,
+    pub(crate) kept: fn(&Session, usize) -> KeepOffer,
     /// The start of its comparison.
     pub(crate) compares: Compares,
     /// The title of a pane.
     pub(crate) title: fn(&Shown<'_>) -> Title,
     /// The hint over the stage.
     pub(crate) hint: fn(&Session) -> Option<Word>,
-    /// Takes a line that was drawn over the ground; `None` where none can be drawn.
+    /// Handles a line that was drawn on the ground; `None` where none can be drawn.
     pub(crate) take_line: Option<TakeLine>,
 }
 
@@ -34,8 +34,19 @@ pub(crate) type TakeLine = fn(&[DVec2], &Session, &mut UiState, &mut Out);
 pub(crate) enum Compares {
     /// A parameter: the value that is set, and others.
     Key(Key),
-    /// A choice of the lab's own.
+    /// A comparison of the lab's own.
     Own(fn(&Session, &mut Out)),
+}
+
+impl Compares {
+    /// Opens the comparison, or goes back to one pane.
+    pub(crate) fn toggle(&self, session: &Session, out: &mut Out) {
+        match self {
+            _ if session.panes().len() > 1 => out.compare(None),
+            Self::Key(key) => out.commands.push(Command::Compare(*key)),
+            Self::Own(compare) => compare(session, out),
+        }
+    }
 }
 
 /// The content of a pane.
@@ -57,7 +68,7 @@ impl Shown<'_> {
         self.session.library().find(id).map(|entry| entry.title())
     }
 
-    /// Returns the word on screen of a parameter's value.
+    /// Returns the text on screen for a parameter's value.
     pub(crate) fn spoken(&self, key: Key) -> Message {
         key.param().spoken(self.params.get(key))
     }

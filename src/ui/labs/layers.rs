@@ -3,7 +3,7 @@
 use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
 use crate::ui::language::say;
 use crate::ui::out::Out;
-use crate::ui::rows::{Detail, Kept, param_row_ui};
+use crate::ui::rows::{Detail, KeepOffer, param_row_ui};
 use crate::ui::rows::{compare_ui, foot_rows_ui, pair_ui};
 use crate::ui::state::UiState;
 use crate::ui::text;
@@ -17,7 +17,7 @@ use segue_text::msg;
 pub(super) const LAB: LabUi = LabUi {
     panel_ui: layers_ui,
     about: [text::LAYERS_ABOUT, text::LAYERS_DETAILS],
-    kept: |_, pane| Kept::result(pane),
+    kept: |_, pane| KeepOffer::result(pane),
     compares: Compares::Key(Key::LayerWeight),
     title,
     hint: |_| None,

@@ -2,7 +2,7 @@
 
 use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
 use crate::ui::out::Out;
-use crate::ui::rows::{Detail, Kept, compare_ui, foot_rows_ui, param_row_ui};
+use crate::ui::rows::{Detail, KeepOffer, compare_ui, foot_rows_ui, param_row_ui};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use eframe::egui::Ui;
@@ -14,7 +14,7 @@ use segue_text::Message;
 pub(super) const LAB: LabUi = LabUi {
     panel_ui: make_ui,
     about: [text::MAKE_ABOUT, text::MAKE_DETAILS],
-    kept: |_, pane| Kept::result(pane),
+    kept: |_, pane| KeepOffer::result(pane),
     compares: Compares::Own(|session, out| {
         out.commands.push(Command::Compare(made_number(session)));
     }),

@@ -11,7 +11,8 @@ use crate::ui::labs::path::hand::path_of;
 use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::rows::{
-    Detail, Kept, add_clip_ui, clip_list_ui, clip_sets_ui, foot_rows_ui, param_row_ui, slot_row_ui,
+    Detail, KeepOffer, add_clip_ui, clip_list_ui, clip_sets_ui, foot_rows_ui, param_row_ui,
+    slot_row_ui,
 };
 use crate::ui::state::UiState;
 use crate::ui::text;
@@ -27,7 +28,7 @@ use segue_text::{Message, ToMessage};
 pub(super) const LAB: LabUi = LabUi {
     panel_ui: path_ui,
     about: [text::PATH_ABOUT, text::PATH_DETAILS],
-    kept: |_, pane| Kept::result(pane),
+    kept: |_, pane| KeepOffer::result(pane),
     compares: Compares::Own(compare_points),
     title,
     hint: |_| Some(text::PATH_HINT),

@@ -8,7 +8,7 @@ use crate::ui::labs::lab_ui::{Compares, Edge, LabUi, Shown, Title};
 use crate::ui::language::{Text, Word, say};
 use crate::ui::out::Out;
 use crate::ui::rows::clip_sets_ui;
-use crate::ui::rows::{Detail, Kept, param_row_ui};
+use crate::ui::rows::{Detail, KeepOffer, param_row_ui};
 use crate::ui::rows::{
     clip_choice_ui, clip_list_ui, compare_ui, foot_rows_ui, frames_of_both, pair_ui,
 };
@@ -30,7 +30,7 @@ use std::sync::Arc;
 pub(super) const LAB: LabUi = LabUi {
     panel_ui: register_ui,
     about: [text::REGISTER_ABOUT, text::REGISTER_DETAILS],
-    kept: |_, pane| Kept::result(pane),
+    kept: |_, pane| KeepOffer::result(pane),
     compares: Compares::Own(compare_warps),
     title,
     hint: |_| Some(text::REGISTER_HINT),

@@ -4,7 +4,7 @@ use crate::ui::kit::{self, Button, Mark, Part};
 use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
 use crate::ui::out::Out;
 use crate::ui::rows::clip_sets_ui;
-use crate::ui::rows::{Detail, Kept, param_row_ui};
+use crate::ui::rows::{Detail, KeepOffer, param_row_ui};
 use crate::ui::rows::{foot_rows_ui, pair_ui};
 use crate::ui::state::UiState;
 use crate::ui::text;
@@ -18,7 +18,7 @@ use segue_text::{Message, msg};
 pub(super) const LAB: LabUi = LabUi {
     panel_ui: speed_ui,
     about: [text::SPEED_ABOUT, text::SPEED_DETAILS],
-    kept: |_, pane| Kept::result(pane),
+    kept: |_, pane| KeepOffer::result(pane),
     compares: Compares::Own(compare_speeds),
     title,
     hint: |_| None,

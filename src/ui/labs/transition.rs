@@ -6,7 +6,8 @@ use crate::ui::labs::lab_ui::{Compares, Edge, LabUi, Shown, Title};
 use crate::ui::language::Word;
 use crate::ui::out::Out;
 use crate::ui::rows::{
-    Detail, Kept, blend_window_ui, compare_ui, foot_rows_ui, pair_ui, param_row_ui, place_rows_ui,
+    Detail, KeepOffer, blend_window_ui, compare_ui, foot_rows_ui, pair_ui, param_row_ui,
+    place_rows_ui,
 };
 use crate::ui::state::UiState;
 use crate::ui::text;
@@ -21,7 +22,7 @@ use segue_text::msg;
 pub(super) const LAB: LabUi = LabUi {
     panel_ui: transition_ui,
     about: [text::TRANSITION_ABOUT, text::TRANSITION_DETAILS],
-    kept: |_, pane| Kept::result(pane),
+    kept: |_, pane| KeepOffer::result(pane),
     compares: Compares::Key(Key::HalfLife),
     title,
     hint: |_| None,

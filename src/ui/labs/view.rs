@@ -3,9 +3,8 @@
 use crate::ui::clip_panel::clip_panel_ui;
 use crate::ui::kit::{self, Button};
 use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
-use crate::ui::labs::toggle_compare;
 use crate::ui::out::Out;
-use crate::ui::rows::{Detail, Kept, clip_choice_ui, foot_rows_ui, param_row_ui, slot_row_ui};
+use crate::ui::rows::{Detail, KeepOffer, clip_choice_ui, foot_rows_ui, param_row_ui, slot_row_ui};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use eframe::egui::Ui;
@@ -52,13 +51,15 @@ pub(super) fn view_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
 }
 
 /// Returns the clip with the changes of this lab; a clip without any is in the library already.
-fn kept(session: &Session, pane: usize) -> Kept {
+fn kept(session: &Session, pane: usize) -> KeepOffer {
     let unchanged = session.slot(Slot::A).filter(|_| !session.view_is_changed());
     match unchanged {
-        Some(entry) if session.panes().len() < 2 => {
-            Kept { saved: entry.id.clone(), keep_refused: text::KEPT_ALREADY, ..Kept::result(pane) }
-        }
-        _ => Kept::result(pane),
+        Some(entry) if session.panes().len() < 2 => KeepOffer {
+            saved: entry.id.clone(),
+            keep_refused: text::KEPT_ALREADY,
+            ..KeepOffer::result(pane)
+        },
+        _ => KeepOffer::result(pane),
     }
 }
 
@@ -82,6 +83,6 @@ fn compared_clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         text::COMPARE_CLIPS
     };
     if kit::button_ui(Button::new(label).hint(text::COMPARE_CLIPS_HELP), ui).clicked() {
-        toggle_compare(session, out);
+        LAB.compares.toggle(session, out);
     }
 }

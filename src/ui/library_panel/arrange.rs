@@ -1,6 +1,6 @@
 //! The order of the library's list: searched, sorted, and in groups.
 
-use super::state::ClipOrder;
+use crate::ui::state::ClipOrder;
 use crate::ui::text;
 use segue_motion::math::sort::sort_by;
 use segue_session::{ClipGroup, Entry, Origin};

@@ -1,13 +1,12 @@
 //! The row of a clip: its letters, its actions, its menu and its details.
 
-use super::state::Held;
 use crate::ui::clip_drag::{ClipDrag, swap_values};
 use crate::ui::clip_panel::clip_panel_ui;
 use crate::ui::kit::{self, ClipRow, ClipRowEvent, Icon, MenuItem, Part, SlotLetter};
 use crate::ui::labs::{compare_clips, edit_items_ui};
 use crate::ui::language::{Text, Word, say};
 use crate::ui::out::{Action, Out};
-use crate::ui::state::{Typing, UiState};
+use crate::ui::state::{HeldKeys, Typing, UiState};
 use crate::ui::text;
 use crate::ui::theme::space;
 use eframe::egui::{
@@ -75,7 +74,7 @@ pub(super) fn entry_ui(
     row.response.dnd_set_drag_payload(ClipDrag { id: entry.id.clone() });
     match row.event {
         Some(ClipRowEvent::Chosen) => {
-            let held = ui.input(|input| Held {
+            let held = ui.input(|input| HeldKeys {
                 shift: input.modifiers.shift,
                 command: input.modifiers.command,
             });

@@ -12,8 +12,8 @@ use eframe::egui::{Id, Rect, Response, ScrollArea, Ui, UiBuilder, vec2};
 use segue_session::{Command, NoResult, Pane, Session};
 use segue_text::Message;
 
-/// The motion that a lab keeps and saves.
-pub(crate) struct Kept {
+/// The motion that a lab offers to keep and save.
+pub(crate) struct KeepOffer {
     /// The motion that is saved: a clip's id, or `result:1` for the second pane.
     pub(crate) saved: String,
     /// The reason why it cannot be kept, beside that there is no result; empty if it can.
@@ -22,7 +22,7 @@ pub(crate) struct Kept {
     pub(crate) save_refused: Word,
 }
 
-impl Kept {
+impl KeepOffer {
     /// Returns the result of a pane, as it is.
     pub(crate) fn result(pane: usize) -> Self {
         Self {
@@ -41,7 +41,7 @@ const PATIENCE_SECS: f64 = 0.4;
 /// and saved of a pane, `most` is the greatest height of the foot, points.
 pub(crate) fn footer_ui(
     session: &Session,
-    kept: fn(&Session, usize) -> Kept,
+    kept: fn(&Session, usize) -> KeepOffer,
     most: f32,
     state: &mut UiState,
     out: &mut Out,

@@ -1,4 +1,4 @@
-//! What retargeting did, and the weights of feet and hands.
+//! The retargeting errors, and the weights of feet and hands.
 
 use super::{Detail, param_row_ui};
 use crate::ui::kit;
@@ -59,7 +59,7 @@ fn errors_ui(errors: &RetargetErrors, ui: &mut Ui) {
     for (limb, reach) in limbs {
         if let Some(Compared { directions, result }) = reach {
             let said = |reach: LimbReach| mean_and_worst(reach.mean_cm, reach.worst_cm);
-            lines.push(text::limb_off(limb, said(result), said(directions)));
+            lines.push(text::limb_error(limb, said(result), said(directions)));
         }
     }
     let Compared { directions, result } = errors.skating;
@@ -70,7 +70,7 @@ fn errors_ui(errors: &RetargetErrors, ui: &mut Ui) {
     }
     if errors.feet != [None; 2] {
         let Compared { directions, result } = errors.penetration_cm;
-        lines.push(text::feet_sink_in(result, directions));
+        lines.push(text::penetration(result, directions));
     }
     let Compared { directions, result } = errors.beyond_limits;
     lines.push(text::beyond_limits(result, directions));

@@ -1,19 +1,19 @@
 //! The strip below the stage: the numbers of every pane, in the same places below each, or the
 //! reason why a pane has none.
 
+use super::columns::shown_panes;
 use super::explanation::{Explained, explanation_ui};
 use super::pane::{problem_below, problem_height, problem_ui};
-use super::shown_panes;
 use crate::ui::kit::{self, Button, GridRoom, Icon, Metric, MetricGrid, Rank};
 use crate::ui::language::Word;
 use crate::ui::out::Out;
-use crate::ui::state::{Layout, UiState};
+use crate::ui::state::{Layout, StripState, UiState};
 use crate::ui::text;
 use crate::ui::theme::{HIT, palette_of, space, theme_of};
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Pos2, Rect, ScrollArea, Stroke, Ui, UiBuilder, pos2, vec2};
 use segue_session::metrics::{MetricId, MetricRow, Unit};
-use segue_session::{Key, LabId, Pane, Session, listed_metrics};
+use segue_session::{Key, Pane, Session, listed_metrics};
 
 /// The least height of a row that is touched by a finger, points.
 const TOUCHED: f32 = 44.0;
@@ -21,21 +21,6 @@ const TOUCHED: f32 = 44.0;
 const LIST_WIDTH: f32 = 230.0;
 /// The largest share of the stage that the list of all numbers takes; beyond, it scrolls.
 const MAX_SHARE: f32 = 0.5;
-
-/// The state of the strip between frames.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct StripState {
-    /// Whether all numbers are shown.
-    pub(crate) is_open: bool,
-    /// The lab, the number of panes shown, and the width of each, for which the rest holds.
-    of: (Option<LabId>, usize, f32),
-    /// The numbers that the panes had last.
-    listed: Vec<MetricId>,
-    /// The height of the strip.
-    height: f32,
-    /// The height that the reasons of panes without a result took.
-    problems: f32,
-}
 
 /// The strip of one frame, before it is drawn: the stage above it needs its height.
 pub(super) struct Strip {

@@ -3,11 +3,11 @@
 
 use crate::ui::kit::{self, Icon};
 use crate::ui::language::{Text, say};
-use crate::ui::state::UiState;
+use crate::ui::state::{Swipe, UiState};
 use crate::ui::text;
 use crate::ui::theme::{palette_of, space, theme_of};
 use eframe::egui::{
-    InputState, Pos2, Rect, Response, Role, Sense, Ui, UiBuilder, WidgetInfo, pos2, vec2,
+    InputState, Rect, Response, Role, Sense, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 use segue_session::Session;
 
@@ -17,16 +17,6 @@ const WAY: f32 = 36.0;
 const SECS: f64 = 0.15;
 /// The frames that it may take where they are longer.
 const FRAMES: f64 = 3.5;
-
-/// A finger on the stage of several panes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Swipe {
-    from: Pos2,
-    began: f64,
-    /// Whether it is known what the finger does: it turns the camera (`false`), or has turned the
-    /// page (`true`).
-    turns_page: Option<bool>,
-}
 
 /// Shows another pane when a finger swipes over the stage. Returns whether the drag is not the
 /// camera's.

@@ -1,8 +1,8 @@
 //! The panel in which many files are converted.
 
 use super::*;
-use crate::ui::convert_panel::ConvertShown;
 use crate::ui::out::ConvertAction;
+use crate::ui::state::ConvertShown;
 use segue_session::convert::ConversionRow;
 use std::sync::Arc;
 
@@ -73,7 +73,7 @@ fn conversion_table_begins_with_what_failed() {
         let top = |label: &str| harness.get_by_label(label).rect().top();
         let (failed, odd) = (top("broken/cut.bvh"), top("set/robot.csv → set/robot.bvh"));
         assert!(failed < odd && odd < top("set/walk.fbx → set/walk.bvh"));
-        harness.get_by_label("2 saved, 1 of them with oddities; 1 failed");
+        harness.get_by_label("2 saved, 1 of them with warnings; 1 failed");
     }
 }
 

@@ -241,7 +241,7 @@ fn clip_on_another_body_has_weights_and_a_table_of_errors() {
         harness.get_by_label("Weight of feet");
         harness.get_by_label("Weight of hands");
         press(text::RETARGET_ERRORS.english(), &mut harness);
-        for line in ["Left foot off by 0 cm", "Right hand off by", "Slide per stance 0 cm"] {
+        for line in ["Left foot error 0 cm", "Right hand error", "Slide per stance 0 cm"] {
             harness.get_by_label_contains(line);
         }
         picture(name, &mut harness);

@@ -173,7 +173,7 @@ fn search_shows_clips_by_name_until_escape() {
     harness.key_press(Keyboard::Escape);
     harness.run();
     assert!(clip_row("Stand", &harness).is_some());
-    // What is not found is said.
+    // A search without a match shows a message.
     harness.state_mut().state.library.search = "no such name".into();
     harness.run();
     harness.get_by_label(text::NO_SUCH_CLIP.english());
@@ -484,7 +484,7 @@ fn figure_is_cast_from_the_menu_of_its_row() {
     let options = GlbOptions { smooth: true, ..GlbOptions::default() };
     let mut bytes =
         write_glb(motion.expect("it is in A").clip(), &options).expect("a walk with a body");
-    // A body of this program's own is not read.
+    // The reader skips bodies that Segue wrote, so pretend that another program wrote this one.
     let at = bytes.windows(6).position(|word| word == b"Segue ").expect("its generator");
     bytes[at..at + 5].copy_from_slice(b"Other");
     let id = page.session.load("person.glb", bytes.into()).expect("a figure").ids.remove(0);

@@ -7,7 +7,7 @@ use segue_text::{Message, msg};
 /// The line about the Clean lab.
 pub(crate) const CLEAN_ABOUT: Word =
     Word::new("Finds the faults of a recorded take, and mends them.");
-/// What there is to say beyond the line about the Clean lab.
+/// The help text of the Clean lab.
 pub(crate) const CLEAN_DETAILS: Word = Word::new(
     "A take is compared with itself: what a joint never does elsewhere is no movement. Mends are applied from top to bottom.",
 );
@@ -17,8 +17,8 @@ pub(crate) const FAULTS: Word = Word::new("Faults found");
 pub(crate) const NO_FAULTS: Word = Word::new("No faults were found in this take.");
 /// The list of faults while they are looked for.
 pub(crate) const LOOKING_FOR_FAULTS: Word = Word::new("Looking for faults…");
-/// The title of the rows that put faults in.
-pub(crate) const TRY_FAULTS: Word = Word::new("Put faults in");
+/// The title of the rows that inject faults.
+pub(crate) const INJECT_FAULTS: Word = Word::new("Inject faults");
 /// The button that leaves a fault alone, or mends it after all.
 pub(crate) const MEND_THIS: Word = Word::new("Mend this fault");
 /// The button that mends everything.
@@ -45,7 +45,7 @@ pub(crate) const fn fault_kind(kind: FaultKind) -> Word {
         FaultKind::Drift => "Drift",
         FaultKind::Ground => "Ground height",
         FaultKind::Ends => "Ends",
-        FaultKind::Skating => "Foot skating",
+        FaultKind::Skating => "Sliding feet",
         FaultKind::Rate => "Frame rate",
     })
 }
@@ -98,9 +98,9 @@ pub(crate) fn mend_this(fault: Message) -> Message {
     msg!("Mend this fault: {fault}", fault)
 }
 
-/// Returns how many faults were put in.
-pub(crate) fn put_in(count: usize) -> Message {
-    msg!("{count} faults were put in", count)
+/// Returns how many faults were injected.
+pub(crate) fn injected(count: usize) -> Message {
+    msg!("{count, plural, one {# fault} other {# faults}} injected", count)
 }
 
 /// Returns what was cleaned, in a title.

@@ -29,7 +29,7 @@ pub(crate) fn files_done(done: usize, all: usize) -> Message {
 
 /// Returns what came of a conversion.
 pub(crate) fn conversion_result(good: usize, odd: usize, failed: usize) -> Message {
-    msg!("{good} saved, {odd} of them with oddities; {failed} failed", good, odd, failed)
+    msg!("{good} saved, {odd} of them with warnings; {failed} failed", good, odd, failed)
 }
 
 /// Returns the number of lines of the table that are not shown.

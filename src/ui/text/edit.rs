@@ -6,7 +6,7 @@ use crate::ui::language::Word;
 pub(crate) const EDIT_ABOUT: Word = Word::new(
     "Trims, loops, reverses, mirrors, resamples, scales, turns and moves a clip, or puts it on another body.",
 );
-/// What there is to say of the Edit lab beyond that.
+/// The help text of the Edit lab.
 pub(crate) const EDIT_DETAILS: Word = Word::new(
     "Edits are applied from top to bottom, and foot contacts follow. The ends of the part can be dragged on the bar above the timeline.",
 );

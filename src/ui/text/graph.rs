@@ -6,7 +6,7 @@ use segue_text::{Message, msg};
 
 /// The line about the Graph lab.
 pub(crate) const GRAPH_ABOUT: Word = Word::new("Walks endlessly through a graph of clips.");
-/// What there is to say beyond the line about the Graph lab.
+/// The help text of the Graph lab.
 pub(crate) const GRAPH_DETAILS: Word =
     Word::new("The graph has the transitions between the clips; the seed sets the walk.");
 /// The hint over the stage in the Graph lab.

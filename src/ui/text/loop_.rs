@@ -6,7 +6,7 @@ use segue_text::{Message, msg};
 
 /// The line about the Loop lab.
 pub(crate) const LOOP_ABOUT: Word = Word::new("Makes a seamless loop from a part of A.");
-/// What there is to say beyond the line about the Loop lab.
+/// The help text of the Loop lab.
 pub(crate) const LOOP_DETAILS: Word =
     Word::new("The difference between the ends of that part is spread over it.");
 /// The help of the half-life in this lab.

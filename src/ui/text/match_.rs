@@ -8,7 +8,7 @@ use segue_text::{Message, msg};
 
 /// The line about the Match lab.
 pub(crate) const MATCH_ABOUT: Word = Word::new("Drives a character by motion matching.");
-/// What there is to say beyond the line about the Match lab.
+/// The help text of the Match lab.
 pub(crate) const MATCH_DETAILS: Word = Word::new(
     "Drive with W A S D or the arrows, Shift to run, Q to strafe. Several times a second, all clips are searched for the best-matching frame.",
 );

@@ -155,13 +155,13 @@ pub(crate) fn lab(name: Word) -> Message {
 
 /// The line about the View lab.
 pub(crate) const VIEW_ABOUT: Word = Word::new("Plays a clip as it is.");
-/// What there is to say beyond the line about the View lab.
+/// The help text of the View lab.
 pub(crate) const VIEW_DETAILS: Word = Word::new(
     "Move it over the ground, remove its root motion or lock its feet to make another clip of it. Its joints and body parts are at the end.",
 );
 /// The line about the Make lab.
 pub(crate) const MAKE_ABOUT: Word = Word::new("Synthesises a motion from a few numbers.");
-/// What there is to say beyond the line about the Make lab.
+/// The help text of the Make lab.
 pub(crate) const MAKE_DETAILS: Word =
     Word::new("Keep it in the library to use it as A or B in the other labs.");
 /// The chip of a pane that still shows an earlier result.

@@ -8,7 +8,7 @@ use segue_text::{Message, msg};
 
 /// The line about the Path lab.
 pub(crate) const PATH_ABOUT: Word = Word::new("Fits a path to the hips, and lets you reshape it.");
-/// What there is to say beyond the line about the Path lab.
+/// The help text of the Path lab.
 pub(crate) const PATH_DETAILS: Word =
     Word::new("Drag its control points: the character follows and keeps its local motion.");
 /// The hint over the stage in the Path lab.

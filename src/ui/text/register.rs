@@ -5,7 +5,7 @@ use segue_text::{Message, msg};
 
 /// The line about the Register lab.
 pub(crate) const REGISTER_ABOUT: Word = Word::new("Time-warps B so that matching poses line up.");
-/// What there is to say beyond the line about the Register lab.
+/// The help text of the Register lab.
 pub(crate) const REGISTER_DETAILS: Word =
     Word::new("Watch the foot contacts on the timeline: A, B and the result strike together.");
 /// The hint over the stage in the Register lab.

@@ -7,12 +7,12 @@ use segue_text::{Message, msg};
 /// The line about the In place lab.
 pub(crate) const IN_PLACE_ABOUT: Word =
     Word::new("Removes the root motion of a clip, or rebuilds it.");
-/// What there is to say beyond the line about the In place lab.
+/// The help text of the In place lab.
 pub(crate) const IN_PLACE_DETAILS: Word =
     Word::new("It is rebuilt from the planted feet, which stay where they are on the ground.");
 /// The line about the Speed lab.
 pub(crate) const SPEED_ABOUT: Word = Word::new("Blends two gaits to any speed between them.");
-/// What there is to say beyond the line about the Speed lab.
+/// The help text of the Speed lab.
 pub(crate) const SPEED_DETAILS: Word =
     Word::new("For example a walk and a run. Drag the speed while it plays.");
 /// The button that compares the speeds of A and B and the one between them.

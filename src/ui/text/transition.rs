@@ -8,19 +8,19 @@ use segue_text::{Message, msg};
 
 /// The line about the Blend lab.
 pub(crate) const BLEND_ABOUT: Word = Word::new("Fades from A to B over a blend window.");
-/// What there is to say beyond the line about the Blend lab.
+/// The help text of the Blend lab.
 pub(crate) const BLEND_DETAILS: Word = Word::new(
     "Compare full, half and a third of the window: longer is smoother, shorter is snappier but pops.",
 );
 /// The line about the Transition lab.
 pub(crate) const TRANSITION_ABOUT: Word = Word::new("Goes from A to B by one of several methods.");
-/// What there is to say beyond the line about the Transition lab.
+/// The help text of the Transition lab.
 pub(crate) const TRANSITION_DETAILS: Word = Word::new(
     "Inertialization plays B alone and lets the difference from A decay; a dissolve plays both clips during the window.",
 );
 /// The line about the Layers lab.
 pub(crate) const LAYERS_ABOUT: Word = Word::new("Plays B on a part of A's body.");
-/// What there is to say beyond the line about the Layers lab.
+/// The help text of the Layers lab.
 pub(crate) const LAYERS_DETAILS: Word =
     Word::new("The mask chooses the part of the body, and the weight how strongly B moves it.");
 

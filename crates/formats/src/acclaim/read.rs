@@ -33,7 +33,7 @@ pub fn read_motion(
     skeleton: &AcclaimSkeleton,
     options: &ImportOptions,
 ) -> Result<ImportedFile, ImportError> {
-    // It is never cancelled, and therefore never `None`.
+    // `None` is returned only when cancelled, which never happens here.
     Ok(read_motion_with_progress(name, bytes, skeleton, options, &mut |_| true)?
         .unwrap_or_default())
 }
@@ -42,7 +42,7 @@ pub fn read_motion(
 /// stops with `None` when `progress` returns `false`.
 ///
 /// # Errors
-/// The same as for [`read_motion`].
+/// Those of [`read_motion`].
 pub fn read_motion_with_progress(
     name: &str,
     bytes: &[u8],
@@ -106,9 +106,9 @@ fn finish(
     Ok(ImportedFile { clips, warnings })
 }
 
-/// Returns the height of the lowest feet of a motion over the ground (y = 0), metres, if it is
-/// implausible: the values of a motion belong to one body, and with longer or shorter legs it sinks
-/// in or floats. `None` otherwise, and without feet.
+/// Returns the height of the lowest feet of a motion above the ground (y = 0), metres, if it is
+/// implausible: on a body with longer or shorter legs than its own, a motion sinks into the ground
+/// or floats. `None` otherwise, and for a body without feet.
 fn off_ground(clip: &Clip) -> Option<f32> {
     /// The number of frames that are read, spread over the clip.
     const SAMPLES: usize = 240;
@@ -132,7 +132,7 @@ fn off_ground(clip: &Clip) -> Option<f32> {
         lows.push(heights.fold(f32::MAX, f32::min));
     }
     lows.sort_by(f32::total_cmp);
-    // One frame in twenty may be a fault of the capture.
+    // One frame in twenty may be a capture fault.
     let low = *lows.get(lows.len() / 20)?;
     let share = low / roles.body_height(clip.skeleton());
     (!(MIN_SHARE..MAX_SHARE).contains(&share)).then_some(low)

@@ -23,7 +23,7 @@ pub fn read(
     bytes: &[u8],
     options: &ImportOptions,
 ) -> Result<ImportedFile, ImportError> {
-    // It is never cancelled, and therefore never `None`.
+    // `None` is returned only when cancelled, which never happens here.
     Ok(read_with_progress(name, bytes, options, &mut |_| true)?.unwrap_or_default())
 }
 

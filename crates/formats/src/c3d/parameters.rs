@@ -16,8 +16,8 @@ pub(super) struct Parameter<'a> {
 }
 
 impl Parameter<'_> {
-    /// Returns the numbers of a parameter; those of text are empty. Integers are unsigned where
-    /// `unsigned`, as numbers of frames are.
+    /// Returns the numbers of a parameter; empty for text. With `unsigned`, integers are unsigned,
+    /// as frame counts are.
     fn numbers(&self, unsigned: bool) -> Vec<f64> {
         match self.kind {
             1 => self.bytes.iter().map(|byte| f64::from(*byte)).collect(),
@@ -43,7 +43,7 @@ impl Parameter<'_> {
         }
     }
 
-    /// Returns the texts of a parameter, without the spaces after them.
+    /// Returns the texts of a parameter, without trailing spaces.
     fn texts(&self) -> Vec<String> {
         if self.kind != -1 || self.width == 0 {
             return Vec::new();
@@ -63,9 +63,10 @@ pub(super) struct Parameters<'a> {
 }
 
 impl<'a> Parameters<'a> {
-    /// Reads the section that begins at the offset `start`, as far as it is whole.
+    /// Reads the section at the offset `start`, up to the first damaged entry.
     pub(super) fn read(bytes: &'a [u8], start: usize, processor: Processor) -> Self {
-        // Programs write a wrong number of blocks; the links between parameters end the section.
+        // Some programs write a wrong number of blocks, so the links between parameters decide
+        // where the section ends.
         let section = bytes.get(start + 4..).unwrap_or_default();
         let mut groups: BTreeMap<i8, String> = BTreeMap::new();
         let mut members: Vec<(i8, String, Parameter<'a>)> = Vec::new();
@@ -78,7 +79,7 @@ impl<'a> Parameters<'a> {
                 members.push((entry.group, name, parameter));
             }
             match entry.next {
-                // Each entry lies behind the one before: the loop ends with the bytes.
+                // Offsets increase from entry to entry, so the loop terminates.
                 Some(next) if next > at => at = next,
                 _ => break,
             }
@@ -97,7 +98,7 @@ impl<'a> Parameters<'a> {
         self.by_name.get(name)?.numbers(false).first().copied()
     }
 
-    /// Returns the first number of a parameter, whose integers have no sign.
+    /// Returns the first number of a parameter with unsigned integers.
     pub(super) fn count(&self, name: &str) -> Option<f64> {
         self.by_name.get(name)?.numbers(true).first().copied()
     }
@@ -136,7 +137,7 @@ struct Entry<'a> {
     /// Negative for a group, positive for a parameter of that group.
     group: i8,
     name: &'a [u8],
-    /// What follows the name and the link.
+    /// The bytes after the name and the offset of the next entry.
     data: &'a [u8],
     /// The offset of the next entry; `None` for the last.
     next: Option<usize>,
@@ -180,7 +181,8 @@ impl<'a> Entry<'a> {
     }
 }
 
-/// Returns the offset of the parameter section: from the header, otherwise behind it.
+/// Returns the offset of the parameter section: the one in the header, otherwise the end of the
+/// header.
 pub(super) fn section_start(bytes: &[u8]) -> usize {
     usize::from(bytes.first().copied().unwrap_or(2).max(1)).saturating_sub(1) * BLOCK
 }

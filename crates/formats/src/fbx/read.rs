@@ -23,8 +23,8 @@ use std::sync::Arc;
 
 /// The memory that a file's content may take, as a multiple of its size: compressed keys unfold.
 const MEMORY_RATIO: usize = 32;
-/// The memory that the content of any file may take, bytes.
-const LEAST_MEMORY: usize = 64 << 20;
+/// The memory that the content of a file may take whatever its size, bytes.
+const MIN_MEMORY: usize = 64 << 20;
 /// Heights of a body with which the unit of a file is believed, metres: from a mouse to a giant.
 const BELIEVED_METRES: std::ops::Range<f64> = 0.05..20.0;
 
@@ -58,7 +58,7 @@ pub fn read_with_progress(
     progress: &mut dyn FnMut(usize) -> bool,
 ) -> Result<Option<ImportedFile>, ImportError> {
     check_size(name, bytes, options)?;
-    let most = bytes.len().saturating_mul(MEMORY_RATIO).max(LEAST_MEMORY);
+    let most = bytes.len().saturating_mul(MEMORY_RATIO).max(MIN_MEMORY);
     let limits =
         OpenOptions { max_memory: most.min(options.max_bytes.saturating_mul(4)), meshes: true };
     let scene = match Scene::open(bytes, limits, progress) {

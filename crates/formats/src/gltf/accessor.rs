@@ -2,6 +2,7 @@
 
 use super::document::Document;
 use crate::ImportError;
+use glam::Vec3;
 use gltf::json::Index;
 use gltf::json::accessor::{
     Accessor, ComponentType, GenericComponentType, IndexComponentType, Type,
@@ -227,4 +228,9 @@ fn plain(component: ComponentType, bytes: &[u8]) -> f32 {
 
 fn integer(bytes: &[u8]) -> u32 {
     bytes.iter().rev().fold(0, |value, &byte| value << 8 | u32::from(byte))
+}
+
+/// Returns vectors from their components, three each.
+pub(super) fn vectors(values: &[f32]) -> Vec<Vec3> {
+    values.as_chunks::<3>().0.iter().copied().map(Vec3::from_array).collect()
 }

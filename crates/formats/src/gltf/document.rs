@@ -26,8 +26,8 @@ pub(super) struct Document<'a> {
     buffers: Vec<Buffer<'a>>,
     /// The bone map, where the file has one.
     pub(super) humanoid: Option<Humanoid>,
-    /// The reason why its bone map cannot be read.
-    pub(super) broken_humanoid: Option<String>,
+    /// The error of a bone map that cannot be read.
+    pub(super) broken_humanoid: Option<serde_json::Error>,
     resolve: Resolve<'a>,
     /// The number of bytes that may still be allocated for this file.
     left: Cell<usize>,
@@ -60,7 +60,7 @@ impl<'a> Document<'a> {
         let root = parse(name, &json)?;
         let (humanoid, broken_humanoid) = match Humanoid::read(&json) {
             Ok(humanoid) => (humanoid, None),
-            Err(why) => (None, Some(why)),
+            Err(error) => (None, Some(error)),
         };
         let buffers = root.buffers.iter().enumerate();
         let buffers = buffers.map(|(index, buffer)| match (&buffer.uri, binary) {

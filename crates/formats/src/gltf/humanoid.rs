@@ -38,13 +38,13 @@ impl Humanoid {
     /// Returns the bone map in a file's JSON; `None` where it has none.
     ///
     /// # Errors
-    /// The text of the JSON reader's error where the extension is not as specified.
-    pub(super) fn read(json: &[u8]) -> Result<Option<Self>, String> {
+    /// [`serde_json::Error`] where the extension is not as specified.
+    pub(super) fn read(json: &[u8]) -> Result<Option<Self>, serde_json::Error> {
         // Most files have none, and a second reading of their JSON takes time.
         if memchr::memmem::find(json, b"\"VRM").is_none() {
             return Ok(None);
         }
-        let root: Root = serde_json::from_slice(json).map_err(|error| error.to_string())?;
+        let root: Root = serde_json::from_slice(json)?;
         let Extensions { animation, one, zero } = root.extensions.unwrap_or_default();
         Ok(match (one, zero, animation) {
             (Some(one), ..) => Some(Self::of_one(one)),

@@ -1,8 +1,8 @@
 //! Morph targets: a mesh keeps the shape that the file's weights give it at rest (section 3.7.2.2
 //! of the specification).
 
+use super::accessor::vectors;
 use super::document::Document;
-use super::skin::vectors;
 use crate::ImportError;
 use glam::Vec3;
 use gltf::json::accessor::Type;

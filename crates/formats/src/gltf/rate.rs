@@ -1,18 +1,18 @@
 //! Inference of the frame rate of an animation from the times of its keys; the format has none.
 
-/// The rate where the keys determine none, frames per second.
+/// The rate for keys that determine none, frames per second.
 const DEFAULT_FPS: f64 = 30.0;
-/// Lower rates are multiplied until they come nearest to the default: a pose every second is not a
-/// frame rate.
+/// Lower rates are multiplied to come close to the default: one pose per second is not a frame
+/// rate.
 const MIN_FPS: f64 = 20.0;
-/// Higher rates come from keys that are close by accident.
+/// Higher rates are caused by keys that happen to be close together.
 const MAX_FPS: f64 = 1000.0;
 /// Keys closer than this are one key, seconds.
 const SAME_KEY_SECS: f64 = 1e-4;
 /// Tolerance in frames within which a key is on a frame.
 const ON_FRAME: f64 = 0.02;
-/// The greatest number of frames between the two closest keys, so that keys at 0, 2 and 5 frames
-/// are found.
+/// The greatest number of frames between the two closest keys: keys at 0, 2 and 5 frames are still
+/// recognised.
 const MAX_BETWEEN: u32 = 4;
 
 /// The time range and frame rate of an animation.

@@ -50,8 +50,8 @@ pub fn read(
     let document = Document::open(name, bytes, resolve, options.max_bytes)?;
     let nodes = Nodes::of(&document)?;
     let mut tally = Tally::default();
-    if let Some(why) = &document.broken_humanoid {
-        tally.add(WarningKind::BrokenBoneMap { why: why.clone() }, None);
+    if let Some(error) = &document.broken_humanoid {
+        tally.add(WarningKind::BrokenBoneMap { why: error.to_string() }, None);
     }
     let mut motions = Vec::with_capacity(document.root.animations.len());
     let mut moves = vec![false; nodes.all.len()];

@@ -1,6 +1,7 @@
 //! The mesh of a character: all primitives with a skin on its joints, and the rigid ones that hang
 //! from them, bound to the rest pose of the file.
 
+use super::accessor::vectors;
 use super::characters::Character;
 use super::document::Document;
 use super::morph;
@@ -363,10 +364,6 @@ fn cofactors(m: DMat3) -> DMat3 {
     let [x, y, z]: [DVec3; 3] = [m.x_axis, m.y_axis, m.z_axis];
     let sign = m.determinant().signum();
     DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * sign
-}
-
-pub(super) fn vectors(values: &[f32]) -> Vec<Vec3> {
-    values.as_chunks::<3>().0.iter().copied().map(Vec3::from_array).collect()
 }
 
 /// Returns the triangles of a list, a strip or a fan of indices (section 3.7.2.1).

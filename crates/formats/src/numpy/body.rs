@@ -70,8 +70,8 @@ pub(super) const fn is_known(joints: usize) -> bool {
     matches!(joints, BODY_JOINTS | 24 | 52 | 55)
 }
 
-/// Returns the joints of a body of our own measures, with the pelvis where it stands over the
-/// origin of the model. Without those beyond the shared ones for numbers that are not known.
+/// Returns the joints of a generic body, with the pelvis at its standing height over the origin of
+/// the model; for an unknown `count` only the joints that all bodies of the family share.
 pub(super) fn joints(count: usize) -> Vec<Joint> {
     let mut joints: Vec<Joint> = Vec::with_capacity(count);
     let mut add = |name: String, parent: Option<usize>, offset: [f32; 3]| {

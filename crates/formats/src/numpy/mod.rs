@@ -22,9 +22,11 @@
 mod array;
 mod body;
 mod bundle;
+mod container;
 mod features;
 mod header;
 mod model;
+mod model_clip;
 mod own;
 mod pickle;
 mod plain;
@@ -36,35 +38,35 @@ mod take;
 mod turns;
 mod write;
 
-pub(super) use bundle::entry_paths;
 pub(super) use header::is_npy;
-pub use model::{SmplModel, model_clip, read_model};
+pub use model::{SmplModel, read_model};
+pub use model_clip::model_clip;
 pub use write::write_npz;
 
 use crate::assemble::assemble;
 use crate::error::{Fault, ImportError};
 use crate::warning::Tally;
 use crate::{ImportOptions, ImportedFile, archive, check_size, has_extension, stem};
-use bundle::{read_npy, read_npz};
+use container::{entry_paths, read_npy, read_npz};
 use segue_text::{Message, msg};
 
-/// The arrays that no motion needs, some of them large.
+/// The arrays that no motion needs; some are large.
 const UNUSED: [&str; 7] =
     ["dmpls", "marker_data", "markers_latent", "vertices", "faces", "posedirs", "weights"];
 
-/// The names of arrays by which an archive called `.zip` is one of arrays.
+/// The array names by which a `.zip` file is recognised as an archive of arrays.
 const TELLING: [&str; 7] =
     ["poses", "trans", "pose_body", "posed_joints", "global_rot_mats", "rotations", "v_template"];
 
-/// What the arrays of an archive are.
+/// The content of an archive of arrays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Content {
     Motion,
     Model,
 }
 
-/// Returns whether a zip archive is a `.npz` file, and of what; `None` for an archive of files. An
-/// archive of `.npy` files that has another name than `.npz` may be a folder of motions.
+/// Returns the content of a zip archive that is a `.npz` file; `None` for an archive of files. An
+/// archive of `.npy` files with a name other than `.npz` may be a folder of motions.
 pub(super) fn content_of_zip(name: &str, bytes: &[u8]) -> Option<Content> {
     let paths = entry_paths(bytes);
     let is_array = |path: &String| !path.contains('/') && has_extension(path, "npy");
@@ -79,7 +81,7 @@ pub(super) fn content_of_zip(name: &str, bytes: &[u8]) -> Option<Content> {
     (is_called_so || paths.iter().any(told)).then_some(Content::Motion)
 }
 
-/// Returns whether a file is called one of pickled objects.
+/// Returns whether a file name has the ending of a pickle.
 pub(super) fn is_pickle(name: &str) -> bool {
     ["pkl", "pickle"].iter().any(|ending| has_extension(name, ending))
 }
@@ -161,17 +163,17 @@ fn clips(
     Ok((ImportedFile { clips, warnings: tally.into_warnings(b"") }, used))
 }
 
-/// Returns options without a unit or an up axis of the user's.
+/// Returns the options without the user's unit and up axis.
 fn unset(options: &ImportOptions) -> ImportOptions {
     ImportOptions { metres_per_unit: None, up: None, ..*options }
 }
 
-/// Returns the fault of an array of another shape than `expected`.
+/// Returns the fault of an array whose shape is not `expected`.
 fn wrong_shape(found: &[usize], expected: &str) -> Fault {
     Fault::new(0, array_of(found), msg!("{expected}", expected = expected.to_owned()))
 }
 
-/// Returns an array by its shape, for an error.
+/// Returns a description of an array by its shape, for an error.
 fn array_of(shape: &[usize]) -> Message {
     msg!("an array of shape {shape}", shape = array::shape_text(shape))
 }

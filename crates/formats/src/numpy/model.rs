@@ -6,12 +6,13 @@
 
 use super::array::Array;
 use super::body;
-use super::bundle::{Bundle, read_npz};
+use super::bundle::Bundle;
+use super::container::read_npz;
 use super::write::NpzWriter;
 use super::{check_size, wrong_shape};
+use crate::ImportOptions;
 use crate::error::{Fault, ImportError};
 use crate::warning::Tally;
-use crate::{ImportOptions, ImportedFile};
 use glam::{DVec3, Vec3};
 use segue_motion::skeleton::Joint;
 use segue_text::msg;
@@ -62,24 +63,6 @@ pub fn read_model(
     read_npz(bytes, options.max_bytes, &wanted)
         .and_then(|bundle| read(&bundle))
         .map_err(|fault| fault.locate(name, b""))
-}
-
-/// Returns a model alone, as a clip of its mean body without frames.
-///
-/// # Errors
-/// Those of [`read_model`].
-pub fn model_clip(model: &SmplModel, options: &ImportOptions) -> Result<ImportedFile, ImportError> {
-    let mut joints = body::joints(model.mean.len());
-    model.shape(&mut joints, &[]);
-    let mut tally = Tally::default();
-    tally.add(crate::WarningKind::NoFrames, None);
-    let mut take = super::take::Take::new(joints, Vec::new(), Vec::new());
-    take.fps = Some(super::take::DEFAULT_FPS);
-    take.up = Some(segue_motion::clip::UpAxis::Y);
-    let clip = take
-        .into_clip(&model.file, options, &mut tally)
-        .map_err(|fault| fault.locate(&model.file, b""))?;
-    Ok(ImportedFile { clips: vec![clip], warnings: tally.into_warnings(b"") })
 }
 
 impl SmplModel {

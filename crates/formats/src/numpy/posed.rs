@@ -19,7 +19,7 @@ use segue_motion::math::quat;
 use segue_motion::skeleton::Joint;
 use segue_text::msg;
 
-/// Returns whether a file has joints and rotations in the world.
+/// Returns whether a file has world positions and rotations of joints.
 pub(super) fn is_posed(bundle: &Bundle<'_>) -> bool {
     bundle.get("posed_joints").is_some()
         && bundle.first(&["global_rot_mats", "local_rot_mats"]).is_some()
@@ -62,7 +62,7 @@ pub(super) fn read(bundle: &Bundle<'_>, tally: &mut Tally) -> Result<Take, Fault
     Ok(take.with_rate_of(bundle))
 }
 
-/// Returns an array without the axis of a batch of one motion.
+/// Returns an array without the batch axis, if the batch is a single motion.
 fn unbatched(view: View<'_>, axes: usize) -> View<'_> {
     if view.shape().len() == axes + 1 && view.shape().first() == Some(&1) {
         view.at(0, 0)
@@ -71,7 +71,7 @@ fn unbatched(view: View<'_>, axes: usize) -> View<'_> {
     }
 }
 
-/// Returns the rotations in the world of rotations in their parents.
+/// Converts local rotations to world rotations.
 pub(super) fn in_the_world(local: &[Quat], rig: &[rigs::RigJoint]) -> Vec<Quat> {
     let mut world: Vec<Quat> = Vec::with_capacity(local.len());
     for (index, turn) in local.iter().enumerate() {
@@ -82,7 +82,7 @@ pub(super) fn in_the_world(local: &[Quat], rig: &[rigs::RigJoint]) -> Vec<Quat> 
     world
 }
 
-/// Returns the rotations in their parents of rotations in the world.
+/// Converts world rotations to local rotations.
 fn in_their_parents(world: &[Quat], rig: &[rigs::RigJoint]) -> Vec<Quat> {
     let local = world.iter().enumerate().map(|(index, turn)| {
         let joint = index % rig.len();
@@ -92,8 +92,8 @@ fn in_their_parents(world: &[Quat], rig: &[rigs::RigJoint]) -> Vec<Quat> {
     local.collect()
 }
 
-/// Returns for each joint its mean place in the frame of its parent; for the root that of the first
-/// frame, over the ground.
+/// Returns the offset of each joint: its mean position in its parent's frame; for the root, its
+/// height above the ground in the first frame.
 pub(super) fn offsets(places: &[Vec3], world: &[Quat], rig: &[rigs::RigJoint]) -> Vec<Vec3> {
     let mut sums = vec![DVec3::ZERO; rig.len()];
     let frames = places.len() / rig.len().max(1);

@@ -16,15 +16,15 @@ use segue_text::msg;
 /// Frames per second of retargeted sets without header, and of tables with one.
 const PLAIN_FPS: f64 = 30.0;
 const NAMED_FPS: f64 = 120.0;
-/// Angles beyond a limit by less than this are rounding, radians.
+/// An angle beyond a limit by less than this is a rounding error, radians.
 const TOLERANCE: f64 = 1e-3;
-/// Means of the height of the pelvis' up direction that differ by less decide nothing.
+/// The least difference of the mean uprightness of two quaternion orders by which one is chosen.
 const CLEARLY_UPRIGHT: f64 = 0.05;
-/// A robot that travels less than this shows no direction, metres.
-const LEAST_TRAVEL: f64 = 0.5;
-/// The memory that a row becomes, bytes: a pose, and the rotations of all joints.
+/// The least travel that determines the robot's direction of motion, metres.
+const MIN_TRAVEL: f64 = 0.5;
+/// The memory for a row, bytes: a pose, and the rotations of all joints.
 const BYTES_PER_ROW: u64 = 800;
-/// Larger magnitudes come from overflow, not from measurement.
+/// Larger magnitudes are overflows, not measurements.
 const MAX_MAGNITUDE: f64 = 1e6;
 
 /// Reads a table of the robot's hinges.
@@ -60,14 +60,14 @@ pub fn read(
     Ok(ImportedFile { clips, warnings: tally.into_warnings(&text) })
 }
 
-/// Returns whether a line has the names of columns of a robot.
+/// Returns whether a line is a header with the robot's columns.
 pub(super) fn is_header(line: &[u8]) -> bool {
     let lower = line.to_ascii_lowercase();
     let has = |word: &[u8]| lower.windows(word.len()).any(|part| part == word);
     has(b"root_translatex") && has(b"_dof")
 }
 
-/// Returns the cells of a row, without the space around them.
+/// Returns the cells of a row, trimmed.
 pub(super) fn cells(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     line.split(|b| matches!(b, b',' | b';')).map(<[u8]>::trim_ascii)
 }
@@ -76,14 +76,15 @@ pub(super) fn number(cell: &[u8]) -> Option<f64> {
     fast_float2::parse::<f64, _>(cell).ok()
 }
 
-/// Rows of as many numbers each.
+/// A table of numbers with rows of equal length.
 struct Table {
     values: Vec<f64>,
     columns: usize,
 }
 
 impl Table {
-    /// Reads the rows of a text from an offset on; numbers that are not finite repeat those above.
+    /// Reads the rows of a text from an offset on; a number that is not finite is replaced by the
+    /// one above it.
     fn read(text: &[u8], from: usize, columns: usize, tally: &mut Tally) -> Result<Self, Fault> {
         let mut table = Self { values: Vec::new(), columns };
         let mut row: Vec<f64> = Vec::with_capacity(columns);
@@ -127,7 +128,7 @@ impl Table {
             }
             table.values.extend_from_slice(&row);
             let rows = (table.values.len() / columns) as u64;
-            // A table with the columns of a few hinges becomes one of all.
+            // A table with some of the hinges is expanded to all of them.
             let limit =
                 MEMORY_FLOOR.saturating_add(MEMORY_PER_BYTE.saturating_mul(text.len() as u64));
             if rows * BYTES_PER_ROW > limit {
@@ -148,7 +149,7 @@ impl Table {
 }
 
 trait TrimComma {
-    /// Returns the line without one comma at its end.
+    /// Returns the line without its trailing comma.
     fn trim_suffix_comma(&self) -> &[u8];
 }
 
@@ -158,7 +159,7 @@ impl TrimComma for [u8] {
     }
 }
 
-/// Returns the poses of a table, and the frame rate that its kind has.
+/// Returns the poses of a table, and the usual frame rate of its kind.
 fn poses(text: &[u8], tally: &mut Tally) -> Result<(Vec<RobotPose>, f64), Fault> {
     let start = text.iter().position(|b| !is_space(*b)).unwrap_or(text.len());
     let rest = &text[start..];
@@ -188,7 +189,7 @@ fn poses(text: &[u8], tally: &mut Tally) -> Result<(Vec<RobotPose>, f64), Fault>
     Ok((poses, fps))
 }
 
-/// Reads a table with names: centimetres and degrees.
+/// Reads a table with a header: centimetres and degrees.
 fn named(
     text: &[u8],
     start: usize,
@@ -244,7 +245,7 @@ fn named(
         .collect())
 }
 
-/// The orders of a quaternion's numbers.
+/// The order of a quaternion's components.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Order {
     ScalarLast,
@@ -263,7 +264,7 @@ impl Order {
     }
 }
 
-/// Reads a table without names: metres and radians.
+/// Reads a table without a header: metres and radians.
 fn plain(table: &Table, tally: &mut Tally) -> Vec<RobotPose> {
     let order = quaternion_order(table, tally);
     table
@@ -276,7 +277,7 @@ fn plain(table: &Table, tally: &mut Tally) -> Vec<RobotPose> {
         .collect()
 }
 
-/// Returns the order in which the robot stands upright, or else walks ahead.
+/// Returns the quaternion order in which the robot is upright, or failing that, walks forwards.
 fn quaternion_order(table: &Table, tally: &mut Tally) -> Order {
     let rows: Vec<&[f64]> = table.rows().collect();
     let count = rows.len().max(1) as f64;
@@ -294,12 +295,12 @@ fn quaternion_order(table: &Table, tally: &mut Tally) -> Order {
     };
     let (last, first) = (ahead(Order::ScalarLast), ahead(Order::ScalarFirst));
     let order =
-        if first > LEAST_TRAVEL && first > last { Order::ScalarFirst } else { Order::ScalarLast };
+        if first > MIN_TRAVEL && first > last { Order::ScalarFirst } else { Order::ScalarLast };
     tally.add(WarningKind::QuaternionOrder { scalar_first: order == Order::ScalarFirst }, None);
     order
 }
 
-/// Tells of the hinge that goes furthest beyond its limits, and how many others do.
+/// Warns of the hinge that exceeds its limits the most, with the number of others that do.
 fn warn_of_limits(poses: &[RobotPose], tally: &mut Tally) {
     struct Beyond {
         hinge: usize,

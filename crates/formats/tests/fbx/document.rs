@@ -51,7 +51,7 @@ pub(crate) fn property(name: &str, kind: &str, numbers: &[f64]) -> Element {
         "Vector3D" => "Vector",
         _ => "",
     };
-    // What may have curves.
+    // Properties of these kinds can be animated.
     let flags =
         if kind.starts_with("Lcl") || kind == "Number" || kind == "Color" { "A" } else { "" };
     let mut values = vec![text(name), text(kind), text(label), text(flags)];

@@ -18,7 +18,7 @@ impl WeightCurve {
     }
 
     /// Returns the curve through keys (share of the blend, weight), in any order; both are clamped
-    /// to 0 to 1. Of two keys at one share the later one holds from there on. Without keys the
+    /// to 0 to 1. Where two keys have the same share, the later one applies. Without keys the
     /// weight is 0; keys that are not finite are ignored.
     #[must_use]
     pub fn new(keys: impl IntoIterator<Item = (f64, f64)>) -> Self {

@@ -12,7 +12,7 @@ pub enum FaultKind {
     Swap,
     /// A limb or the whole body holds still while it ought to move.
     Gap,
-    /// A joint leaves its way for a few frames, or turns over and back.
+    /// A joint leaves its trajectory for a few frames, or flips and flips back.
     Spike,
     /// A joint trembles.
     Jitter,

@@ -9,17 +9,17 @@ use std::ops::Range;
 /// The duration of the windows in which noise is measured, seconds, and its least frames.
 const WINDOW_SECS: f64 = 0.35;
 const WINDOW_FRAMES: usize = 14;
-/// The least noise that is told, standard deviation for each axis: radians and metres.
+/// The least noise that is reported, standard deviation per axis: radians and metres.
 const MIN_NOISE: [f32; 2] = [0.006, 0.003];
 /// The least ratio of fourth to second differences, squared, of which noise has 70 / 6.
 const MIN_RATIO: f32 = 5.0;
 /// The least ratio to the quieter part of the same track.
 const MIN_CONTRAST: f32 = 3.5;
-/// The median of the squared length of a vector of three unit normal numbers.
+/// The median squared length of a vector of three standard normal variables.
 const MEDIAN_SQUARE: f32 = 2.366;
 /// The cut-off frequencies that are tried, hertz, from the lowest.
 const CUTOFFS_HZ: [f64; 10] = [3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 15.0, 20.0, 25.0];
-/// Frames around noise that the filter sees, seconds.
+/// The context around noise that is filtered with it, seconds.
 const CONTEXT_SECS: f64 = 0.5;
 /// The correction fades in and out over this time, seconds.
 const FADE_SECS: f64 = 0.04;
@@ -42,7 +42,7 @@ fn noise_in(steps: &[Vec3]) -> Noise {
     Noise { deviation: (fourth / (70.0 * MEDIAN_SQUARE)).sqrt(), ratio: fourth / second.max(1e-14) }
 }
 
-/// Returns the parts of a track that tremble.
+/// Returns the noisy parts of a track.
 ///
 /// The fourth differences of white noise with deviation σ have variance 70 σ², its second
 /// differences 6 σ², whereas those of a smooth motion become ever smaller. Medians keep single
@@ -75,7 +75,7 @@ pub(super) fn of_track(track: &Track, index: usize, tracks: &Tracks) -> Vec<Trac
             _ => runs.push((at..at + window + 1, noise.deviation, noise.ratio)),
         }
     }
-    // A window trembles once half of it does: the noise may begin before, or end behind.
+    // A window counts as noisy once half of it is: the noise may begin before it, or end after it.
     let more = window / 3;
     runs.into_iter()
         .filter(|(run, ..)| run.len() > window + hop)
@@ -168,7 +168,7 @@ pub(super) fn filter(
     }
 }
 
-/// Returns the components of a track over some frames, each as a signal of its own.
+/// Returns the components of a track over some frames as separate signals.
 fn axes_of(track: &Track, frames: &Range<usize>) -> Vec<Vec<f64>> {
     let column = |of: &dyn Fn(usize) -> f32| frames.clone().map(|f| f64::from(of(f))).collect();
     match track {

@@ -1,4 +1,4 @@
-//! Phases of clips by the strikes of the feet.
+//! Phases of clips from foot strikes.
 
 use crate::clip::Contacts;
 use crate::math::sort::sort_by_key;
@@ -68,7 +68,7 @@ mod tests {
         let phases = strike_phases(&contacts(&[10, 30], &[], 40), 0.5).unwrap();
         assert!((phases[30] - phases[10] - 1.0).abs() < 1e-9);
         assert_eq!(strike_phases(&contacts(&[10], &[], 40), 0.5), None);
-        // Simultaneous strikes of both feet count as one strike.
+        // Simultaneous strikes of both feet count as one.
         assert_eq!(strike_phases(&contacts(&[10], &[10], 40), 0.5), None);
     }
 }

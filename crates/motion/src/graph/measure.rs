@@ -13,8 +13,7 @@ use std::sync::Arc;
 const MIN_SPIN_DEG: f64 = 30.0;
 /// The time within which spins are measured, seconds.
 const SPIN_SECS: f64 = 0.2;
-/// The factor over the 99.9th percentile of the clips' own steps from which on a step counts as a
-/// flash.
+/// A step counts as a flash above this multiple of the 99.9th percentile of the clips' own steps.
 const FLASH: f32 = 2.0;
 /// The least rotation per frame that counts as a movement of a joint, radians: less is rounding in
 /// single precision, or noise of a capture at rest.
@@ -24,7 +23,7 @@ const MIN_STEP_M: f32 = 5e-4;
 /// The least difference of velocities for which a lag is measured, metres per second.
 const MIN_CHANGE_MPS: f64 = 0.1;
 
-/// The usual values of the clips of a set, measured once.
+/// The usual values in the clips of a set, measured once.
 #[derive(Clone, Debug)]
 pub struct WalkProfile {
     set: Arc<FrameSet>,
@@ -45,8 +44,8 @@ impl WalkProfile {
         profile
     }
 
-    /// Returns a profile of which no joint is measured yet: call [`advance`](Self::advance) until
-    /// it is complete.
+    /// Returns a profile without measured joints: call [`advance`](Self::advance) until it is
+    /// complete.
     #[must_use]
     pub fn begun(set: Arc<FrameSet>) -> Self {
         let steps = |clip: &Clip| -> Vec<f32> {
@@ -216,7 +215,7 @@ fn turn(from: Quat, to: Quat) -> Vec3 {
     quat::log(to * from.conjugate())
 }
 
-/// The measurement of a walk, piece by piece as it is made.
+/// The incremental measurement of a walk, piece by piece.
 #[derive(Clone, Debug)]
 pub struct WalkMeter {
     walked: WalkQuantities,
@@ -224,7 +223,7 @@ pub struct WalkMeter {
     first: Option<usize>,
     /// The transitions, and the frames at which they begin.
     seams: Vec<(usize, PieceSeam)>,
-    /// Number of frames that are measured of an incomplete piece.
+    /// Number of measured frames of an incomplete piece.
     within: usize,
     /// Whether each frame of the set was played.
     seen: Vec<bool>,
@@ -417,7 +416,7 @@ impl WalkQuantities {
                 };
                 let (length, changed) =
                     (turn.length(), turned.get(joint).map_or(0.0, |before| before.distance(*turn)));
-                // The clips' own values are evaluated only where they matter.
+                // Evaluate the clips' own values only where they matter.
                 if length / p999.max(MIN_TURN_RADIANS) > flash.0 {
                     let unusual = length / p999.max(MIN_TURN_RADIANS).max(sources.turn(joint));
                     if unusual > flash.0 {

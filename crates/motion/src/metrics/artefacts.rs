@@ -36,7 +36,7 @@ const MIN_STANCE_SECS: f64 = 0.1;
 const MAX_STANCE_MPS: f32 = 0.6;
 /// Skating is measured below this height above the 2nd percentile of the foot's heights, metres.
 const SKATING_M: f32 = 0.025;
-/// A speed exceeds another one if it is higher by more than this factor: less is rounding.
+/// The factor by which a speed must exceed another to count as higher: less is rounding error.
 const SPEED_TOLERANCE: f32 = 1.01;
 
 /// The measurements of a motion that [`Artefacts`] and [`ResultMetrics`](super::ResultMetrics)
@@ -50,7 +50,7 @@ pub struct MotionTrace {
     root_mps: Vec<f32>,
     rare_mps: f32,
     max_mps: f32,
-    /// From every frame on: the turn of the hips within 0.2 s, degrees.
+    /// Per frame: the turn of the hips over the next 0.2 s, degrees.
     turned_deg: Vec<f32>,
     max_turn_deg: f32,
     stances_cm: Vec<f64>,
@@ -122,7 +122,7 @@ impl MotionTrace {
         others.iter().copied().filter(is_alike).collect()
     }
 
-    /// Returns the turn of the hips within 0.2 s from every frame on, degrees; empty without hip
+    /// Returns the turn of the hips over the 0.2 s after each frame, degrees; empty without hip
     /// joints.
     pub(super) fn turned_deg(&self) -> &[f32] {
         &self.turned_deg

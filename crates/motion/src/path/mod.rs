@@ -103,7 +103,7 @@ pub enum PathEditError {
     },
     /// The character does not travel.
     #[error(
-        "this motion stays within {extent_cm:.0} cm, so that there is no path to edit: choose one that travels, or move the whole clip",
+        "this motion stays within {extent_cm:.0} cm, so it has no path to edit: choose one that travels",
         extent_cm = extent_m * 100.0
     )]
     NoTravel {

@@ -65,7 +65,7 @@ pub fn hard_turns(path: &FittedPath, carried: &CarriedMotion) -> Vec<HardTurn> {
     let merged = (MERGED_SECS * fps) as usize;
     let mut found: Vec<HardTurn> = Vec::new();
     let rates = turn_rates(&carried.places, fps);
-    // The turn rate of the original in the same frame is possible here, too.
+    // The original's turn rate in the same frame is always allowed.
     let held = |frame: f64| own.get(frame.round() as usize).map_or(0.0, |&own| f64::from(own));
     for (frame, (&rate, &at)) in rates.iter().zip(&carried.frames).enumerate() {
         if rate.abs() <= limit.max(held(at)) * MIN_EXCESS {

@@ -69,6 +69,7 @@
 //! The rotation of a cluster is that of [`best_fit`](crate::math::quat::best_fit). Regressions of
 //! joint centres cite theirs at [`body_from_markers`].
 
+mod body;
 mod gaps;
 mod markers;
 mod rest;

@@ -1,12 +1,12 @@
-//! The rest pose: shapes of clusters, directions of bones, and what the roles of joints say.
+//! The rest pose: shapes of clusters, directions of bones, and anatomy from the roles of joints.
 
+use super::body::Body;
 use super::gaps::Track;
-use super::solve::Body;
 use crate::math::{quat, stats};
 use crate::skeleton::{Role, Roles, Side, Skeleton};
 use glam::{Mat3, Quat, Vec3};
 
-/// The number of frames that means are taken over, spread over the motion.
+/// The number of frames over which means are taken, spread over the motion.
 const SAMPLES: usize = 400;
 
 fn samples(frames: usize) -> impl Iterator<Item = usize> {
@@ -81,8 +81,7 @@ impl Cluster {
         samples(self.known.len()).filter(|&frame| self.known[frame])
     }
 
-    /// Returns the rotation of the mean shape that makes it stand as it does on average, as seen
-    /// from the parent; for a root as in the frame whose orientation the shape has.
+    /// Returns the mean rotation of the shape in the parent's frame; the identity for a root.
     pub(super) fn mean_in(&self, above: &[Quat], parent: Option<usize>) -> Quat {
         if parent.is_none() {
             return Quat::IDENTITY;
@@ -92,7 +91,7 @@ impl Cluster {
         )
     }
 
-    /// Returns the mean of a direction in the world, as seen from the cluster.
+    /// Returns the mean of a world direction in the cluster's frame.
     fn mean_direction(&self, direction: impl Fn(usize) -> Option<Vec3>) -> Option<Vec3> {
         let seen = |frame: usize| Some(self.rotations[frame].conjugate() * direction(frame)?);
         self.known_samples().filter_map(seen).sum::<Vec3>().try_normalize()
@@ -106,7 +105,7 @@ pub(super) struct Hinge {
     pub(super) is_knee: bool,
 }
 
-/// What the roles of joints say about a body.
+/// The parts of a body that are known from the roles of its joints.
 pub(super) struct Anatomy {
     roles: Roles,
     pub(super) hips: Option<usize>,
@@ -147,8 +146,8 @@ impl Anatomy {
         Self { roles, hips, chest, trunk, thighs, shoulders }
     }
 
-    /// Returns the rotation that takes the shape of a cluster to the T-pose; `None` where roles do
-    /// not say.
+    /// Returns the rotation that takes the shape of a cluster to the T-pose; `None` without the
+    /// roles that determine it.
     pub(super) fn cluster_rest(
         &self,
         joint: usize,
@@ -187,8 +186,8 @@ impl Anatomy {
         (hips - left?.midpoint(right?)).try_normalize()
     }
 
-    /// Returns the direction from right to left shoulder, and how much it counts for the twist of a
-    /// joint of the back; the rest of it comes from the hips.
+    /// Returns the direction from right to left shoulder, and its share in the twist of a joint of
+    /// the back; the remaining share is that of the hips.
     pub(super) fn across_trunk(
         &self,
         joint: usize,
@@ -236,8 +235,8 @@ impl Anatomy {
     }
 }
 
-/// Returns the direction of a bone in the rest pose: by roles, otherwise its mean as seen from the
-/// parent, for a root its first.
+/// Returns the direction of a bone in the rest pose: by roles, otherwise its mean direction in the
+/// parent's frame; for a root, its first direction.
 pub(super) fn rest_direction(
     joint: usize,
     direction: &impl Fn(usize) -> Option<Vec3>,

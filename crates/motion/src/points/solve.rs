@@ -1,30 +1,14 @@
 //! The solver: rotations of one joint after the other, from the root outwards.
 
+use super::body::{Body, Members, Node};
 use super::gaps::{Gaps, Track, fill_between};
 use super::rest::{Anatomy, Cluster, median_length, rest_direction};
 use super::twist::{Twist, about, settle};
-use super::{FitError, PointFit, PointKind, PointSet, PointsError};
+use super::{FitError, PointFit, PointSet, PointsError};
 use crate::clip::UpAxis;
 use crate::math::quat;
-use crate::skeleton::{Joint, Skeleton, SkeletonError};
+use crate::skeleton::{Joint, Skeleton};
 use glam::{Quat, Vec3};
-
-/// A joint with its point, and what hangs on it.
-pub(super) struct Node {
-    /// The index of its point.
-    point: usize,
-    pub(super) parent: Option<usize>,
-    pub(super) track: Track,
-    pub(super) children: Vec<usize>,
-    helpers: Vec<(Track, Vec3)>,
-}
-
-/// A body of points that are seen, Y up.
-pub(super) struct Body {
-    pub(super) nodes: Vec<Node>,
-    pub(super) frames: usize,
-    fps: f64,
-}
 
 /// The joints that are solved, by index: parents before children.
 #[derive(Default)]
@@ -103,91 +87,7 @@ impl PointFit {
     }
 }
 
-/// The joints and helpers on a joint.
-struct Members<'a> {
-    tracks: Vec<&'a Track>,
-    /// The number of joints, which come first.
-    joints: usize,
-}
-
 impl Body {
-    fn of(set: &PointSet<'_>, gaps: &mut Gaps) -> Result<Self, PointsError> {
-        let points = set.points.len();
-        let Some(root) = set.points.first() else {
-            return Err(SkeletonError::Empty.into());
-        };
-        let not_a_root = |index: usize, name: &str| {
-            PointsError::from(SkeletonError::NotOneRoot { index, name: name.to_owned() })
-        };
-        if root.parent.is_some() || root.kind != PointKind::Joint {
-            return Err(not_a_root(0, &root.name));
-        }
-        if !set.positions.len().is_multiple_of(points) {
-            return Err(PointsError::Uneven { positions: set.positions.len(), points });
-        }
-        let frames = set.positions.len() / points;
-        let mut nodes: Vec<Node> = Vec::with_capacity(points);
-        // The joint that stands for each point: its own, or the nearest one above that is seen.
-        let mut joint_of: Vec<Option<usize>> = Vec::with_capacity(points);
-        for (index, point) in set.points.iter().enumerate() {
-            let parent = match point.parent {
-                None if index == 0 => None,
-                None => return Err(not_a_root(index, &point.name)),
-                Some(parent) if parent < index => joint_of[parent],
-                Some(parent) => {
-                    let name = point.name.clone();
-                    return Err(SkeletonError::ParentAfterChild { index, name, parent }.into());
-                }
-            };
-            let values = set.positions.iter().skip(index).step_by(points).map(|&v| match set.up {
-                UpAxis::Y => v,
-                UpAxis::Z => Vec3::new(v.x, v.z, -v.y),
-            });
-            let Some(track) = Track::of(values, set.fps, gaps) else {
-                gaps.unseen.push(point.name.clone());
-                joint_of.push(parent);
-                continue;
-            };
-            match (point.kind, parent) {
-                (PointKind::Helper { beside }, Some(parent)) => {
-                    nodes[parent].helpers.push((track, beside));
-                    joint_of.push(Some(parent));
-                }
-                (PointKind::Helper { .. }, None) => joint_of.push(None),
-                (PointKind::Joint, parent) => {
-                    // With the root unseen, the first joint below takes its place.
-                    let parent = parent.or_else(|| (!nodes.is_empty()).then_some(0));
-                    let own = nodes.len();
-                    if let Some(parent) = parent {
-                        nodes[parent].children.push(own);
-                    }
-                    joint_of.push(Some(own));
-                    nodes.push(Node {
-                        point: index,
-                        parent,
-                        track,
-                        children: Vec::new(),
-                        helpers: Vec::new(),
-                    });
-                }
-            }
-        }
-        if nodes.is_empty() || frames == 0 {
-            return Err(PointsError::Unseen);
-        }
-        Ok(Self { nodes, frames, fps: set.fps })
-    }
-
-    fn members(&self, joint: usize) -> Members<'_> {
-        let node = &self.nodes[joint];
-        let children = node.children.iter().map(|&child| &self.nodes[child].track);
-        let joints = node.children.len();
-        Members {
-            tracks: children.chain(node.helpers.iter().map(|(track, _)| track)).collect(),
-            joints,
-        }
-    }
-
     /// Returns the world rotations of a joint, and the rest offsets of its children.
     fn rotations(
         &self,

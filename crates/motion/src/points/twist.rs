@@ -4,7 +4,7 @@ use crate::math::curve::smoothstep;
 use glam::{Quat, Vec3};
 use std::f32::consts::{PI, TAU};
 
-/// Angles that are known worse than this are interpolated.
+/// Angles with less confidence than this are interpolated.
 const TRUSTED: f32 = 0.05;
 /// The weight of an interpolated angle in the mean over neighbouring frames.
 const INTERPOLATED: f32 = 0.3;
@@ -12,13 +12,14 @@ const INTERPOLATED: f32 = 0.3;
 const SMOOTH_SECS: f64 = 0.04;
 /// The greatest number of frames on either side that the mean is taken over.
 const MAX_RADIUS: usize = 200;
-/// Sines of the bend of a limb between which its plane becomes trusted: 6° and 20°.
+/// The sines of the flexion between which the confidence in a limb's plane rises from 0 to 1: 6°
+/// and 20°.
 const BEND: (f32, f32) = (0.1, 0.35);
-/// Distances of a helper from the bone, as shares of the bone's length, between which it becomes
-/// trusted.
+/// The distances of a helper from the bone, as shares of the bone's length, between which the
+/// confidence in it rises from 0 to 1.
 const LEVER: (f32, f32) = (0.02, 0.08);
 
-/// The twist of a bone in a frame: an angle, and how well it is known, 0 to 1.
+/// The twist of a bone in a frame: an angle and its confidence, 0 to 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Twist {
     pub(super) angle: f32,
@@ -71,7 +72,7 @@ pub(super) fn settle(twists: &[Twist], fps: f64) -> Vec<f32> {
         last = Some(*angle);
     }
     super::gaps::fill_between(&known, &mut angles, |a, b, t| a + (b - a) * t);
-    // No rate, or one of nothing, leaves every angle as it is.
+    // Without a valid frame rate every angle stays as it is.
     let sigma = (SMOOTH_SECS * fps).max(1e-3);
     let radius = ((3.0 * sigma).round() as usize).min(MAX_RADIUS);
     let kernel: Vec<f32> =

@@ -356,7 +356,7 @@ impl PoseSearch {
         for row in 0..rows.len() {
             for column in 0..width {
                 let here = costs[row * width + column];
-                // No minimum can be added when enough lower ones are known.
+                // Skip costs above those of enough known minima.
                 if minima.len() == CANDIDATES && minima.last().is_some_and(|last| here >= last.0) {
                     continue;
                 }
@@ -487,7 +487,7 @@ mod tests {
         let jolt = |found: PoseMatch| search.jolt(found.leave, found.enter);
         assert!(jolt(smooth) > 3.0 && jolt(found) < 1.1, "{} {}", jolt(smooth), jolt(found));
         assert!(found.cost <= smooth.cost + MAX_CALM_COST, "{found:?} {smooth:?}");
-        // A frame that the user chose is kept.
+        // A frame that the user chose is used in spite of its jolt.
         let named = options.leaving_at(smooth.leave, a.frames());
         assert_eq!(search.best(weights, &named).unwrap().leave, smooth.leave);
     }
@@ -522,7 +522,7 @@ mod tests {
         assert!((to(&raised).position_cm - 10.0).abs() < 1e-3, "{:?}", to(&raised));
         assert!((to(&glide).velocity_mps - 0.5).abs() < 1e-3);
         assert!((to(&bent).rotation_deg - 0.3_f64.to_degrees()).abs() < 0.02, "{:?}", to(&bent));
-        // Without any difference there is nothing to divide by.
+        // Equal frames cost 0, although the mean of each term is 0.
         assert_eq!(to(&a).cost, 0.0);
         assert!(to(&raised).cost > 0.0);
     }

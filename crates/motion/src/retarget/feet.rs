@@ -11,10 +11,9 @@ use crate::transition::envelope::{largest_around, smoothed};
 use glam::Vec3;
 use std::ops::Range;
 
-/// Time to either side over which a foot that is lifted out of the ground is lifted smoothly,
-/// seconds.
+/// The smoothing time, to either side, of lifting a foot out of the ground, seconds.
 const LIFT_SECS: f64 = 0.08;
-/// Of the planted frames, the share in which the ankle is lowest: there the sole is flat.
+/// The share of the planted frames, those with the lowest ankle, in which the sole counts as flat.
 const FLAT_SHARE: f32 = 0.3;
 
 /// The places of both feet.
@@ -22,12 +21,12 @@ const FLAT_SHARE: f32 = 0.3;
 pub(super) struct FootGoals {
     /// The amount by which the whole body is raised, metres.
     pub(super) rise: f32,
-    /// The shifts of the ankles from where the directions of the bones put them on the raised body,
-    /// metres; empty for a leg that one of the bodies lacks.
+    /// The shifts of the ankles from their positions by rotations only, on the raised body, metres;
+    /// empty for a leg that one of the bodies lacks.
     pub(super) shifts: [Vec<Vec3>; 2],
 }
 
-/// Returns where the feet go at full weight.
+/// Returns the goals of the feet at full weight.
 pub(super) fn goals(task: &Task, tracks: &Tracks) -> FootGoals {
     let legs =
         || tracks.legs.iter().enumerate().filter_map(|(side, leg)| Some((side, leg.as_ref()?)));
@@ -39,7 +38,7 @@ pub(super) fn goals(task: &Task, tracks: &Tracks) -> FootGoals {
     for &(side, foot) in &feet {
         shifts[side] = (0..foot.source.len()).map(|f| levels.shift(task, foot, f)).collect();
     }
-    // The body is raised as a whole by what planted feet usually need, and each leg by the rest.
+    // Raise the whole body by the typical correction of planted feet, and each leg by the rest.
     let contacts = task.source.contacts();
     let planted = feet.iter().flat_map(|&(side, _)| {
         let heights = shifts[side].iter().enumerate();

@@ -9,8 +9,8 @@ use glam::Vec3;
 const TOGETHER: f32 = 0.15;
 const APART: f32 = 0.6;
 
-/// Returns the shifts of both hands from where the directions of the bones put them, metres; empty
-/// for an arm that one of the bodies lacks.
+/// Returns the shifts of both hands from their positions by rotations only, metres; empty for an
+/// arm that one of the bodies lacks.
 pub(super) fn shifts(tracks: &Tracks) -> [Vec<Vec3>; 2] {
     let own = |track: &LimbTrack, frame: usize| {
         let (start, end, _) = track.source[frame];

@@ -112,8 +112,8 @@ impl MotionRetargeting {
     }
 
     /// Processes up to `frames` more frames (at least one) of the present pass, of which there are
-    /// seven; that in which places are found has two slices. Returns the result when it is complete.
-    /// A frame of 34 joints takes 10 µs in all.
+    /// seven; that in which places are found has two slices. Returns the result when it is
+    /// complete. A frame of 34 joints takes 10 µs in all.
     ///
     /// # Errors
     /// [`RetargetError`] when the result is no valid clip.

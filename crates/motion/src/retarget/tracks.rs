@@ -7,10 +7,10 @@ use crate::transition::{Limb, LimbPose};
 use glam::Vec3;
 use std::ops::Range;
 
-/// The mean sine of the flexion over a clip from which on the motion is believed about the axis of
-/// a knee, even if that contradicts the body at rest: the hind legs of animals bend the other way.
+/// The mean sine of the flexion over a clip above which the motion determines the axis of a knee,
+/// even against the rest pose: the hind legs of animals bend the other way.
 const OWN_AXIS_SINE: f32 = 0.2;
-/// The weight of the axis at rest beside that of the motion.
+/// The weight of the rest pose's axis relative to that of the motion.
 const REST_AXIS_SINE: f32 = 0.02;
 
 /// A leg or an arm of both bodies.
@@ -21,7 +21,7 @@ pub(super) struct LimbTrack {
     pub(super) posed: Vec<LimbPose>,
     /// The axis of its knee or elbow, in the frame of the upper bone.
     pub(super) axis: Vec3,
-    /// The source's limb: its start, its end, and the sum of its bones, metres.
+    /// The source's limb: its start, its end, and the total length of its bones, metres.
     pub(super) source: Vec<(Vec3, Vec3, f32)>,
     /// The start of the target's limb.
     pub(super) starts: Vec<Vec3>,
@@ -36,7 +36,7 @@ pub(super) struct FootTrack {
     pub(super) target: Vec<[Vec3; 3]>,
 }
 
-/// Everything that is read of both clips.
+/// The tracks of both clips.
 #[derive(Debug)]
 pub(super) struct Tracks {
     /// Legs with their feet, and arms; left, then right.
@@ -71,7 +71,7 @@ impl Limbs {
 }
 
 impl Tracks {
-    /// Returns tracks of the limbs that both bodies have, without a frame.
+    /// Returns empty tracks of the limbs that both bodies have.
     pub(super) fn new(task: &Task) -> Self {
         let (clip, target) = (task.source.clip(), &task.target);
         let mut ours = Limbs::of(&target.skeleton, &target.roles);
@@ -107,7 +107,7 @@ impl Tracks {
         }
     }
 
-    /// Adds these frames, which follow those that were read.
+    /// Appends these frames, which follow those already read.
     pub(super) fn read(&mut self, task: &Task, frames: Range<usize>) {
         self.read_source(task.source.clip(), frames.clone());
         self.read_target(&task.plain, frames);
@@ -157,8 +157,8 @@ impl Tracks {
         }
     }
 
-    /// Finds the axes of knees and elbows when all frames are read: that about which the motion
-    /// bends them, with the sign that the body at rest says where the motion hardly bends them.
+    /// Finds the axes of knees and elbows after all frames are read: those about which the motion
+    /// bends them, with the sign of the rest pose where the motion hardly bends them.
     pub(super) fn find_axes(&mut self, task: &Task) {
         let target = &task.target;
         let stance = canonical_stance(&target.skeleton, &target.roles, &target.reference);

@@ -4,7 +4,8 @@
 use super::capsules::capsules;
 use super::contour::{Contour, Contouring};
 use super::field::{Cone, Field};
-use super::shapes::{PlacedShape, Shape, limb_shapes};
+use super::placed_shape::PlacedShape;
+use super::shapes::{Shape, limb_shapes};
 use super::weights::{Neighbours, WeightDiffusion, drawn_together, fair, normals, rates};
 use super::{SkinnedMesh, bind, sheets};
 use crate::math::sort::sort_by;

@@ -6,7 +6,7 @@
 //! direction, because two parts of one straight limb must not bulge where they meet (the idea of
 //! Gourmel et al., "A Gradient-Based Implicit Blend", 2013).
 
-use super::shapes::PlacedShape;
+use super::placed_shape::PlacedShape;
 use glam::Vec3;
 
 /// The width over which the surfaces of two neighbours blend, in radii of the thinner one.

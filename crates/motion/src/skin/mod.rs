@@ -52,6 +52,7 @@ mod character;
 mod contour;
 mod deform;
 mod field;
+mod placed_shape;
 pub mod shapes;
 mod sheets;
 mod weights;

@@ -378,7 +378,7 @@ mod tests {
         };
         let cycle = finds(&contacts, &search);
         assert!(cycle.clone().any(|frame| !contacts.planted(Side::Right, frame)), "{cycle:?}");
-        // If every cycle drags a foot, or the ends are given, a cycle is found all the same.
+        // A cycle is still found if every cycle drags a foot, or if the ends are given.
         let always = Contacts::from_flags([
             (0..400).map(|frame| frame % 60 < 36).collect(),
             vec![true; 400],
@@ -425,7 +425,7 @@ mod tests {
     fn find_cycle_keeps_given_ends() {
         let clip = Arc::new(Walk { frames: 400, cadence: 1.0, ..Walk::default() }.clip());
         let with = |start, end| find(&clip, &CycleSearch { start, end, ..CycleSearch::new(60.0) });
-        // One stride is 60 frames; several strides are as good.
+        // One stride is 60 frames; several strides match equally well.
         let cut = with(Some(100), None).unwrap().cycle;
         assert!(cut.start == 100 && cut.len() % 60 == 0 && !cut.is_empty(), "{cut:?}");
         let cut = with(None, Some(399)).unwrap().cycle;

@@ -1,6 +1,5 @@
 //! Limbs of two bones, and rotations that bring their ends to other places.
 
-use super::foot_lock::hips;
 use crate::math::{curve, quat};
 use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose, two_bone_ik};
 use glam::{Mat3, Quat, Vec3};
@@ -97,7 +96,7 @@ impl Limb {
     /// Returns by how much the hips are too high for this leg when its ankle is moved by `shift`,
     /// metres.
     pub(crate) fn too_high(&self, world: &WorldPose, shift: Vec3) -> f32 {
-        hips::too_high(std::iter::once((&self.pose(world), shift)), 0.0)
+        self.pose(world).too_high(shift, 0.0)
     }
 
     /// Returns the limb in a pose of the skeleton.
@@ -143,6 +142,17 @@ impl LimbPose {
         let (a, b) = (self.thigh.length(), self.shin.length());
         let reach = (a * a + b * b + 2.0 * a * b * MIN_FLEXION_RADIANS.cos()).sqrt();
         reach.max(self.line().length())
+    }
+
+    /// Returns by how much the hip is too high for the ankle to be moved by `shift` after the hip
+    /// was raised by `height`, metres; 0 where the leg reaches.
+    pub(crate) fn too_high(&self, shift: Vec3, height: f32) -> f32 {
+        let asked = self.line() + shift;
+        let (reach, aside) = (self.reach(), Vec3::new(asked.x, 0.0, asked.z).length());
+        // Beyond the reach sideways no height helps: the hip is not lowered below the ankle.
+        let highest = (reach * reach - aside * aside).max(0.0).sqrt();
+        // Single-precision rounding counts as 0.
+        (height - asked.y - highest - 1e-5).max(0.0)
     }
 
     /// Returns world rotations of thigh and shin that move the ankle by `shift` relative to the

@@ -123,8 +123,8 @@ pub struct CleanFacts {
     pub frames: Range<usize>,
     /// The number of frames of the take.
     pub take_frames: usize,
-    /// The number of faults that were put in.
-    pub put_in: usize,
+    /// The number of faults that were injected.
+    pub injected: usize,
     /// Whether anything is mended.
     pub mends: bool,
 }
@@ -212,7 +212,7 @@ impl LabInputs for CleanInputs {
             faults,
             frames: mended.frames.clone(),
             take_frames: searched.motion.clip().frames(),
-            put_in: searched.put_in,
+            injected: searched.put_in,
             mends: self.mends.is_on,
         };
         Ok(Outcome {

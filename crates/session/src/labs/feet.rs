@@ -35,8 +35,8 @@ impl Lock {
     }
 }
 
-/// Begins to lock the planted feet of a clip above ground of a height, metres. `None` for a body
-/// without legs, which stays unchanged: that is no reason to have no result.
+/// Starts locking the planted feet of a clip to ground at a height, metres. `None` for a body
+/// without legs, whose result stays unchanged.
 pub(super) fn locking(
     clip: Arc<Clip>,
     roles: &Roles,

@@ -14,7 +14,7 @@ use super::register::{self, RegistrationSchedulers};
 use super::sliced::{JobKind, Sliced};
 use super::speed::{self, GaitFinder};
 use super::view::{self, ViewCache};
-use super::{edit, in_place, make};
+use super::{edit, in_place, make, transition};
 use crate::LabId;
 use crate::motion::FeetReader;
 
@@ -24,7 +24,7 @@ pub(crate) fn lab_of(lab: LabId) -> &'static dyn Lab<LabSet> {
         LabId::View => &view::ViewLab,
         LabId::Make => &make::MakeLab,
         LabId::Blend => &blend::BlendLab,
-        LabId::Transition => &blend::TransitionLab,
+        LabId::Transition => &transition::TransitionLab,
         LabId::Speed => &speed::SpeedLab,
         LabId::Loop => &loop_::LoopLab,
         LabId::Layers => &layers::LayersLab,

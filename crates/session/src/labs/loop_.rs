@@ -172,7 +172,7 @@ impl LabInputs for LoopInputs {
         ];
         metrics.append(&mut slides);
         metrics.extend([
-            Metric::new(MetricId::BareSeam, looped.before.turn_deg),
+            Metric::new(MetricId::GapBeforeClosing, looped.before.turn_deg),
             Metric::new(MetricId::CycleTime, secs(frames)),
             Metric::new(MetricId::CycleFrames, frames as f64),
             Metric::new(MetricId::CycleLength, step.shift.length()),

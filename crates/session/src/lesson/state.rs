@@ -41,11 +41,11 @@ pub struct LessonPage<'a> {
 /// A text that was requested.
 #[derive(Clone, Debug)]
 enum Text {
-    /// It was requested.
+    /// Requested, and not here yet.
     Awaited,
-    /// It is available.
+    /// Available.
     Here(Arc<[Page]>),
-    /// It did not arrive, or is not a lesson; with the reason.
+    /// Not loaded, or not a lesson; with the reason.
     Failed(Message),
 }
 

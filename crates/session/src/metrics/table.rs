@@ -77,26 +77,26 @@ metrics! {
     WeightOfB "weight_percent" "Weight of B", Percent, Neutral,
         "The share of B in the pose: 0 at the speed of A, 100 at that of B. Other values extrapolate both clips.",
         "From 0 to 100 % the pose lies between both clips. Beyond, joints may bend unnaturally.";
-    // As the pose jump: it is one, in every cycle.
+    // As for the pose jump: a seam is one, in every cycle.
     LoopSeam "loop_seam_deg" "Seam", Degrees, Lower by 1.0,
         "The largest angle of a joint between the end of the cycle and its beginning.",
         "0 is best: the loop closes. A few degrees are seen as a pop in every cycle.";
-    // As the velocity jump: it is one, in every cycle.
+    // As for the velocity jump: a seam is one, in every cycle.
     LoopVelocitySeam "loop_seam_dps" "Velocity seam", DegreesPerSec, Lower by 5.0,
         "The largest difference of a joint's angular velocity between the end of the cycle and its beginning.",
         "0 is best: no joint changes its velocity where the loop closes.";
-    BareSeam "loop_before_deg" "Bare seam", Degrees, Neutral,
+    GapBeforeClosing "loop_before_deg" "Gap before closing" or "Gap", Degrees, Neutral,
         "The seam without any correction: the angle that the method had to close.",
         "The smaller it is, the less the motion is changed. Above about 30°, choose other ends.";
     // A displacement of 1 cm, as for a sliding foot.
     FrameDistance "apart_cm" "Pose distance", Centimetres, Lower by 1.0,
         "The mean distance of the frames that are blended: root mean square per joint, after the best alignment.",
         "Lower is better. Up to about 10 cm poses blend well; beyond 20 cm limbs cross and feet slide.";
-    // A tenth of the width of the shoulders: less cannot be told by eye.
+    // A tenth of the shoulder width: less cannot be seen.
     PositionError "match_error" "Position error", Centimetres, Lower by 5.0,
         "Mean distance of the character from where the player steers it: the simulation object.",
         "Lower is better: the character is where the input wants it. Up to 10 cm feels direct.";
-    // A tenth of the width of the shoulders, as for the mean position error.
+    // A tenth of the shoulder width, as for the mean position error.
     LargestPositionError "match_worst_error" "Largest position error" or "Largest error", Centimetres, Lower by 5.0,
         "The largest distance of the character from where the player steers it.",
         "Lower is better. It never exceeds the largest deviation that is set.";
@@ -104,7 +104,7 @@ metrics! {
     TurnTime "match_turn" "Time to turn", Secs, Lower by 0.1,
         "The longest time from asking for a turn until the body faces within 20° of it and stays there.",
         "Lower responds faster. A walking person takes about 1 s to turn round.";
-    // One jump more in the half minute of a recorded input.
+    // One more jump in the half minute of a recorded input.
     JumpsPerMinute "match_seams" "Jumps", PerMinute, Lower by 2.0,
         "How often the character jumps from one place of the clips to another.",
         "Fewer jumps look calmer; without any, the character cannot follow its input.";

@@ -27,7 +27,7 @@ const PUBLISHED: [(&str, &str, &str, Better); 51] = [
     ("hard_turns", "Hard turns", "bends", Better::Lower),
     ("jump_cm", "Position jump", "cm", Better::Lower),
     ("lag_s", "Lag", "s", Better::Lower),
-    ("loop_before_deg", "Bare seam", "°", Better::Neutral),
+    ("loop_before_deg", "Gap before closing", "°", Better::Neutral),
     ("loop_seam_deg", "Seam", "°", Better::Lower),
     ("loop_seam_dps", "Velocity seam", "°/s", Better::Lower),
     ("match_error", "Position error", "cm", Better::Lower),

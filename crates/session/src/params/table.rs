@@ -28,8 +28,8 @@ macro_rules! parameters {
     ContactSpeed "contact_speed" "Contact speed" Lab(Blend), number(0.1, 2.0, 0.05), Start::Number(0.4), "m/s", "A foot is planted while it is slower than this. Faster: longer stances, and feet that slide are held too." [Feet, NoCompare] in OF_FEET;
     ContactEdits "contact_edits" "Corrected contacts" Lab(Blend), Kind::List(ListKind::ContactEdits), Start::Text(""), "", "Contacts corrected by hand: for each clip the feet that are planted, with their first and last frames, as in walk:L12-30;-R40-52. A minus sign before a foot lifts it." in OF_CONTACTS;
 
-    RetargetFeet "retarget_feet" "Weight of feet" Lab(Blend), number(0.0, 1.0, 0.05), Start::Number(1.0), "", "For clips of another body: how far the feet go from where the directions of the bones put them to where the clip has them, at the body's scale. Higher: planted feet slide and sink in less, and legs bend more." [NoCompare] in OF_BODIES;
-    RetargetHands "retarget_hands" "Weight of hands" Lab(Blend), number(0.0, 1.0, 0.05), Start::Number(1.0), "", "For clips of another body: how far the hands go from where the directions of the bones put them to where the clip has them, relative to the shoulders. Higher: arms stretch as far as in the clip, and hands that touch still do." [NoCompare] in OF_BODIES;
+    RetargetFeet "retarget_feet" "Weight of feet" Lab(Blend), number(0.0, 1.0, 0.05), Start::Number(1.0), "", "For clips of another body: how far the feet move from where rotations alone put them to where the clip has them, at the body's scale. Higher: planted feet slide less and penetrate the ground less, and legs bend more." [NoCompare] in OF_BODIES;
+    RetargetHands "retarget_hands" "Weight of hands" Lab(Blend), number(0.0, 1.0, 0.05), Start::Number(1.0), "", "For clips of another body: how far the hands move from where rotations alone put them to where the clip has them, relative to the shoulders. Higher: arms stretch as far as in the clip, and hands that touch keep touching." [NoCompare] in OF_BODIES;
 
     Method "method" "Method" Lab(Transition), Kind::Choice(TransitionMethod::CHOICES), Start::Choice(TransitionMethod::Inertialize.word()), "", "The method of the transition from A to B.";
     HalfLife "half_life" "Half-life" Lab(Transition), logarithmic(0.02, 1.5, 0.01), Start::Number(0.2), "s", "How slowly the offset from A decays: half of it remains after 1.2 half-lives. Longer is smoother, but has more lag." in [Loop, Graph];
@@ -172,16 +172,16 @@ macro_rules! parameters {
     CleanSure "clean_sure" "Minimum confidence" Lab(Clean), number(0.0, 95.0, 5.0), Start::Number(50.0), "%", "Faults that are less certain than this are listed, and left alone. Higher: fewer mends.";
     CleanSwaps "clean_swaps" "Swapped sides" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Swaps left and right back where they are swapped.";
     CleanGaps "clean_gaps" "Gaps" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Fills frames in which a limb or the body holds still between moving frames.";
-    CleanSpikes "clean_spikes" "Spikes" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Draws frames anew in which a joint leaves its way, and turns joints back that turned over.";
+    CleanSpikes "clean_spikes" "Spikes" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Rebuilds frames in which a joint leaves its trajectory, and undoes flips.";
     CleanJitter "clean_jitter" "Jitter" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Filters noise, only where there is some.";
     CleanCutoff "clean_cutoff" "Cut-off" Lab(Clean), auto(2.0, 60.0, 0.5), Start::Auto, "Hz", "The frequency above which jitter is filtered. Higher: quick movements stay, and more of the noise. Auto: by the noise of each joint.";
     CleanDrift "clean_drift" "Drift" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Moves the body back where it drifts or turns evenly over planted feet.";
     CleanGround "clean_ground" "Ground height" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Brings planted feet to height 0, also where the ground rises evenly.";
     CleanEnds "clean_ends" "Ends" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Cuts off a T-pose in front of the motion, and standing still at the ends.";
-    CleanSkating "clean_skating" "Foot skating" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Holds planted feet that slide in place.";
+    CleanSkating "clean_skating" "Sliding feet" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Holds planted feet that slide in place.";
     CleanSkip "clean_skip" "Left alone" Lab(Clean), Kind::List(ListKind::FaultPlaces), Start::Text(""), "", "Faults that are not mended although their kind is: the kind and the first frame of each, as in spike-34,gap-120." [PlaceInA];
-    CleanFaults "clean_faults" "Faults put in" Lab(Clean), number(0.0, 20.0, 1.0), Start::Number(0.0), "", "Puts this number of faults into the clip, to see how they are found: spikes, gaps, swapped sides and jitter by turns.";
-    CleanSeed "clean_seed" "Seed of the faults" Lab(Clean), number(0.0, 999.0, 1.0), Start::Number(1.0), "", "Chooses where the faults are put in; the same seed puts them in the same places.";
+    CleanFaults "clean_faults" "Injected faults" Lab(Clean), number(0.0, 20.0, 1.0), Start::Number(0.0), "", "Injects this number of faults into the clip, to see how well they are found: spikes, gaps, swapped sides and jitter in turn.";
+    CleanSeed "clean_seed" "Seed of the faults" Lab(Clean), number(0.0, 999.0, 1.0), Start::Number(1.0), "", "Chooses where the faults are injected; the same seed gives the same places.";
 
     Gait "gait" "Motion" Lab(Make), Kind::Choice(MadeAction::CHOICES), Start::Choice(MadeAction::Walk.word()), "", "The action to synthesise.";
     GaitSpeed "gait_speed" "Speed" Lab(Make), auto(0.4, 6.5, 0.05), Start::Auto, "m/s", "The speed of a walk (0.4 to 2.2) or a run (1.8 to 6.5).";

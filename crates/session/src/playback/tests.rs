@@ -291,9 +291,9 @@ fn classic_loop_methods_leave_a_seam_and_the_exact_one_does_not() {
     let session = open("lab=loop&compare=loop_method:exact,end,both");
     let [exact, end, both] = [0, 1, 2].map(|pane| metric(&session, pane, MetricId::LoopSeam));
     assert!(exact < 1e-2 && end > 10.0 * exact && both > 10.0 * exact, "{exact} {end} {both}");
-    let before = metric(&session, 0, MetricId::BareSeam);
+    let before = metric(&session, 0, MetricId::GapBeforeClosing);
     assert!(
-        (0..3).all(|pane| metric(&session, pane, MetricId::BareSeam) == before)
+        (0..3).all(|pane| metric(&session, pane, MetricId::GapBeforeClosing) == before)
             && before > end.max(both)
     );
     assert!(metric(&session, 0, MetricId::LoopVelocitySeam) < 1.0);

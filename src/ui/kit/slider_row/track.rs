@@ -7,26 +7,26 @@ use crate::ui::theme::{palette_of, theme_of};
 use eframe::egui::style::ScrollAnimation;
 use eframe::egui::{EventFilter, Key, Pos2, Rect, Response, Stroke, Ui, Vec2, pos2, vec2};
 
-/// A pointer on the track, kept between frames.
+/// The state of the pointer on the track between frames.
 #[derive(Clone, Copy, Debug)]
 enum Hold {
-    /// A finger that has not moved: it will set the value, or scroll the panel.
+    /// A finger that has not moved yet: it may set the value or scroll the panel.
     Undecided(Pos2),
-    /// A finger that moves up or down and scrolls the panel, at its last height.
+    /// A finger that scrolls the panel, with its last y coordinate, points.
     Scrolls(f32),
-    /// The handle is held.
-    Held(Held),
+    /// The pointer has the handle.
+    Grabbed(PointerGrab),
 }
 
-/// The place where the pointer holds the handle. It is not clamped, so that the way back from
-/// beyond an end is as long as the way there.
+/// The position of the handle under the pointer. It is not clamped, so that moving back from beyond
+/// an end takes as long a way as moving there.
 #[derive(Clone, Copy, Debug)]
-struct Held {
+struct PointerGrab {
     position: f64,
     pointer_x: f32,
 }
 
-/// The way after which it is known whether a finger slides or scrolls, points.
+/// The distance after which a finger is known to slide or scroll, points.
 const DECIDED: f32 = 6.0;
 
 pub(super) fn drag(value: f64, row: &SliderRow<'_>, hit: Rect, out: &mut SliderResponse, ui: &Ui) {
@@ -45,7 +45,7 @@ pub(super) fn drag(value: f64, row: &SliderRow<'_>, hit: Rect, out: &mut SliderR
                 response.request_focus();
             }
             Some(Hold::Scrolls(_)) => {}
-            Some(Hold::Held(_)) => out.drag_ended = true,
+            Some(Hold::Grabbed(_)) => out.drag_ended = true,
         }
         ui.data_mut(|data| data.remove::<Hold>(hold_id));
         return;
@@ -54,7 +54,7 @@ pub(super) fn drag(value: f64, row: &SliderRow<'_>, hit: Rect, out: &mut SliderR
         None if pointer_in_use(ui) == PointerKind::Finger => Hold::Undecided(pointer),
         None => {
             out.drag_started = true;
-            Hold::Held(taken(value, row, rail, pointer.x, ui))
+            Hold::Grabbed(taken(value, row, rail, pointer.x, ui))
         }
         Some(Hold::Undecided(from)) => {
             let way = pointer - from;
@@ -64,10 +64,10 @@ pub(super) fn drag(value: f64, row: &SliderRow<'_>, hit: Rect, out: &mut SliderR
                 Hold::Scrolls(from.y)
             } else {
                 out.drag_started = true;
-                Hold::Held(moved_on(taken(value, row, rail, from.x, ui), pointer.x, rail, ui))
+                Hold::Grabbed(moved_on(taken(value, row, rail, from.x, ui), pointer.x, rail, ui))
             }
         }
-        Some(Hold::Held(held)) => Hold::Held(moved_on(held, pointer.x, rail, ui)),
+        Some(Hold::Grabbed(held)) => Hold::Grabbed(moved_on(held, pointer.x, rail, ui)),
         Some(scrolls @ Hold::Scrolls(_)) => scrolls,
     };
     let hold = match hold {
@@ -79,7 +79,7 @@ pub(super) fn drag(value: f64, row: &SliderRow<'_>, hit: Rect, out: &mut SliderR
         other => other,
     };
     ui.data_mut(|data| data.insert_temp(hold_id, hold));
-    let Hold::Held(held) = hold else { return };
+    let Hold::Grabbed(held) = hold else { return };
     if out.drag_started {
         response.request_focus();
     }
@@ -90,22 +90,22 @@ pub(super) fn drag(value: f64, row: &SliderRow<'_>, hit: Rect, out: &mut SliderR
     }
 }
 
-/// Returns the handle taken by a press at `x`. A press on the handle keeps the value; a press
+/// Returns the grab of the handle by a press at `x`. A press on the handle keeps the value; a press
 /// elsewhere on the track moves it to the pointer.
-fn taken(value: f64, row: &SliderRow<'_>, rail: Rect, x: f32, ui: &Ui) -> Held {
+fn taken(value: f64, row: &SliderRow<'_>, rail: Rect, x: f32, ui: &Ui) -> PointerGrab {
     let width = f64::from(rail.width().max(1.0));
     let position = row.position(value);
     let handle_x = f64::from(rail.left()) + position * width;
     let grabbed = (f64::from(x) - handle_x).abs() <= f64::from(theme_of(ui).hit()) / 2.0;
     let position = if grabbed { position } else { f64::from(x - rail.left()) / width };
-    Held { position, pointer_x: x }
+    PointerGrab { position, pointer_x: x }
 }
 
-/// Returns the handle after the pointer has moved to `x`.
-fn moved_on(held: Held, x: f32, rail: Rect, ui: &Ui) -> Held {
+/// Returns the grab after the pointer has moved to `x`.
+fn moved_on(held: PointerGrab, x: f32, rail: Rect, ui: &Ui) -> PointerGrab {
     let speed = if ui.input(|input| input.modifiers.shift) { 0.1 } else { 1.0 };
     let way = f64::from(x - held.pointer_x) / f64::from(rail.width().max(1.0));
-    Held { position: held.position + speed * way, pointer_x: x }
+    PointerGrab { position: held.position + speed * way, pointer_x: x }
 }
 
 pub(super) fn keys(value: f64, row: &SliderRow<'_>, out: &mut SliderResponse, ui: &Ui) {

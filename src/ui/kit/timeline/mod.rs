@@ -54,7 +54,7 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> TimelineRespo
             }
             _ => 0.0,
         };
-        let least = (LEAST_CURVES * timeline.curves.len() as f32).max(key).ceil();
+        let least = (MIN_PLOT_HEIGHT * timeline.curves.len() as f32).max(key).ceil();
         let height = (ui.available_height() - (RULER * scale).round()).max(least).floor();
         slack = Some(height - least);
         height
@@ -231,8 +231,8 @@ impl Heights {
     }
 }
 
-/// Least height of a plot, points.
-const LEAST_CURVES: f32 = 48.0;
+/// The minimum height of a plot, points.
+const MIN_PLOT_HEIGHT: f32 = 48.0;
 
 /// Width of the values of a scale beside a plot at scale 1, points.
 const SCALE_WIDTH: f32 = 32.0;

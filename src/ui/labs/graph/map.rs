@@ -1,7 +1,7 @@
 //! The distances of all windows as a picture, with the transitions on it.
 
 use super::jump::{jump_words, named, open_jump, point_at};
-use super::{rows, table};
+use super::{clips, table};
 use crate::ui::clip_drag::clip_dropped_on;
 use crate::ui::kit::{self, Fate, Matrix, MatrixMark, Stretch, TILE, Tile};
 use crate::ui::out::Out;
@@ -35,7 +35,7 @@ pub(crate) fn map_panel_ui(session: &Session, state: &mut UiState, out: &mut Out
 }
 
 /// The drawn parts of a graph, by the indices of the whole graph's transitions.
-pub(crate) struct Drawn {
+pub(crate) struct MapDrawing {
     built: Arc<BuiltGraph>,
     choices: Option<Arc<Choices>>,
     pub(super) ends: Vec<[Place; 2]>,
@@ -44,7 +44,7 @@ pub(crate) struct Drawn {
     pub(super) stretches: Vec<Stretch>,
 }
 
-impl Drawn {
+impl MapDrawing {
     /// Returns the parts, made anew when the graph or its probabilities have changed.
     pub(super) fn of(built: &Arc<BuiltGraph>, walk: Option<&Walk>, ui: &Ui) -> Arc<Self> {
         let id = Id::unique("graph drawn");
@@ -154,7 +154,7 @@ pub(crate) fn map_ui(
     let Some(field) = session.graph_field() else {
         return;
     };
-    let drawn = built.map(|built| Drawn::of(built, walk.map(|walk| &**walk), ui));
+    let drawn = built.map(|built| MapDrawing::of(built, walk.map(|walk| &**walk), ui));
     let set = graph_clips.set();
     let parts: Vec<(usize, Message)> = (graph_clips.names().iter().enumerate())
         .filter_map(|(clip, name)| {
@@ -187,7 +187,7 @@ pub(crate) fn map_ui(
     let shown = ui.scope(|ui| kit::matrix_ui(&matrix, most_height, &mut texture, ui));
     let (response, place) = (shown.inner, shown.response.rect);
     if let Some(id) = clip_dropped_on(place, session, text::add_to_list, ui) {
-        rows::add_clip(id, session, out);
+        clips::add_clip(id, session, out);
     }
     let high_cm = tiles.high_cm;
     tiles.keep(ui);

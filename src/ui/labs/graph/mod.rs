@@ -1,6 +1,7 @@
 //! The Graph lab: the clips and the parameters of graph and walk, the picture of all distances, the
 //! graph as bars and arcs, and the table of numbers.
 
+mod clips;
 mod jump;
 mod map;
 mod rows;
@@ -14,7 +15,7 @@ pub(crate) use strip::walk_panel_ui;
 use self::jump::clip_title;
 use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
 use crate::ui::out::Out;
-use crate::ui::rows::Kept;
+use crate::ui::rows::KeepOffer;
 use crate::ui::state::UiState;
 use crate::ui::text;
 use glam::DVec2;
@@ -25,7 +26,7 @@ use segue_text::msg;
 pub(super) const LAB: LabUi = LabUi {
     panel_ui: graph_ui,
     about: [text::GRAPH_ABOUT, text::GRAPH_DETAILS],
-    kept: |_, pane| Kept::result(pane),
+    kept: |_, pane| KeepOffer::result(pane),
     compares: Compares::Own(|_, out| compare_windows(out)),
     title,
     hint: |_| Some(text::GRAPH_HINT),

@@ -1,5 +1,6 @@
 //! The parameters of graph and walk.
 
+use super::clips::{add_clip, set_clips};
 use super::jump::{close_jump, no_way, shows_jump};
 use super::{map, table};
 use crate::ui::kit::{self, Button, Histogram, Icon};
@@ -17,7 +18,7 @@ use petgraph::graph::NodeIndex;
 use segue_session::JobKind;
 use segue_session::LabId;
 use segue_session::choices;
-use segue_session::{BuiltGraph, Command, Key, List, Session, Value, graph_of, link};
+use segue_session::{BuiltGraph, Command, Key, List, Session, Value, link};
 use segue_text::{Message, msg};
 use std::sync::Arc;
 
@@ -134,21 +135,6 @@ fn clip_rows_ui(title: &Message, ids: &[String], session: &Session, out: &mut Ou
             });
         }
     });
-}
-
-/// Adds a clip to the graph, unless it has it already.
-pub(super) fn add_clip(id: String, session: &Session, out: &mut Out) {
-    let mut ids = session.graph_clip_ids();
-    if !ids.contains(&id) {
-        ids.push(id);
-        set_clips(&ids, out);
-    }
-}
-
-/// Sets the clips of the graph.
-fn set_clips(ids: &[String], out: &mut Out) {
-    out.commands.push(Command::Set(graph_of(ids)));
-    out.commands.push(Command::Settle);
 }
 
 fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {

@@ -1,7 +1,7 @@
 //! The bottom panel: the walk in time, and the graph as bars and arcs.
 
 use super::jump::{jump_words, named, no_way, open_jump, point_at};
-use super::map::Drawn;
+use super::map::MapDrawing;
 use super::rows;
 use crate::ui::kit::{self, Moment, Strip, Timeline, TimelineEvent};
 use crate::ui::out::Out;
@@ -86,7 +86,7 @@ fn strip_ui(session: &Session, walk: &Arc<Walk>, state: &mut UiState, out: &mut 
     let Some(built) = session.graph_built() else {
         return;
     };
-    let drawn = Drawn::of(built, Some(walk), ui);
+    let drawn = MapDrawing::of(built, Some(walk), ui);
     let (clips, set) = (built.clips(), built.clips().set());
     let bars: Vec<(Message, usize)> = clips
         .names()

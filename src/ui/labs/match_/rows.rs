@@ -6,7 +6,7 @@ use super::why::why_ui;
 use crate::ui::kit::{self, Button, Icon};
 use crate::ui::language::{Word, say};
 use crate::ui::out::Out;
-use crate::ui::rows::{Detail, Kept, add_clip_ui, clip_list_ui, clip_sets_ui, param_row_ui};
+use crate::ui::rows::{Detail, KeepOffer, add_clip_ui, clip_list_ui, clip_sets_ui, param_row_ui};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
@@ -64,9 +64,9 @@ pub(crate) fn drive_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
 }
 
 /// Returns the recorded drive; a live one is kept, and saved when it is replayed.
-pub(super) fn kept(session: &Session, pane: usize) -> Kept {
+pub(super) fn kept(session: &Session, pane: usize) -> KeepOffer {
     let save_refused = if session.is_driven() { text::LIVE_NOT_SAVED } else { Word::default() };
-    Kept { save_refused, ..Kept::result(pane) }
+    KeepOffer { save_refused, ..KeepOffer::result(pane) }
 }
 
 fn row(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {

@@ -98,7 +98,7 @@ pub(crate) fn tags_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
                 .any(|range| range.tag == tag && range.frames.start < to && from < range.frames.end)
         };
         for tag in Tag::FIXED {
-            // A tag that is there is removed, one that is not is set.
+            // The button toggles the tag.
             let takes_away = has(tag);
             if kit::button_ui(Button::new(&text::tag_as(tag.name(), takes_away)), ui).clicked() {
                 add(tag.name(), takes_away, out);

@@ -17,26 +17,26 @@ pub(crate) struct PathHand {
     pub(crate) chosen: Option<usize>,
     /// The control point under the pointer.
     pub(crate) hovered: Option<usize>,
-    /// The place on the path under the pointer, and its parameter.
+    /// The point on the path under the pointer, and its parameter.
     pub(crate) place: Option<(DVec2, f64)>,
     /// The control point that is dragged.
-    pub(crate) held: Option<Held>,
-    /// Why the last edit was not made.
+    pub(crate) held: Option<DraggedPoint>,
+    /// The reason why the last edit was refused.
     pub(crate) said: Option<Message>,
-    /// The values that the camera got when the whole path was brought into sight; `None` before.
+    /// The camera values set when the whole path was framed; `None` before.
     pub(crate) framed: Option<Vec<(Key, Value)>>,
 }
 
 /// A control point that is dragged.
 #[derive(Clone, Debug)]
-pub(crate) struct Held {
+pub(crate) struct DraggedPoint {
     /// Its index.
     pub(crate) index: usize,
-    /// The pane in which it was taken.
+    /// The pane in which the drag began.
     pub(crate) pane: usize,
-    /// The path when it was taken.
+    /// The path when the drag began.
     pub(crate) start: GroundSpline,
-    /// From the place that was pressed to the point, metres.
+    /// The offset from the pressed position to the point, metres.
     pub(crate) grip: DVec2,
 }
 

@@ -2,7 +2,7 @@
 
 use crate::ui::kit;
 use crate::ui::labs::path::ground_line::View;
-use crate::ui::labs::path::hand::{Held, path_of, snapped};
+use crate::ui::labs::path::hand::{DraggedPoint, path_of, snapped};
 use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::stage::framing::framing;
@@ -96,7 +96,7 @@ impl Handle<'_> {
         if response.drag_started() {
             let pressed =
                 ui.input(|input| input.pointer.press_origin()).and_then(|pos| view.on_ground(pos));
-            hand.held = Some(Held {
+            hand.held = Some(DraggedPoint {
                 index,
                 pane,
                 start: path.curve.spline().clone(),

@@ -42,7 +42,7 @@ fn call_of_an_unknown_function_is_not_made() {
         b"c__main__\nThing\n)\x81}b",
     ] {
         assert_eq!(numbers(&dictionary(call)), None);
-        // What stands beside it is read.
+        // The values beside it are still read.
         let mut both = b"\x80\x02}(X\x01\0\0\0b".to_vec();
         both.extend(call);
         both.extend(b"X\x01\0\0\0aK\x05u.");

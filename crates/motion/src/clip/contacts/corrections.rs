@@ -1,10 +1,10 @@
-//! Corrections of contacts by hand.
+//! Manual corrections of contacts.
 
 use super::Contacts;
 use crate::skeleton::Side;
 use std::ops::Range;
 
-/// A correction: in these frames a foot is planted, or it is not, whatever was detected.
+/// A correction: whether a foot is planted in these frames, whatever was detected.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ContactCorrection {
     /// The foot.
@@ -15,7 +15,7 @@ pub struct ContactCorrection {
     pub planted: bool,
 }
 
-/// Corrections of the contacts of a clip; where they overlap, the later one counts.
+/// Corrections of the contacts of a clip; where they overlap, the later one applies.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ContactCorrections(Vec<ContactCorrection>);
 
@@ -62,8 +62,8 @@ impl ContactCorrections {
         self.0.is_empty()
     }
 
-    /// Returns whether the foot of `side` is planted in `frame` by hand; `None` where nothing is
-    /// corrected.
+    /// Returns whether the foot of `side` is planted in `frame` by a correction; `None` without
+    /// one.
     #[must_use]
     pub fn planted(&self, side: Side, frame: usize) -> Option<bool> {
         let covers = |correction: &&ContactCorrection| {
@@ -150,7 +150,7 @@ impl Contacts {
         let next = stances.partition_point(|stance| stance.start <= frame);
         let free = next.checked_sub(1).and_then(|before| stances.get(before)).map_or(0, |s| s.end)
             ..stances.get(next).map_or(self.frames(), |stance| stance.start);
-        // Neighbours stay apart by a frame; the ends of the clip are none.
+        // Stances stay one frame apart; the ends of the clip need no such gap.
         let room = free.start + usize::from(free.start > 0)
             ..free.end - usize::from(free.end < self.frames());
         if room.is_empty() {
@@ -240,7 +240,7 @@ mod tests {
             let corrections = ContactCorrections::between(&found, &wanted);
             prop_assert_eq!(corrections.applied_to(&found), wanted.clone());
             prop_assert!(ContactCorrections::between(&wanted, &wanted).is_empty());
-            // Each frame is corrected where it differs, and nowhere else.
+            // Only the frames that differ are corrected.
             for side in Side::BOTH {
                 for frame in 0..24 {
                     let differs = found.planted(side, frame) != wanted.planted(side, frame);

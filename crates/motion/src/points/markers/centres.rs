@@ -16,7 +16,7 @@ const HALF_ANKLE_M: f32 = 0.044;
 const LEG_M: f32 = 0.86;
 /// A marker on the thigh defines the knee's direction from this distance beside the bone on,
 /// metres.
-const LEAST_WAND_M: f32 = 0.02;
+const MIN_WAND_M: f32 = 0.02;
 
 /// The pelvis in a frame: the middle between the ASIS, and its axes to the left, up and forward.
 #[derive(Clone, Copy)]
@@ -226,7 +226,7 @@ impl<'a> Centres<'a> {
                     .at(Site::KneeLateral, Some(side), frame)
                     .or_else(|| self.at(Site::Knee, Some(side), frame))?;
                 let beside = (wand - outer).reject_from_normalized(along);
-                (beside.length() > LEAST_WAND_M * self.units).then_some(-beside)
+                (beside.length() > MIN_WAND_M * self.units).then_some(-beside)
             });
             let across = self.pelvis.get(frame).copied().flatten().map(|pelvis| pelvis.left * sign);
             match (wand, across) {

@@ -7,6 +7,7 @@
 mod bones;
 mod human;
 
+pub use super::placed_shape::PlacedShape;
 pub(super) use human::is_person;
 
 use crate::skeleton::{Roles, Skeleton, WorldPose};
@@ -119,23 +120,6 @@ impl Shape {
         let radius = self.radius_a.max(self.radius_b);
         radius * (radius + at(self.a).distance(at(self.b)))
     }
-}
-
-/// A [`Shape`] in a pose: everything in the world, metres.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PlacedShape {
-    /// Centre of the first ball.
-    pub a: Vec3,
-    /// Centre of the second ball.
-    pub b: Vec3,
-    /// Radius of the first ball.
-    pub radius_a: f32,
-    /// Radius of the second ball.
-    pub radius_b: f32,
-    /// Unit axis along which the shape is flattened; zero where the shape is round.
-    pub flat: Vec3,
-    /// Factor on the shape's size along `flat`: 1 is round.
-    pub flatness: f32,
 }
 
 /// Returns the shapes of a skeleton whose joints rest at `rest` (metres, the root at the origin):

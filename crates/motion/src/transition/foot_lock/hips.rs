@@ -53,14 +53,6 @@ fn height_of_least_change<'a>(legs: impl Iterator<Item = (&'a LimbPose, Vec3)>) 
 }
 
 /// Returns by how much the hips would be too high for the legs to reach, metres.
-pub(crate) fn too_high<'a>(legs: impl Iterator<Item = (&'a LimbPose, Vec3)>, height: f32) -> f32 {
-    let too_high = |(leg, shift): (&LimbPose, Vec3)| {
-        let asked = leg.line() + shift;
-        let (reach, aside) = (leg.reach(), Vec3::new(asked.x, 0.0, asked.z).length());
-        // Beyond the reach sideways no height helps: the hips are not lowered below the ankle.
-        let highest = (reach * reach - aside * aside).max(0.0).sqrt();
-        // Single-precision rounding counts as 0.
-        (height - asked.y - highest - 1e-5).max(0.0)
-    };
-    legs.map(too_high).fold(0.0, f32::max)
+fn too_high<'a>(legs: impl Iterator<Item = (&'a LimbPose, Vec3)>, height: f32) -> f32 {
+    legs.map(|(leg, shift)| leg.too_high(shift, height)).fold(0.0, f32::max)
 }

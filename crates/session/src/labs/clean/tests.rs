@@ -12,10 +12,10 @@ fn number(session: &Session, pane: usize, id: MetricId) -> f64 {
 }
 
 #[test]
-fn faults_put_in_are_listed_and_mended() {
+fn faults_injected_are_listed_and_mended() {
     let session = opened("lab=clean&a=walk&clean_faults=4&compare=clean_mend:off,on");
     let facts = session.main_outcome().and_then(|outcome| outcome.cleaned()).expect("facts");
-    assert_eq!(facts.put_in, 4);
+    assert_eq!(facts.injected, 4);
     assert!(facts.kinds().len() >= 3, "{:?}", facts.kinds());
     let left = number(&session, 0, MetricId::FaultsLeft);
     assert!(left >= 4.0, "{left}: {:#?}", facts.faults);
@@ -76,6 +76,6 @@ fn long_take_is_searched_in_slices_with_progress() {
     assert!(slices > 50, "{slices}");
     while session.work() {}
     let facts = session.main_outcome().and_then(|outcome| outcome.cleaned()).expect("facts");
-    assert_eq!(facts.put_in, 6);
+    assert_eq!(facts.injected, 6);
     assert!(facts.faults.iter().any(|found| found.fault.kind == FaultKind::Spike));
 }

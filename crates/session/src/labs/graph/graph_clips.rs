@@ -7,7 +7,7 @@ use segue_motion::clip::Motion;
 use segue_motion::graph::{FrameSet, JoltSearch, WalkProfile};
 use std::sync::Arc;
 
-/// The clips of a graph, on the skeleton and at the frame rate of the first.
+/// The clips of a graph, all on the skeleton and at the frame rate of the first.
 #[derive(Debug)]
 pub struct GraphClips {
     names: Vec<String>,
@@ -22,7 +22,7 @@ pub struct GraphClips {
 const JOINT_FRAMES: usize = 12_000;
 
 impl GraphClips {
-    /// Returns the clips in order; further measurements are made by [`Self::advance`].
+    /// Returns the clips in order, not yet measured: call [`Self::advance`].
     pub(super) fn new(names: Vec<String>, fitted: Vec<FittedClip>) -> Result<Self, LabError> {
         let (motions, retargeted): (Vec<_>, Vec<_>) = fitted.into_iter().unzip();
         let first = motions.first().ok_or(LabError::NoGraphClips)?;

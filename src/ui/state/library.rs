@@ -22,30 +22,30 @@ pub(crate) struct LibraryState {
     /// The order of the clips.
     pub(crate) order: ClipOrder,
     /// The keys of the groups that are folded.
-    pub(super) folded: BTreeSet<String>,
+    pub(crate) folded: BTreeSet<String>,
     /// The ids of the selected clips.
     pub(crate) picked: BTreeSet<String>,
     /// The clip from which Shift selects a range.
-    pub(super) anchor: Option<String>,
+    pub(crate) anchor: Option<String>,
     /// Whether the list is shown in this frame.
-    pub(super) is_shown: bool,
+    pub(crate) is_shown: bool,
     /// Whether the list was shown in the last frame.
-    pub(super) was_shown: bool,
+    pub(crate) was_shown: bool,
 }
 
 /// The keys that are held during a click.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Held {
+pub(crate) struct HeldKeys {
     /// Shift, which selects a range.
-    pub(super) shift: bool,
+    pub(crate) shift: bool,
     /// Ctrl or Cmd, which selects one more.
-    pub(super) command: bool,
+    pub(crate) command: bool,
 }
 
 impl LibraryState {
     /// Takes a click on a clip as a selection: with a key held, or while clips are selected.
     /// `shown` are the clips of the list in order. Returns whether it was one.
-    pub(super) fn take_click(&mut self, id: &str, shown: &[&str], held: Held) -> bool {
+    pub(crate) fn take_click(&mut self, id: &str, shown: &[&str], held: HeldKeys) -> bool {
         if held.shift {
             let from = self.anchor.as_deref().unwrap_or(id);
             let places = [from, id].map(|id| shown.iter().position(|known| *known == id));
@@ -66,7 +66,7 @@ impl LibraryState {
     }
 
     /// Selects a clip, or no longer.
-    pub(super) fn toggle(&mut self, id: &str) {
+    pub(crate) fn toggle(&mut self, id: &str) {
         if !self.picked.remove(id) {
             self.picked.insert(id.to_owned());
         }
@@ -98,8 +98,8 @@ mod tests {
     use super::*;
 
     const SHOWN: [&str; 5] = ["a", "b", "c", "d", "e"];
-    const SHIFT: Held = Held { shift: true, command: false };
-    const COMMAND: Held = Held { shift: false, command: true };
+    const SHIFT: HeldKeys = HeldKeys { shift: true, command: false };
+    const COMMAND: HeldKeys = HeldKeys { shift: false, command: true };
 
     fn picked(state: &LibraryState) -> String {
         state.picked.iter().map(String::as_str).collect()
@@ -108,17 +108,17 @@ mod tests {
     #[test]
     fn clicks_select_only_with_a_key_or_among_selected_clips() {
         let mut state = LibraryState { was_shown: true, ..LibraryState::default() };
-        assert!(!state.take_click("b", &SHOWN, Held::default()), "it is used");
+        assert!(!state.take_click("b", &SHOWN, HeldKeys::default()), "it is used");
         assert!(state.take_click("d", &SHOWN, SHIFT), "from the one that was clicked");
         assert_eq!(picked(&state), "bcd");
         assert!(state.take_click("c", &SHOWN, COMMAND));
         assert_eq!(picked(&state), "bd");
-        assert!(state.take_click("e", &SHOWN, Held::default()));
+        assert!(state.take_click("e", &SHOWN, HeldKeys::default()));
         assert_eq!(picked(&state), "bde");
         assert!(state.take_click("a", &SHOWN, SHIFT), "backwards, from the last one");
         assert_eq!(picked(&state), "abcde");
         assert!(state.close() && !state.close());
-        assert!(!state.take_click("b", &SHOWN, Held::default()));
+        assert!(!state.take_click("b", &SHOWN, HeldKeys::default()));
     }
 
     #[test]
