@@ -100,29 +100,29 @@ onOneBackend("dialogs, refusals, the presenter and Chinese are elements as the p
   const closed = (what) => until(`${what} is closed`, async () => (await page.getByRole("dialog").count()) === 0);
   await elements(page);
 
-  const number = page.locator("#outline [aria-label='Stage'] button[aria-haspopup]").first();
-  await press(number);
+  await press(page.getByRole("button", { name: /^Pose jump/ }).first());
   await until("the explanation is open", async () => (await page.getByRole("dialog").count()) === 1);
   await sound("explanation");
   await page.keyboard.press("Escape");
   await closed("the explanation");
 
-  await press(button("More"));
+  await press(button("More ways to share"));
   await press(page.getByRole("menuitem", { name: "Convert many files…" }));
   await until("the converter is open", async () => (await page.getByRole("dialog", { name: "Convert many files" }).count()) === 1);
   await sound("converter");
   await page.keyboard.press("Escape");
   await closed("the converter");
 
-  await segue("set", { lab: "speed", a: "idle", b: "idle" });
-  await until("the refusal is told", async () => (await segue("panes"))[0].refusal);
+  await segue("set", { lab: "speed", a: "idle", b: "idle" }).catch(() => {});
+  await until("the refusal is told", async () => (await page.locator("#outline [aria-label='Stage']").textContent()).includes("Stand"));
   await sound("refusal");
   await segue("set", { lang: "zh-Hant", lab: "match" });
   await until("the page is Chinese", () => page.evaluate(() => document.documentElement.lang === "zh-Hant"));
   await sound("Chinese");
   await segue("set", { lang: "en", lab: "blend", a: "walk", b: "run" });
-  await page.locator("#segue").press("p");
-  await until("the stage stands alone", async () => (await page.getByRole("region", { name: "Library" }).count()) === 0);
+  await press(button("More ways to share"));
+  await press(page.getByRole("menuitem", { name: "Present" }));
+  await until("the stage stands alone", async () => (await page.locator("#outline > [aria-label='Library']").count()) === 0);
   await sound("presenter");
 });
 
@@ -187,9 +187,14 @@ onOneBackend("number of a slider is typed by keyboard alone", async ({ open }) =
 onOneBackend("lessons are read from start to end by keyboard alone", async ({ open }) => {
   const { page, segue } = await open("play=off", { viewport: [1280, 800] });
   await elements(page);
+  /** Presses Tab until the element has the keyboard, and then Enter. */
   const press = async (role, name) => {
     await until(`${name} is there`, async () => (await page.getByRole(role, { name }).count()) > 0);
-    await page.getByRole(role, { name }).first().focus();
+    const wanted = await page.getByRole(role, { name }).first().elementHandle();
+    for (let stop = 0; !(await wanted.evaluate((element) => element === document.activeElement)); stop++) {
+      assert.ok(stop < 150, `Tab does not reach ${name}`);
+      await page.keyboard.press("Tab");
+    }
     await page.keyboard.press("Enter");
   };
   const words = () => page.evaluate(() => document.querySelector("#outline [aria-label='Lesson']")?.textContent ?? "");
@@ -208,8 +213,12 @@ onOneBackend("lessons are read from start to end by keyboard alone", async ({ op
     read.add(lesson);
     const next = page.getByRole("button", { name: "Next", exact: true });
     if ((await next.count()) === 0) break;
-    await next.first().focus();
-    await page.keyboard.press("Enter");
+    // The way through the first page is the same as through the others.
+    if (read.size === 1) await press("button", /^Next$/);
+    else {
+      await next.first().focus();
+      await page.keyboard.press("Enter");
+    }
     await until("the page is turned", async () => (await segue("params")).lesson !== lesson);
   }
   assert.equal(read.size, LESSONS, [...read].join());
