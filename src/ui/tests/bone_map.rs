@@ -7,7 +7,7 @@ use segue_motion::skeleton::{Role as Part, RoleSource};
 fn opened(size: Vec2, theme: Theme, link: &str) -> Harness<'static, Page> {
     let mut page = with_file(link);
     let id = loaded(&page).id.clone();
-    page.session.apply(Command::Set(vec![(Key::A, Value::Text(id))])).unwrap();
+    page.session.apply(Command::Set(vec![(Key::A, Value::Text(id))])).expect("a clip");
     let mut harness = harness(size, theme, page);
     press("Body parts", &mut harness);
     harness.get_by_label("Both sides").scroll_to_me();
@@ -16,27 +16,27 @@ fn opened(size: Vec2, theme: Theme, link: &str) -> Harness<'static, Page> {
 }
 
 fn joint_name(harness: &Harness<'_, Page>, part: Part) -> Option<String> {
-    let motion = loaded(harness.state()).motion.clone().unwrap();
+    let motion = loaded(harness.state()).motion.clone().expect("a motion");
     let joint = motion.roles().get(part)?;
     Some(motion.clip().skeleton().joints()[joint].name.clone())
 }
 
 fn source(harness: &Harness<'_, Page>, part: Part) -> Option<RoleSource> {
-    loaded(harness.state()).motion.as_ref().unwrap().roles().source(part)
+    loaded(harness.state()).motion.as_ref().expect("a motion").roles().source(part)
 }
 
 /// Returns the place of the slot of a part.
 fn slot_rect(part: &str, harness: &Harness<'_, Page>) -> Rect {
     let name = format!("{part}: ");
     let mut slots = harness.get_all_by_label_contains(&name);
-    slots.find(|node| node.accesskit_node().role() == Role::Button).unwrap().rect()
+    slots.find(|node| node.accesskit_node().role() == Role::Button).expect("a slot").rect()
 }
 
 /// Presses the slot of a part, by pointer, after scrolling to it.
 fn press_slot(part: &str, harness: &mut Harness<'_, Page>) {
     let name = format!("{part}: ");
     let is_button = |node: &egui_kittest::Node<'_>| node.accesskit_node().role() == Role::Button;
-    harness.get_all_by_label_contains(&name).find(is_button).unwrap().scroll_to_me();
+    harness.get_all_by_label_contains(&name).find(is_button).expect("a button").scroll_to_me();
     harness.run_steps(6);
     let at = slot_rect(part, harness).center();
     step(vec![egui::Event::PointerMoved(at), button(at, true)], harness);
@@ -49,7 +49,7 @@ fn press_slot(part: &str, harness: &mut Harness<'_, Page>) {
 fn bone_row(name: &str, harness: &Harness<'_, Page>) -> Rect {
     let rows = harness.get_all_by_label(name);
     let mut rows = rows.filter(|node| node.accesskit_node().role() == Role::MenuItem);
-    rows.next().unwrap().rect()
+    rows.next().expect("a row").rect()
 }
 
 /// Presses a bone in the list of a slot.
@@ -140,7 +140,7 @@ fn map_is_saved_as_a_file_that_is_read_back() {
         _ => None,
     });
     let map = segue_session::bone_map::BoneMap::from_json(saved.unwrap().as_bytes()).unwrap();
-    let motion = loaded(harness.state()).motion.clone().unwrap();
+    let motion = loaded(harness.state()).motion.clone().expect("a motion");
     assert_eq!(map.roles[&Part::Head].as_deref(), joint_name(&harness, Part::Head).as_deref());
     assert_eq!(
         map.roles_for(motion.clip().skeleton(), motion.roles()).as_ref(),
@@ -176,7 +176,7 @@ fn editor_is_drawn_in_both_themes_and_languages() {
     ] {
         let mut harness = opened(size, theme, link);
         press_slot("left foot", &mut harness);
-        let motion = loaded(harness.state()).motion.clone().unwrap();
+        let motion = loaded(harness.state()).motion.clone().expect("a motion");
         let id = loaded(harness.state()).id.clone();
         let hips = motion.roles().get(Part::Hips);
         let changes =
