@@ -8,8 +8,7 @@ use super::words;
 use crate::ui::language::{Text, Word, say};
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{
-    Align, Align2, Color32, Key, Margin, Response, Role, Sense, TextEdit, Ui, WidgetInfo, pos2,
-    vec2,
+    Align2, Color32, Key, Margin, Response, Role, Sense, TextEdit, Ui, WidgetInfo, pos2, vec2,
 };
 
 /// The user's input to a text field.
@@ -35,7 +34,7 @@ pub(crate) fn text_field_ui<'a>(
         .hint_text(say(hint, ui))
         .font(theme.font(Type::Body))
         .margin(Margin::symmetric(8, 5))
-        .vertical_align(Align::Center)
+        .align(Align2::LEFT_CENTER)
         .desired_width(size.x);
     let response = ui.add_sized(size, edit).accessible_name(say(name, ui));
     // egui may report the loss of the focus in two frames; the text is finished once.
@@ -56,7 +55,7 @@ pub(crate) fn search_field_ui(name: Word, text: &mut String, ui: &mut Ui) -> Res
         .hint_text(say(name, ui))
         .font(theme.font(Type::Body))
         .margin(Margin { left: 8, right: room, top: 5, bottom: 5 })
-        .vertical_align(Align::Center)
+        .align(Align2::LEFT_CENTER)
         .desired_width(size.x);
     let response = ui.add_sized(size, edit).accessible_name(say(name, ui));
     if !text.is_empty() {
