@@ -51,7 +51,7 @@ fn lint(report: &mut Report) {
         tools::clang()?;
         let web = |what: &[&str]| {
             let target = "--target=wasm32-unknown-unknown";
-            shell::run(&mut clippy(&[&[target, "--bin=segue"], what].concat()))
+            shell::run(&mut clippy(&[&[target, "--bin=segue-app"], what].concat()))
         };
         web(&["--bin=reader"])?;
         web(&["--no-default-features", "--features=app"])
@@ -102,7 +102,7 @@ fn app(report: &mut Report) {
             "--locked",
             "--package=segue",
             "--features=ui-tests",
-            "--bin=segue",
+            "--bin=segue-app",
         ]))?;
         shell::run(&mut cargo(&["test", "--locked", "--package=xtask"]))
     });

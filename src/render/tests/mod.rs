@@ -1,4 +1,4 @@
-//! Tests that draw pictures on a device without a window. `cargo test --bin segue render` leaves
+//! Tests that draw pictures on a device without a window. `cargo test --bin segue-app render` leaves
 //! them in `target/stage/*.png`.
 
 mod exact;
