@@ -16,8 +16,8 @@ const PARTS: [(&str, Part); 6] = [
     ("browser", browser),
 ];
 
-/// The crates below the app.
-const LIBRARIES: [&str; 7] = [
+/// The crates below the app, and the command line beside it.
+const LIBRARIES: [&str; 8] = [
     "segue-text",
     "segue-text-derive",
     "segue-motion",
@@ -25,6 +25,7 @@ const LIBRARIES: [&str; 7] = [
     "segue-formats",
     "segue-session",
     "segue-scene",
+    "segue-cli",
 ];
 
 type Part = fn(&mut Report);
