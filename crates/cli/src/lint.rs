@@ -26,9 +26,11 @@ pub(crate) fn examples() -> String {
         "{}
 Examples:
   segue lint takes                                  every file below a folder
-  segue lint 'takes/*.bvh' --fail-on spin,skating>3cm/s
+  segue lint 'takes/*.bvh' --fail-on 'spin,skating>3cm/s'
   segue lint takes --fail-on all --sarif out.sarif  for the code host
-  segue lint takes --junit out.xml --quiet          for the CI system",
+  segue lint takes --junit out.xml --quiet          for the CI system
+
+Frames are counted from 0.",
         checks::help()
     )
 }

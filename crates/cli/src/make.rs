@@ -153,6 +153,17 @@ struct Job {
     relative: Option<PathBuf>,
 }
 
+impl Job {
+    /// Returns the name of its only clip; the empty text where it has several.
+    fn source(&self) -> &str {
+        match self.clips.as_slice() {
+            [Source::File(file)] => &file.name,
+            [Source::Known(id)] => id,
+            _ => "",
+        }
+    }
+}
+
 /// A clip before it is read.
 #[derive(Clone)]
 enum Source {
@@ -201,7 +212,7 @@ pub(crate) fn run(command: &'static LabCommand, matches: &ArgMatches) -> Result<
         page: &args.page,
     };
     let bar = progress::bar(jobs.len(), "making");
-    let (mut rows, mut status) = (Vec::new(), Status::Fine);
+    let mut rows = Vec::new();
     for part in jobs.chunks(CLIPS_PER_CORE * rayon::current_num_threads().max(1)) {
         let made: Vec<Result<Vec<Made>, Failure>> = part
             .par_iter()
@@ -211,14 +222,11 @@ pub(crate) fn run(command: &'static LabCommand, matches: &ArgMatches) -> Result<
                 made
             })
             .collect();
-        for made in made {
+        for (job, made) in part.iter().zip(made) {
             match made {
                 // A single run says by itself why it failed.
                 Err(failure) if jobs.len() == 1 => return Err(failure),
-                Err(failure) => {
-                    status = status.max(failure.status);
-                    bar.suspend(|| eprintln!("segue: {failure}"));
-                }
+                Err(failure) => rows.push(Made::failed(job.source(), &failure)),
                 Ok(made) => rows.extend(made),
             }
         }
@@ -229,7 +237,7 @@ pub(crate) fn run(command: &'static LabCommand, matches: &ArgMatches) -> Result<
         }
     }
     bar.finish_and_clear();
-    status = rows.iter().map(Made::status).fold(status, Ord::max);
+    let mut status = rows.iter().map(Made::status).max().unwrap_or(Status::Fine);
     if !problems.is_empty() {
         status = Status::Unreadable;
     }
@@ -300,11 +308,6 @@ impl Context<'_> {
             }
         });
         let clips = clips.collect::<Result<Vec<_>, Failure>>()?;
-        let source = match job.clips.as_slice() {
-            [Source::File(file)] => file.name.clone(),
-            [Source::Known(id)] => id.clone(),
-            _ => String::new(),
-        };
         let mut driven = Driven::new(&Ingredients {
             command: self.command,
             link: self.link,
@@ -330,7 +333,7 @@ impl Context<'_> {
             let name = variant.name.or(variant.clip);
             all.extend(collect(
                 &driven,
-                &source,
+                job.source(),
                 name,
                 relative.as_deref(),
                 self.export,
@@ -394,12 +397,7 @@ mod tests {
     fn every_command_has_a_valid_parser() {
         for command in LAB_COMMANDS {
             super::parser(command).debug_assert();
-            assert_eq!(
-                super::parameters(command).count() > 0,
-                true,
-                "{} has no parameters",
-                command.name
-            );
+            assert!(super::parameters(command).count() > 0, "{}", command.name);
         }
     }
 }

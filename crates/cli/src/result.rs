@@ -35,6 +35,8 @@ pub(crate) struct Made {
     written: Option<Result<PathBuf, String>>,
     /// What could not be done as it was asked.
     notes: Vec<String>,
+    /// The exit code of a run that gave nothing.
+    failed: Option<Status>,
 }
 
 /// Facts about a result.
@@ -95,9 +97,28 @@ pub(crate) fn collect(
             ending: options.map_or("", |options| options.format.ending()),
             written: None,
             notes: std::mem::take(&mut notes),
+            failed: None,
         }
     });
     made.collect()
+}
+
+impl Made {
+    /// Returns the lack of a result, because its clip could not be read or used.
+    pub(crate) fn failed(source: &str, failure: &Failure) -> Self {
+        Self {
+            source: source.to_owned(),
+            name: None,
+            stem: PathBuf::new(),
+            link: String::new(),
+            motion: Err(failure.to_string()),
+            bytes: None,
+            ending: "",
+            written: None,
+            notes: Vec::new(),
+            failed: Some(failure.status),
+        }
+    }
 }
 
 /// Returns the bytes of a result's file, as the page saves it.
@@ -216,7 +237,7 @@ impl Made {
     /// Returns the exit code that it asks for.
     pub(crate) fn status(&self) -> Status {
         match (&self.motion, &self.written) {
-            (Err(_), _) => Status::Findings,
+            (Err(_), _) => self.failed.unwrap_or(Status::Findings),
             (_, Some(Err(_))) => Status::Unreadable,
             _ => Status::Fine,
         }
@@ -290,7 +311,8 @@ pub(crate) fn tell(made: &[Made], is_json: bool, prints_link: bool) -> Result<()
     if !of_each {
         table::write(&mut out, &side_by_side(made))?;
     }
-    let mut links: Vec<&str> = made.iter().map(|own| own.link.as_str()).collect();
+    let links = made.iter().map(|own| own.link.as_str());
+    let mut links: Vec<&str> = links.filter(|link| !link.is_empty()).collect();
     links.dedup();
     for link in links.into_iter().filter(|_| prints_link) {
         writeln!(out, "{link}")?;

@@ -69,7 +69,8 @@ impl PageServer {
         }
         match self.file_of(request.url()).and_then(|path| Some((File::open(&path).ok()?, path))) {
             Some((file, path)) => {
-                let response = Response::from_file(file);
+                // With its length, by which the page tells the progress.
+                let response = Response::from_file(file).with_chunked_threshold(usize::MAX);
                 let headers = [("Content-Type", media_type(&path)), ("Cache-Control", "no-cache")];
                 let headers = headers.into_iter().filter_map(|(name, value)| {
                     Header::from_bytes(name.as_bytes(), value.as_bytes()).ok()

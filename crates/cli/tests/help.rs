@@ -1,6 +1,8 @@
 //! The help: every command has an example, the documents name every command, and shells complete
 //! them.
 
+#![expect(clippy::unwrap_used, reason = "what fails here fails the test")]
+
 mod common;
 
 use common::Folder;

@@ -32,11 +32,12 @@ const fn metric(word: &'static str, id: MetricId, limit: f64, help: &'static str
 }
 
 const fn fault(word: &'static str, kind: FaultKind, help: &'static str) -> Check {
-    // The least confidence with which the Clean lab mends a fault unasked.
-    Check { word, source: Source::Fault(kind), limit: 50.0, help }
+    // Above the 50 % from which on the Clean lab mends: a list in CI has to be right.
+    Check { word, source: Source::Fault(kind), limit: 75.0, help }
 }
 
-/// Every check, in the order of reports.
+/// Every check, in the order of reports. The limits of metrics are beyond what nine in ten captured
+/// takes of good quality have.
 pub(super) static CHECKS: &[Check] = &[
     fault("spike", FaultKind::Spike, "A joint leaves its way for a few frames, or turns over."),
     fault("gap", FaultKind::Gap, "A limb or the body holds still between moving frames."),
@@ -47,11 +48,11 @@ pub(super) static CHECKS: &[Check] = &[
     fault("sliding", FaultKind::Skating, "A planted foot slides in a stance."),
     fault("ends", FaultKind::Ends, "A T-pose before the motion, or standing still at its ends."),
     fault("rate", FaultKind::Rate, "The motion plays at a wrong speed."),
-    metric("pose-jump", MetricId::PoseJump, 5.0, "A joint turns too far in one frame."),
-    metric("velocity-jump", MetricId::VelocityJump, 600.0, "A joint jolts."),
-    metric("spin", MetricId::Spin, 45.0, "The character turns round too fast."),
-    metric("skating", MetricId::Skating, 10.0, "The feet move over the ground on average."),
-    metric("foot-slide", MetricId::FootSlide, 5.0, "A planted foot slides in the worst stance."),
+    metric("pose-jump", MetricId::PoseJump, 15.0, "A joint turns too far in one frame."),
+    metric("velocity-jump", MetricId::VelocityJump, 1_000.0, "A joint jolts."),
+    metric("spin", MetricId::Spin, 90.0, "The character turns round too fast."),
+    metric("skating", MetricId::Skating, 15.0, "The feet move over the ground on average."),
+    metric("foot-slide", MetricId::FootSlide, 10.0, "A planted foot slides in the worst stance."),
     metric("penetration", MetricId::ClipPenetration, 5.0, "The body is below the ground."),
     metric("position-jump", MetricId::ClipPositionJump, 5.0, "The body jumps over the ground."),
     Check {
@@ -174,7 +175,7 @@ mod tests {
 
     #[test]
     fn rules_follow_the_list() {
-        assert_eq!(failing(Some("spin,skating>3cm/s")), [("spin", 45.0), ("skating", 3.0)]);
+        assert_eq!(failing(Some("spin,skating>3cm/s")), [("spin", 90.0), ("skating", 3.0)]);
         assert_eq!(
             failing(Some("foot_slide > 0.02m, spike>80%")),
             [("spike", 80.0), ("foot-slide", 2.0)]
