@@ -21,12 +21,16 @@ use std::sync::Arc;
 /// The number of clips whose results are made before they are written, for each core.
 const CLIPS_PER_CORE: usize = 8;
 
+/// The help of clips.
+const CLIPS: &str = "Files, folders, patterns; or ids of built-in clips such as walk, and recipes such as 'run(turn_rate:20)'. Without any, those of the page";
+
+/// The help of `--set`.
+const SET: &str = "Sets any parameter by its key in links: --set compare=blend_window:30,15";
+
 /// The arguments that all labs have.
 #[derive(Args, Debug)]
 pub(crate) struct MakeArgs {
-    /// Files, folders, patterns; or ids of built-in clips such as walk, and recipes such as
-    /// 'run(turn_rate:20)'. Without any, those of the page
-    #[arg(value_name = "CLIP")]
+    #[arg(value_name = "CLIP", help = CLIPS)]
     clips: Vec<OsString>,
     /// File, or folder for several results
     #[arg(short, long, value_name = "OUT")]
@@ -35,8 +39,7 @@ pub(crate) struct MakeArgs {
     /// Options replace values of the link
     #[arg(long, value_name = "URL")]
     link: Option<String>,
-    /// Sets any parameter by its key in links: --set compare=blend_window:30,15
-    #[arg(long, value_name = "KEY=VALUE")]
+    #[arg(long, value_name = "KEY=VALUE", help = SET)]
     set: Vec<String>,
     /// Prints the link of the result
     #[arg(long)]
@@ -334,7 +337,7 @@ impl Context<'_> {
             all.extend(collect(
                 &driven,
                 job.source(),
-                name,
+                name.as_deref(),
                 relative.as_deref(),
                 self.export,
                 self.page,

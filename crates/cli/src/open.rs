@@ -68,10 +68,12 @@ pub(crate) fn run(args: &OpenArgs) -> Result<Status, Failure> {
     let files = inputs.files.into_iter().map(|input| input.path).collect();
     let server = PageServer::bind(args.port, page, files)?;
     let sources = server.file_addresses().join(" ");
-    let mut address = format!("{}?{}", server.address(), query_of(&args.query));
-    if !sources.is_empty() {
-        address += &format!("&src={}", utf8_percent_encode(&sources, NON_ALPHANUMERIC));
-    }
+    let sources = if sources.is_empty() {
+        String::new()
+    } else {
+        format!("&src={}", utf8_percent_encode(&sources, NON_ALPHANUMERIC))
+    };
+    let address = format!("{}?{}{sources}", server.address(), query_of(&args.query));
     writeln!(io::stdout(), "{address}")?;
     io::stdout().flush()?;
     if !args.no_browser

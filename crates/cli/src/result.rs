@@ -63,7 +63,7 @@ struct FaultRow {
 pub(crate) fn collect(
     driven: &Driven,
     source: &str,
-    name: Option<String>,
+    name: Option<&str>,
     relative: Option<&Path>,
     options: Option<&ExportOptions>,
     page: &str,
@@ -76,7 +76,7 @@ pub(crate) fn collect(
     let link = format!("{page}?{query}");
     let mut notes = driven.all_notes();
     let made = driven.results().into_iter().map(|(variant, result)| {
-        let name = variant.or_else(|| name.clone());
+        let name = variant.or_else(|| name.map(str::to_owned));
         let bytes = match (&result, options) {
             (Ok(made), Some(options)) => Some(exported(driven, *made, options)),
             _ => None,

@@ -88,12 +88,10 @@ pub(super) fn rules(list: Option<&str>) -> Result<Vec<Rule>, String> {
             None => (entry, None),
         };
         match word {
-            "all" if limit.is_none() => {
-                rules.iter_mut().for_each(|rule| rule.fails = true);
-                continue;
-            }
-            "none" if limit.is_none() => {
-                rules.iter_mut().for_each(|rule| rule.fails = false);
+            "all" | "none" if limit.is_none() => {
+                for rule in &mut rules {
+                    rule.fails = word == "all";
+                }
                 continue;
             }
             _ => {}
