@@ -41,7 +41,7 @@ pub(crate) struct LintArgs {
     /// Files, folders with all below them, zips, and patterns such as 'takes/*.bvh'
     #[arg(required = true, value_name = "FILE")]
     files: Vec<OsString>,
-    /// Checks that fail, with their limits: spin,skating>3cm/s; `all` and `none` are lists, too. The
+    /// Checks that fail, with their limits: spin,skating>3cm/s; all and none are lists, too. The
     /// others are told as warnings
     #[arg(long, value_name = "LIST")]
     fail_on: Option<String>,
