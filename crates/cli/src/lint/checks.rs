@@ -36,8 +36,8 @@ const fn fault(word: &'static str, kind: FaultKind, help: &'static str) -> Check
     Check { word, source: Source::Fault(kind), limit: 75.0, help }
 }
 
-/// Every check, in the order of reports. The limits of metrics are beyond what nine in ten captured
-/// takes of good quality have.
+/// Every check, in the order of reports. Nine in ten captured takes stay below the limits of
+/// metrics.
 pub(super) static CHECKS: &[Check] = &[
     fault("spike", FaultKind::Spike, "A joint leaves its way for a few frames, or turns over."),
     fault("gap", FaultKind::Gap, "A limb or the body holds still between moving frames."),
@@ -48,7 +48,7 @@ pub(super) static CHECKS: &[Check] = &[
     fault("sliding", FaultKind::Skating, "A planted foot slides in a stance."),
     fault("ends", FaultKind::Ends, "A T-pose before the motion, or standing still at its ends."),
     fault("rate", FaultKind::Rate, "The motion plays at a wrong speed."),
-    metric("pose-jump", MetricId::PoseJump, 15.0, "A joint turns too far in one frame."),
+    metric("pose-jump", MetricId::PoseJump, 20.0, "A joint turns too far in one frame."),
     metric("velocity-jump", MetricId::VelocityJump, 1_000.0, "A joint jolts."),
     metric("spin", MetricId::Spin, 90.0, "The character turns round too fast."),
     metric("skating", MetricId::Skating, 15.0, "The feet move over the ground on average."),
