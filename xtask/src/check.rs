@@ -18,8 +18,8 @@ const PARTS: [(&str, Part); 6] = [
     ("browser", browser),
 ];
 
-/// The crates below the app.
-const LIBRARIES: [&str; 7] = [
+/// The crates below the app, and the command line beside it.
+const LIBRARIES: [&str; 8] = [
     "segue-text",
     "segue-text-derive",
     "segue-motion",
@@ -27,6 +27,7 @@ const LIBRARIES: [&str; 7] = [
     "segue-formats",
     "segue-session",
     "segue-scene",
+    "segue-cli",
 ];
 
 type Part = fn(&mut Report);
@@ -90,7 +91,7 @@ fn lint(report: &mut Report) {
         tools::clang()?;
         let web = |what: &[&str]| {
             let target = "--target=wasm32-unknown-unknown";
-            shell::run(&mut clippy(&[&[target, "--bin=segue"], what].concat()))
+            shell::run(&mut clippy(&[&[target, "--bin=segue-app"], what].concat()))
         };
         web(&["--bin=reader"])?;
         web(&["--no-default-features", "--features=app"])
@@ -141,7 +142,7 @@ fn app(report: &mut Report) {
             "--locked",
             "--package=segue",
             "--features=ui-tests",
-            "--bin=segue",
+            "--bin=segue-app",
         ]))?;
         shell::run(&mut cargo(&["test", "--locked", "--package=xtask"]))
     });

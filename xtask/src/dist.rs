@@ -50,11 +50,11 @@ pub fn build(profile: Profile, modules: Modules) -> Result<()> {
     )?;
     if modules == Modules::Two {
         step("building the module for WebGPU alone (about 3 minutes the first time)", || {
-            // Both are called segue.wasm, and the other is built again in no time.
+            // Both are called segue-app.wasm, and the other is built again in no time.
             let webgpu = app(profile, &["--no-default-features", "--features=app"]);
             progress::run(vec![Build { name: "Segue for WebGPU", cargo: webgpu }])?;
             let folder = compiled(profile);
-            fs::copy(folder.join("segue.wasm"), folder.join(format!("{}.wasm", page::WEBGPU)))?;
+            fs::copy(folder.join("segue-app.wasm"), folder.join(format!("{}.wasm", page::WEBGPU)))?;
             progress::run(vec![Build { name: "Segue for the web", cargo: app(profile, &[]) }])
         })?;
     }
@@ -75,7 +75,7 @@ fn app(profile: Profile, others: &[&str]) -> Command {
         "--locked",
         "--target=wasm32-unknown-unknown",
         "--package=segue",
-        "--bin=segue",
+        "--bin=segue-app",
     ]);
     build.args(others);
     if profile == Profile::Release {

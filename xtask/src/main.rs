@@ -28,7 +28,7 @@ cargo xtask serve --dist
 cargo xtask test [PART …]
     Everything that must pass. Parts: lint core oracles app web browser; all of them unless some are named.
     lint        rustfmt, clippy for the core alone, for the whole app and for the web
-    core        the tests of the libraries and their documentation examples, built without any UI
+    core        the tests of the libraries and the command line, and documentation examples, built without any UI
     oracles     exported files, read back by npm's three and PyPI's bvhio: the same motion?
     app         the tests of the app, pictures of the UI among them
     web         the release build that `serve` makes (where Trunk is installed, it must make the same page), and the one that is deployed

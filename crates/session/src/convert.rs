@@ -97,15 +97,16 @@ pub struct ConvertedClip {
     pub file: PackedFile,
 }
 
-/// Converts a motion. `mesh` is the body of its file on its own skeleton, which a GLB file gets.
+/// Returns the bytes of a file with a motion in another format. `mesh` is the body of its file on
+/// its own skeleton, which a GLB file gets.
 ///
 /// # Errors
 /// The reason why it cannot be written in the format, or be put on the body.
-pub fn convert_motion(
+pub fn convert_to_bytes(
     motion: &Motion,
     mesh: Option<&Arc<SkinnedMesh>>,
     options: &ConvertOptions,
-) -> Result<ConvertedClip, Message> {
+) -> Result<Vec<u8>, Message> {
     let (own, how) = (motion.clip(), &options.export);
     if own.frames() == 0 {
         return Err("it has no frames".into());
@@ -122,9 +123,22 @@ pub fn convert_motion(
         roles: motion.roles().clone(),
         mesh: mesh.clone(),
     });
-    let bytes = export(resampled.as_ref().unwrap_or(shown), character.as_ref(), &[], how)
-        .map_err(|error| error.to_message())?;
+    export(resampled.as_ref().unwrap_or(shown), character.as_ref(), &[], how)
+        .map_err(|error| error.to_message())
+}
+
+/// Converts a motion as [`convert_to_bytes`] does, compressed for an archive.
+///
+/// # Errors
+/// Those of [`convert_to_bytes`], and that there is no memory for it.
+pub fn convert_motion(
+    motion: &Motion,
+    mesh: Option<&Arc<SkinnedMesh>>,
+    options: &ConvertOptions,
+) -> Result<ConvertedClip, Message> {
+    let bytes = convert_to_bytes(motion, mesh, options)?;
     let file = PackedFile::new(&bytes).ok_or_else(|| ZipFull.to_message())?;
+    let own = motion.clip();
     let (frames, fps, joints) = (own.frames(), own.fps(), own.skeleton().len());
     Ok(ConvertedClip { clip: own.name().to_owned(), frames, fps, joints, file })
 }

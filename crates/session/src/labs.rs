@@ -59,6 +59,7 @@ pub use remedy::Remedy;
 pub(super) use remedy::remedies;
 pub use sliced::JobKind;
 pub(super) use speed::{SpeedInputs, middle_mps};
+pub use view::metrics_of_clip;
 
 #[cfg(test)]
 mod foot_lock_tests;

@@ -1,5 +1,5 @@
-//! Tests that draw pictures on a device without a window. `cargo test --bin segue render` leaves
-//! them in `target/stage/*.png`.
+//! Tests that draw pictures on a device without a window. `cargo test --bin segue-app render`
+//! leaves them in `target/stage/*.png`.
 
 mod exact;
 mod light;

@@ -4,7 +4,7 @@
 use super::feet::{Lock, locking, slide_before};
 use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs, can_change_result};
 use super::sliced::{JobKind, Sliced};
-use super::{MeasuredMotion, Outcome};
+use super::{ArtefactMeter, MeasuredMotion, Outcome};
 use crate::contact_edits::with_own_edits;
 use crate::labs::LabError;
 use crate::metrics::{Metric, MetricId};
@@ -79,6 +79,28 @@ impl<S: HasPart<ViewCache>> Lab<S> for ViewLab {
 const AT_ONCE: usize = 1_000;
 /// The number of frames in one slice of work: about 2 ms for 31 joints in a browser.
 const PER_SLICE: usize = 500;
+
+/// Returns the metrics of a clip as it is: those that the View lab shows, without a session. Empty
+/// for a clip that cannot be shown.
+#[must_use]
+pub fn metrics_of_clip(motion: &Arc<Motion>) -> Vec<Metric> {
+    let (mut cache, mut meter) = (ViewCache::default(), ArtefactMeter::default());
+    let params = Params::default();
+    // A long clip is measured in slices: it is asked for once before and once after the work.
+    let mut inputs = cache.inputs(motion, &params);
+    while cache.work() {
+        inputs = cache.inputs(motion, &params);
+    }
+    let Some(Ok(mut outcome)) = inputs.map(|inputs| inputs.run()) else {
+        return Vec::new();
+    };
+    let mut found = meter.numbers(&outcome);
+    while found.is_none() && meter.work() {
+        found = meter.numbers(&outcome);
+    }
+    outcome.take_numbers(found);
+    outcome.metrics
+}
 
 /// The inputs of a view. Equal inputs give equal results.
 #[derive(Clone, Debug)]
