@@ -113,6 +113,7 @@ mod overview;
 mod parts;
 mod stitch;
 mod stream;
+mod tiles;
 mod walk;
 mod weights;
 
@@ -128,6 +129,7 @@ pub use stitch::{
     PieceSeam, StitchOptions, Stitcher, WalkAssembly, WalkMistake, WalkPiece, assembled,
 };
 pub use stream::CandidateStream;
+pub use tiles::{DistanceTile, TileCandidates, TileComputer, TileDistances};
 pub use walk::{Stay, Walker};
 pub use weights::{Choices, Continuity, DistanceLaw, RunLength, WeightOptions};
 
