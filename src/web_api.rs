@@ -449,15 +449,19 @@ impl SegueHandle {
     async fn settled(&self) -> Result<(), JsValue> {
         loop {
             // A hidden page has no frames that would poll.
-            let more = {
+            let (more, is_busy) = {
                 let mut segue = self.borrow_mut()?;
-                segue.poll() || segue.is_busy()
+                (segue.poll(), segue.is_busy())
             };
-            if !more {
+            if more {
+                next_turn().await;
+            } else if is_busy {
+                // Workers compute, or a file comes.
+                sleep(2).await;
+            } else {
                 self.changed();
                 return Ok(());
             }
-            next_turn().await;
         }
     }
 }

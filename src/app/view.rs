@@ -24,9 +24,13 @@ impl View {
     ) -> Self {
         segue.borrow_mut().attach(cc);
         let is_working: Rc<Cell<bool>> = Rc::default();
-        let (shared, working) = (Rc::clone(&segue), Rc::clone(&is_working));
-        let ctx = cc.egui_ctx.clone();
-        platform::set_answer_listener(move || work_between_frames(&shared, &working, &ctx));
+        let (weak, working, ctx) =
+            (Rc::downgrade(&segue), Rc::clone(&is_working), cc.egui_ctx.clone());
+        platform::set_answer_listener(move || {
+            if let Some(segue) = weak.upgrade() {
+                work_between_frames(&segue, &working, &ctx);
+            }
+        });
         Self { segue, on_events: Box::new(on_events), is_working }
     }
 }

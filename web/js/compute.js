@@ -2,22 +2,26 @@
 // several. src/platform/web/pool.rs gives it jobs.
 //
 // The page posts { module, maxBytes }, the compiled WebAssembly, or { failed }, to which the worker
-// answers with { unusable: reason }. Before and after that come
-// clips, { clip, head, floats, bytes }, clips to drop, { drop }, and jobs, { job, message }. To each
+// answers with { ready } or { unusable: reason }. Before and after that come clips, { clip, head, floats, bytes }, clips to drop, { drop }, and jobs, { job, message }. To each
 // job the worker answers with { job, secs, head, floats, bytes } or { job, failed: reason, trapped }.
 // After a trap it is not used any more.
 
 import init, { Computer } from "./compute/compute.js";
 
-let computer;
+let begin;
+/** The worker's program. Whatever comes before the WebAssembly waits for it. */
+const computer = new Promise((resolve) => { begin = resolve; });
 
 self.onmessage = async ({ data }) => {
   const { clip, drop, job } = data;
   if (data.module || data.failed) {
-    computer = data.module
+    begin(data.module
       ? init({ module_or_path: data.module }).then(() => new Computer(data.maxBytes))
-      : Promise.reject(new Error(data.failed));
-    computer.catch((reason) => self.postMessage({ unusable: String(reason?.message ?? reason) }));
+      : Promise.reject(new Error(data.failed)));
+    computer.then(
+      () => self.postMessage({ ready: true }),
+      (reason) => self.postMessage({ unusable: String(reason?.message ?? reason) }),
+    );
     return;
   }
   try {

@@ -13,10 +13,12 @@
 //! A new job is a file with a [`Task`](task::Task), and a row of the table in `task.rs`.
 
 mod board;
+mod candidates;
 mod distances;
 mod motion_parcel;
 mod parcel;
 mod registration;
+mod stream;
 mod task;
 #[cfg(test)]
 mod tests;
@@ -26,5 +28,6 @@ pub(crate) use board::{JobBoard, Taken, Ticket};
 pub(crate) use distances::DistanceTask;
 pub use parcel::{Parcel, ParcelError};
 pub(crate) use registration::{RegistrationAnswer, RegistrationTask};
+pub(crate) use stream::StreamTask;
 pub use task::{Answer, Job, JobClip};
 pub use worker::{JobError, Worker};

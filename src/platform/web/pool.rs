@@ -76,6 +76,8 @@ struct Slot {
     worker: Option<Worker>,
     /// The number of workers that were here before.
     generation: u64,
+    /// Whether the worker has its WebAssembly.
+    is_ready: bool,
     /// The clips that it has.
     clips: BTreeSet<u32>,
     /// Its jobs, the one that runs first.
@@ -89,7 +91,7 @@ struct Posted {
     job: Job,
     /// The number of workers that ended while they ran it.
     tries: u8,
-    /// The time at which it was the first, milliseconds.
+    /// The time at which it became the first, milliseconds.
     since_ms: f64,
 }
 
@@ -255,6 +257,7 @@ impl Slot {
             worker.terminate();
         }
         self.generation += 1;
+        self.is_ready = false;
         self.clips.clear();
     }
 }
@@ -263,7 +266,7 @@ impl State {
     /// Ends the workers whose job takes too long to be still running.
     fn end_lost(&mut self, now_ms: f64) {
         for at in 0..self.slots.len() {
-            let first = self.slots[at].jobs.front();
+            let first = self.slots[at].jobs.front().filter(|_| self.slots[at].is_ready);
             if first.is_some_and(|first| now_ms - first.since_ms > MAX_JOB_MS) {
                 self.replace(at, "it did not answer");
             }
@@ -333,9 +336,15 @@ impl State {
             self.replace(at, &part("failed").as_string().unwrap_or_default());
             return;
         }
-        let (Some(number), Some(slot)) = (part("job").as_f64(), self.slots.get_mut(at)) else {
+        let Some(slot) = self.slots.get_mut(at) else { return };
+        if part("ready").is_truthy() {
+            slot.is_ready = true;
+            if let Some(first) = slot.jobs.front_mut() {
+                first.since_ms = now_ms();
+            }
             return;
-        };
+        }
+        let Some(number) = part("job").as_f64() else { return };
         let is_it = |posted: &Posted| posted.job.number as f64 == number;
         let Some(posted) = slot.jobs.iter().position(is_it).and_then(|at| slot.jobs.remove(at))
         else {

@@ -393,7 +393,7 @@ impl Picker {
     }
 
     /// Includes the candidates of a part of the matrix.
-    fn absorb(&mut self, tile: TileCandidates) {
+    pub(super) fn absorb(&mut self, tile: TileCandidates) {
         self.nearest_m = tile.nearest_m.map_or(self.nearest_m, |near| near.min(self.nearest_m));
         self.left_out += tile.left_out;
         self.found.extend(tile.found);

@@ -237,6 +237,9 @@ impl PairTerms {
         let pairs = (end - self.rows.start).saturating_mul(self.target.samples);
         check_pairs(pairs, || self.stride * 2)?;
         self.rows.end = end;
+        // Exactly: grown step by step, it would take twice the memory.
+        let more = self.row_start(end).saturating_sub(self.terms.len());
+        self.terms.reserve_exact(more);
         Ok(())
     }
 

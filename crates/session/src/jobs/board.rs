@@ -134,6 +134,7 @@ impl JobBoard {
     /// no worker has, or one of another worker.
     pub(crate) fn next(&mut self, worker: usize) -> Option<Job> {
         self.waiting.retain(|offered| offered.wanted.strong_count() > 0);
+        self.running.retain(|_, wanted| wanted.strong_count() > 0);
         let owner = |offered: &Offered| self.owners.get(&offered.affinity).copied();
         let mut waiting = self.waiting.iter();
         let at = waiting.position(|offered| owner(offered) == Some(worker));

@@ -1,17 +1,15 @@
 //! Tiles of the distances between all windows of a set of clips, with the candidates for
 //! transitions.
 
+use super::candidates::{CandidatesHead, put_candidates};
 use super::parcel::{put, take, take_floats};
 use super::task::{JobClip, Task};
 use super::worker::{JobError, WorkerMemory};
 use super::{Parcel, ParcelError};
-use glam::DVec2;
 use segue_motion::clip::Motion;
 use segue_motion::graph::{
-    Candidate, DistanceOverview, DistanceTile, FrameSet, GraphOptions, Place, TileCandidates,
-    TileComputer, TileDistances,
+    DistanceOverview, DistanceTile, FrameSet, GraphOptions, TileComputer, TileDistances,
 };
-use segue_motion::math::Planar;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -29,14 +27,11 @@ pub(crate) struct DistanceTask {
 /// The result of each tile, in order; without distances where they were not asked for.
 pub(crate) type DistanceAnswer = Vec<TileDistances>;
 
-/// The length of the arrays of one tile, and the smallest distance.
+/// The length of the arrays of one tile.
 #[derive(Serialize, Deserialize)]
 struct TileHead {
     cells: usize,
-    found: usize,
-    left_out: usize,
-    /// The bits of the number: it is exact, and may be missing.
-    nearest_m: Option<u32>,
+    candidates: CandidatesHead,
 }
 
 impl Task for DistanceTask {
@@ -74,20 +69,13 @@ impl Task for DistanceTask {
         let head: Vec<TileHead> = (answer.iter())
             .map(|tile| TileHead {
                 cells: tile.rms_m.len(),
-                found: tile.candidates.found.len(),
-                left_out: tile.candidates.left_out,
-                nearest_m: tile.candidates.nearest_m.map(f32::to_bits),
+                candidates: CandidatesHead::of(&tile.candidates),
             })
             .collect();
         let mut parcel = Parcel { head: serde_json::to_string(&head)?, ..Parcel::default() };
         for tile in answer {
             put(&mut parcel.bytes, &tile.counts);
-            for found in &tile.candidates.found {
-                let places = [found.leave, found.enter].map(|of| [of.clip, of.frame]);
-                put(&mut parcel.bytes, &places.map(|place| place.map(|index| index as u32)));
-                let Planar { yaw, shift } = found.alignment;
-                put(&mut parcel.bytes, &[found.distance_cm, yaw, shift.x, shift.y]);
-            }
+            put_candidates(&mut parcel.bytes, &tile.candidates);
             if parcel.floats.is_empty() {
                 parcel.floats = tile.rms_m;
             } else {
@@ -104,25 +92,8 @@ impl Task for DistanceTask {
         let mut answer = Vec::with_capacity(heads.len());
         for head in heads {
             let counts = take(&mut bytes, DistanceOverview::BINS)?;
-            let mut found = Vec::new();
-            for _ in 0..head.found {
-                let places = take::<u32>(&mut bytes, 4)?;
-                let place =
-                    |at: usize| Place { clip: places[at] as usize, frame: places[at + 1] as usize };
-                let numbers = take::<f64>(&mut bytes, 4)?;
-                found.push(Candidate {
-                    leave: place(0),
-                    enter: place(2),
-                    distance_cm: numbers[0],
-                    alignment: Planar {
-                        yaw: numbers[1],
-                        shift: DVec2::new(numbers[2], numbers[3]),
-                    },
-                });
-            }
+            let candidates = head.candidates.take(&mut bytes)?;
             let rms_m = if is_single { Vec::new() } else { take_floats(&mut floats, head.cells)? };
-            let nearest_m = head.nearest_m.map(f32::from_bits);
-            let candidates = TileCandidates { found, nearest_m, left_out: head.left_out };
             answer.push(TileDistances { rms_m, counts, candidates });
         }
         if let ([tile], true) = (&mut answer[..], is_single) {

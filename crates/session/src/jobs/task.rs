@@ -3,6 +3,7 @@
 use super::distances::DistanceTask;
 use super::motion_parcel;
 use super::registration::RegistrationTask;
+use super::stream::StreamTask;
 use super::worker::{JobError, WorkerMemory};
 use super::{Parcel, ParcelError};
 use segue_motion::clip::Motion;
@@ -181,4 +182,5 @@ macro_rules! tasks {
 tasks! {
     Distances(DistanceTask),
     Registration(RegistrationTask),
+    Stream(StreamTask),
 }

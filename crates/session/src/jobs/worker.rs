@@ -4,7 +4,7 @@ use super::motion_parcel;
 use super::task::{Answer, AnyTask, Job, JobClip, Message};
 use super::{Parcel, ParcelError};
 use segue_motion::clip::Motion;
-use segue_motion::graph::{GraphError, TileComputer};
+use segue_motion::graph::{GraphError, StreamComputer, TileComputer};
 use segue_motion::registration::{DistanceMatrix, PairTerms, RegistrationError};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -37,6 +37,8 @@ pub(crate) struct WorkerMemory {
     pub(super) max_bytes: usize,
     /// Products of the frames of a set of clips, by the numbers of these.
     pub(super) tiles: Option<(Vec<u32>, TileComputer)>,
+    /// The points of a set of long clips, by the numbers of these.
+    pub(super) stream: Option<(Vec<u32>, StreamComputer)>,
     /// Products of the frames of two clips, by the numbers of these and the stride, the last one
     /// last.
     pub(super) pairs: Vec<([u32; 2], usize, PairTerms)>,
@@ -55,8 +57,13 @@ impl Worker {
     /// Returns a worker without clips, which keeps about `max_bytes` of intermediate results.
     #[must_use]
     pub fn new(max_bytes: usize) -> Self {
-        let memory =
-            WorkerMemory { max_bytes: max_bytes / 2, tiles: None, pairs: Vec::new(), matrix: None };
+        let memory = WorkerMemory {
+            max_bytes: max_bytes / 2,
+            tiles: None,
+            stream: None,
+            pairs: Vec::new(),
+            matrix: None,
+        };
         Self { clips: BTreeMap::new(), memory }
     }
 
@@ -75,6 +82,9 @@ impl Worker {
         let memory = &mut self.memory;
         if memory.tiles.as_ref().is_some_and(|(clips, _)| clips.contains(&number)) {
             memory.tiles = None;
+        }
+        if memory.stream.as_ref().is_some_and(|(clips, _)| clips.contains(&number)) {
+            memory.stream = None;
         }
         memory.pairs.retain(|(clips, _, _)| !clips.contains(&number));
         if memory.matrix.as_ref().is_some_and(|(clips, _, _)| clips.contains(&number)) {

@@ -276,6 +276,36 @@ proptest! {
 }
 
 #[test]
+fn stream_rows_in_any_order_give_the_bits_of_the_stream() {
+    let set = three([1_300, 530, 40]);
+    for (construction, window) in
+        [(Construction::Minima, 20), (Construction::Segments { segment_size: 35 }, 12)]
+    {
+        let options = options(construction, window, 12.0);
+        let (wanted, whole) = CandidateStream::new(&set, &options).unwrap().finish().unwrap();
+        let computer = StreamComputer::new(&set, window).unwrap();
+        let mut stream = CandidateStream::new(&set, &options).unwrap();
+        let parts = stream.parts();
+        let mut rows: Vec<usize> = (0..parts).collect();
+        rows.sort_by_key(|row| (row * 7 + 3) % parts);
+        while !stream.is_prepared() {
+            stream.advance(1).unwrap();
+        }
+        for row in rows {
+            assert!(!stream.progress().is_complete());
+            stream.include(computer.row(row, &options).unwrap());
+        }
+        assert!(stream.progress().is_complete());
+        let (found, overview) = stream.finish().unwrap();
+        assert!(found == wanted && !found.found().is_empty());
+        assert_eq!(overview.histogram(), whole.histogram());
+        let all = || 0..set.frames();
+        let pictures = [&overview, &whole].map(|overview| overview.picture(all(), all(), 1));
+        assert!(pictures[0].iter().zip(&pictures[1]).all(|(a, b)| a.to_bits() == b.to_bits()));
+    }
+}
+
+#[test]
 fn candidate_stream_of_long_clips_has_no_gap() {
     let set = three([2_600, 530, 40]);
     let options = options(Construction::Minima, 20, 12.0);

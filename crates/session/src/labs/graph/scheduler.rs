@@ -3,6 +3,7 @@
 use super::super::sliced::{JobKind, Sliced};
 use super::built_graph::Building;
 use super::requests::{GraphKey, WalkRequest};
+use super::streamed_search::StreamedSearch;
 use super::tiled_search::{TiledSearch, TiledStep};
 use super::walk_builder::WalkBuilder;
 use super::{BuiltGraph, DistanceField, GraphClips, GraphInputs};
@@ -12,8 +13,8 @@ use crate::labs::pair::{FRAMES_PER_SLICE, FittedClip, Fitting, FittingOptions, r
 use crate::params::{MAX_PANES, Params};
 use segue_motion::clip::Motion;
 use segue_motion::graph::{
-    AllPairs, CandidateSearch, CandidateStream, Candidates, CountedTo, GraphError, GraphOptions,
-    PausedAllSweep,
+    AllPairs, CandidateSearch, CandidateStream, Candidates, CountedTo, DistanceOverview,
+    GraphError, GraphOptions, PausedAllSweep,
 };
 use segue_motion::registration::Progress;
 use segue_motion::retarget::RetargetOptions;
@@ -57,6 +58,7 @@ pub(crate) struct GraphScheduler {
     search: Option<(GraphOptions, Search)>,
     /// The search that workers are at.
     tiled: Option<TiledSearch>,
+    streamed: Option<StreamedSearch>,
     /// Whether workers gave no answer, and everything is done here.
     in_line: bool,
     /// The last candidates, with their options.
@@ -238,8 +240,10 @@ impl GraphScheduler {
         }
         let fitting = self.fitting.as_ref().map_or(0.0, |fitting| f64::from(fitting.progress()));
         let fitted = (self.fitted.len() as f64 + fitting) / self.clips.len().max(1) as f64;
-        if let Some(tiled) = self.tiled.as_ref().filter(|_| !self.is_streamed()) {
-            return Some(0.1 * fitted + 0.75 * tiled.progress());
+        let by_workers = self.tiled.as_ref().map(TiledSearch::progress);
+        let by_workers = by_workers.or(self.streamed.as_ref().map(StreamedSearch::progress));
+        if let Some(progress) = by_workers {
+            return Some(0.1 * fitted + 0.75 * progress);
         }
         let pairs = self.all.as_ref().map_or(0.0, |all| share(all.progress()));
         let window = wanted.graph.options.blend_window;
@@ -414,7 +418,11 @@ impl GraphScheduler {
             return Ok(Searched::Found(Arc::clone(found)));
         }
         if self.is_for_workers(jobs) {
-            return Ok(self.ask_workers(graph_clips, key, jobs));
+            return if self.is_streamed() {
+                self.stream_by_workers(graph_clips, key, jobs)
+            } else {
+                Ok(self.ask_workers(graph_clips, key, jobs))
+            };
         }
         Ok(self.slice_in_line(graph_clips, key)?.map_or(Searched::Worked, Searched::Found))
     }
@@ -423,7 +431,11 @@ impl GraphScheduler {
     fn is_for_workers(&self, jobs: &JobBoard) -> bool {
         let frames = self.graph_clips().map_or(0, |graph_clips| graph_clips.set().frames());
         let is_long = frames * (frames + 1) / 2 >= FOR_WORKERS;
-        is_long && jobs.has_workers() && !self.in_line && !self.is_streamed() && self.all.is_none()
+        is_long
+            && jobs.has_workers()
+            && !self.in_line
+            && self.all.is_none()
+            && self.search.is_none()
     }
 
     /// Asks workers for the candidates, and for the distances where they are not known, or takes one
@@ -465,6 +477,50 @@ impl GraphScheduler {
         }
     }
 
+    /// Asks workers for the candidates of clips that are too long for keeping their distances, or
+    /// takes one of their answers.
+    fn stream_by_workers(
+        &mut self,
+        graph_clips: &Arc<GraphClips>,
+        key: GraphKey,
+        jobs: &mut JobBoard,
+    ) -> Result<Searched, GraphError> {
+        let under_way = self.streamed.take().filter(|known| serves(known.options(), &key.options));
+        let mut streamed = match under_way {
+            Some(streamed) => streamed,
+            None => StreamedSearch::begin(graph_clips, widened(&key.options), jobs)?,
+        };
+        match streamed.advance(jobs)? {
+            TiledStep::Waits => {
+                self.streamed = Some(streamed);
+                Ok(Searched::Waits)
+            }
+            TiledStep::Took(secs) => {
+                self.add_secs(key, secs);
+                self.streamed = Some(streamed);
+                Ok(Searched::Worked)
+            }
+            TiledStep::Complete => {
+                let options = *streamed.options();
+                let (found, overview) = streamed.finish()?;
+                self.keep_overview(overview);
+                Ok(Searched::Found(self.keep_found(options, found)))
+            }
+            TiledStep::Failed => {
+                self.in_line = true;
+                Ok(Searched::Worked)
+            }
+        }
+    }
+
+    /// Keeps the distances of long clips, where they are not known: they are the same for every
+    /// threshold, so that drawings of them stay valid.
+    fn keep_overview(&mut self, overview: DistanceOverview) {
+        if self.fields.iter().all(|field| field.window() != overview.window()) {
+            self.keep_field(Arc::new(DistanceField::overview(overview)));
+        }
+    }
+
     /// Does a slice of the search for candidates here.
     fn slice_in_line(
         &mut self,
@@ -483,10 +539,7 @@ impl GraphScheduler {
             };
             if stream.advance(1)?.is_complete() {
                 let (found, overview) = stream.finish()?;
-                // The same for every threshold, so that drawings of it stay valid.
-                if self.fields.iter().all(|field| field.window() != overview.window()) {
-                    self.keep_field(Arc::new(DistanceField::overview(overview)));
-                }
+                self.keep_overview(overview);
                 return Ok(Some(self.keep_found(options, found)));
             }
             self.search = Some((options, Search::Streamed(stream)));
@@ -609,7 +662,7 @@ impl Sliced for GraphScheduler {
         let next = if self.stopped { None } else { self.next().cloned() };
         let Some(wanted) = next else {
             // Jobs of workers for what is not requested any more are cancelled.
-            self.tiled = None;
+            (self.tiled, self.streamed) = (None, None);
             return false;
         };
         match self.step(&wanted, jobs) {
