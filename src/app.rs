@@ -22,7 +22,7 @@ pub(crate) use address_bar::{link_query, link_query_for_others};
 pub(crate) use events::Event;
 pub(crate) use view::View;
 
-use crate::platform::{self, Inbox, LargeFileStore, Reader, Storage};
+use crate::platform::{self, Inbox, LargeFileStore, Pool, Reader, Storage};
 use crate::ui::{self, CurveCache, UiState};
 use address_bar::AddressBar;
 use api::{ApiError, LoadedClips};
@@ -64,6 +64,7 @@ pub(crate) struct Segue {
     converter: Converter,
     downloads: Downloads,
     reader: Reader,
+    pool: Pool,
     large_files: LargeFileStore,
     /// The results of the files that the page's API has loaded, by task; `None` while a file is
     /// being read.
@@ -138,12 +139,16 @@ impl Segue {
 
     fn new(inbox: Inbox, storage: Option<Storage>, link: String) -> Self {
         let now_ms = platform::now_ms();
+        let pool = Pool::new(&inbox);
+        let mut session = if platform::READS_IN_BACKGROUND {
+            Session::with_external_reader()
+        } else {
+            Session::new()
+        };
+        session.set_workers(pool.size());
         Self {
-            session: if platform::READS_IN_BACKGROUND {
-                Session::with_external_reader()
-            } else {
-                Session::new()
-            },
+            session,
+            pool,
             autosave: Autosave::new(storage, link, now_ms),
             reader: Reader::new(&inbox),
             large_files: LargeFileStore::default(),
@@ -231,7 +236,8 @@ impl Segue {
             self.session.work_took((platform::now_ms() - began_ms) / 1e3);
             more = more || self.picture.work();
         }
-        more = more || is_converting;
+        let has_begun = self.frame_stats.count() > 0;
+        more = self.pool.exchange(&mut self.session, has_begun) || more || is_converting;
         self.clock.left_work = more.then_some(now_ms);
         // The work may have made new requests.
         self.send_requests();

@@ -8,8 +8,8 @@ use crate::app::{Event, Segue, Shared};
 use crate::outline::{Deed, Outline};
 use crate::platform::{
     Area, FileBytes, Inbox, LargeFile, area_of, confirm_leaving_while, inline_picture,
-    js_error_text, next_frame, next_turn, now_ms, set_worker_factory, sleep, snapshot,
-    wasm_memory_bytes, watch_folders, watch_hiding,
+    js_error_text, next_frame, next_turn, now_ms, set_computer_factory, set_worker_factory, sleep,
+    snapshot, wasm_memory_bytes, watch_folders, watch_hiding,
 };
 use eframe::WebRunner;
 use eframe::egui::Modifiers;
@@ -70,12 +70,15 @@ fn to_js(value: &impl Serialize) -> Result<JsValue, JsValue> {
 
 #[wasm_bindgen]
 impl SegueHandle {
-    /// Starts the app on a canvas. `new_reader` makes the worker that reads files.
+    /// Starts the app on a canvas. `new_reader` makes the worker that reads files, `new_computer` one
+    /// of those that compute.
     pub async fn start(
         canvas: HtmlCanvasElement,
         new_reader: Function,
+        new_computer: Function,
     ) -> Result<SegueHandle, JsValue> {
         set_worker_factory(new_reader);
+        set_computer_factory(new_computer);
         let inbox = Inbox::default();
         let handle = Self {
             runner: WebRunner::new(),
@@ -446,15 +449,19 @@ impl SegueHandle {
     async fn settled(&self) -> Result<(), JsValue> {
         loop {
             // Frames do not run on a hidden page, so poll here.
-            let more = {
+            let (more, is_busy) = {
                 let mut segue = self.borrow_mut()?;
-                segue.poll() || segue.is_busy()
+                (segue.poll(), segue.is_busy())
             };
-            if !more {
+            if more {
+                next_turn().await;
+            } else if is_busy {
+                // Workers compute, or a file comes.
+                sleep(2).await;
+            } else {
                 self.changed();
                 return Ok(());
             }
-            next_turn().await;
         }
     }
 }

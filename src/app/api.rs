@@ -376,6 +376,7 @@ impl Segue {
             draw_ms: self.frame_stats.total_times(),
             jobs: self.jobs(),
             wasm_bytes,
+            workers: self.pool.stats(),
         }
     }
 

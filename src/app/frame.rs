@@ -8,6 +8,8 @@ use std::time::Duration;
 
 /// The time between two frames that show the progress of work.
 const SHOW_PROGRESS: Duration = Duration::from_millis(200);
+/// The time between two frames while workers compute and nothing else happens.
+const WATCH_WORKERS: Duration = Duration::from_secs(1);
 /// The time between two frames that are drawn without a graphics card, milliseconds.
 const SOFTWARE_FRAME_MS: f64 = 33.0;
 
@@ -24,6 +26,9 @@ impl Segue {
             // Work that goes on between frames changes nothing in the picture but its progress.
             let soon = if platform::WORKS_BETWEEN_FRAMES { SHOW_PROGRESS } else { Duration::ZERO };
             ctx.request_repaint_after(soon);
+        } else if self.pool.is_busy() {
+            // Answers wake the app. This frame finds out where none comes.
+            ctx.request_repaint_after(WATCH_WORKERS);
         }
         more && !self.autosave.is_waiting()
     }

@@ -23,31 +23,38 @@ impl View {
         on_events: impl Fn(Vec<Event>) + 'static,
     ) -> Self {
         segue.borrow_mut().attach(cc);
-        Self { segue, on_events: Box::new(on_events), is_working: Rc::default() }
-    }
-
-    /// Continues the work that a frame left over, where the platform can run it between frames.
-    /// Frames that are drawn in software are far apart, and the processor would be idle.
-    fn work_between_frames(&self, ctx: &egui::Context) {
-        if self.is_working.replace(true) {
-            return;
-        }
-        let (segue, is_working, ctx) =
-            (Rc::clone(&self.segue), Rc::clone(&self.is_working), ctx.clone());
-        platform::between_frames(move || {
-            // A borrowed app is at work already.
-            let Ok(mut segue) = segue.try_borrow_mut() else {
-                return true;
-            };
-            let before = segue.session.revision();
-            let more = segue.poll();
-            if !more || segue.session.revision() != before {
-                ctx.request_repaint();
+        let is_working: Rc<Cell<bool>> = Rc::default();
+        let (weak, working, ctx) =
+            (Rc::downgrade(&segue), Rc::clone(&is_working), cc.egui_ctx.clone());
+        platform::set_answer_listener(move || {
+            if let Some(segue) = weak.upgrade() {
+                work_between_frames(&segue, &working, &ctx);
             }
-            is_working.set(more);
-            more
         });
+        Self { segue, on_events: Box::new(on_events), is_working }
     }
+}
+
+/// Continues the work that a frame left over, where the platform can run it between frames. Frames
+/// that are drawn in software are far apart, and the processor would be idle.
+fn work_between_frames(segue: &Shared, is_working: &Rc<Cell<bool>>, ctx: &egui::Context) {
+    if is_working.replace(true) {
+        return;
+    }
+    let (segue, is_working, ctx) = (Rc::clone(segue), Rc::clone(is_working), ctx.clone());
+    platform::between_frames(move || {
+        // A borrowed app is at work already.
+        let Ok(mut segue) = segue.try_borrow_mut() else {
+            return true;
+        };
+        let before = segue.session.revision();
+        let more = segue.poll();
+        if !more || segue.session.revision() != before {
+            ctx.request_repaint();
+        }
+        is_working.set(more);
+        more
+    });
 }
 
 impl eframe::App for View {
@@ -58,7 +65,7 @@ impl eframe::App for View {
             return;
         };
         if segue.logic(ctx) {
-            self.work_between_frames(ctx);
+            work_between_frames(&self.segue, &self.is_working, ctx);
         }
         segue.schedule(ctx);
         let events = segue.take_events();

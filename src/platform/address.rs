@@ -6,6 +6,9 @@ use segue_session::outside;
 
 /// The key in a query that selects the graphics backend. It belongs to the page, not to the state.
 const BACKEND: &str = "backend";
+/// The key that sets the number of workers, for tests and measurements. It, too, belongs to the
+/// page.
+const POOL: &str = "pool";
 /// The value of `backend=` with which the page loads itself again when WebGPU has failed: it draws
 /// with WebGL 2, and the address does not keep it.
 const FALLBACK: &str = "backend=fallback";
@@ -16,31 +19,49 @@ const FALLBACK: &str = "backend=fallback";
     expect(dead_code, reason = "a window has no backend to choose by its address")
 )]
 pub(super) fn backend_of(query: &str) -> Option<String> {
+    value_of(query, BACKEND)
+}
+
+/// Returns the value of `pool=` in a query.
+#[cfg_attr(
+    not(target_arch = "wasm32"),
+    expect(dead_code, reason = "a window has no address to set it in")
+)]
+pub(super) fn pool_of(query: &str) -> Option<String> {
+    value_of(query, POOL)
+}
+
+#[cfg_attr(
+    not(target_arch = "wasm32"),
+    expect(dead_code, reason = "a window has no address with keys of a page")
+)]
+fn value_of(query: &str, wanted: &str) -> Option<String> {
     form_urlencoded::parse(bare(query).as_bytes())
-        .find(|(key, _)| key == BACKEND)
+        .find(|(key, _)| key == wanted)
         .map(|(_, value)| value.into_owned())
 }
 
-/// Returns `query` with the `backend=` of `old`, except [`FALLBACK`].
+/// Returns whether a pair of a query belongs to the page, not to the state.
+fn is_of_page(pair: &str) -> bool {
+    matches!(pair.split('=').next(), Some(BACKEND | POOL))
+}
+
+/// Returns `query` with the keys of the page in `old`, except [`FALLBACK`].
 #[cfg_attr(
     not(any(target_arch = "wasm32", test)),
     expect(dead_code, reason = "a window has no address to keep it in")
 )]
-pub(super) fn with_backend_of(query: &str, old: &str) -> String {
-    let kept = bare(old).split('&').find(|pair| pair.split('=').next() == Some(BACKEND));
-    match kept.filter(|&pair| pair != FALLBACK) {
-        Some(pair) if query.is_empty() => pair.to_owned(),
-        Some(pair) => format!("{query}&{pair}"),
-        None => query.to_owned(),
-    }
+pub(super) fn with_page_keys_of(query: &str, old: &str) -> String {
+    let kept = bare(old).split('&').filter(|pair| is_of_page(pair) && *pair != FALLBACK);
+    let pairs: Vec<&str> =
+        Some(query).filter(|query| !query.is_empty()).into_iter().chain(kept).collect();
+    pairs.join("&")
 }
 
-/// Returns a query without its question mark and without `backend=`.
+/// Returns a query without its question mark and without the keys of the page.
 pub(super) fn state_of(query: &str) -> String {
-    let pairs: Vec<&str> = bare(query)
-        .split('&')
-        .filter(|pair| !pair.is_empty() && pair.split('=').next() != Some(BACKEND))
-        .collect();
+    let pairs: Vec<&str> =
+        bare(query).split('&').filter(|pair| !pair.is_empty() && !is_of_page(pair)).collect();
     pairs.join("&")
 }
 
@@ -68,14 +89,16 @@ mod tests {
         assert_eq!(state_of("?lab=blend&backend=webgl2&t=1"), "lab=blend&t=1");
         assert_eq!(state_of(""), "");
         assert_eq!(state_of("?backend=webgpu"), "");
+        assert_eq!(state_of("?pool=off&lab=blend"), "lab=blend");
     }
 
     #[test]
     fn backend_of_an_address_is_kept_unless_it_is_a_fallback() {
-        assert_eq!(with_backend_of("lab=loop", "?backend=webgl2&t=1"), "lab=loop&backend=webgl2");
-        assert_eq!(with_backend_of("", "?t=1&backend=webgpu"), "backend=webgpu");
-        assert_eq!(with_backend_of("lab=loop", "?t=1&backend=fallback"), "lab=loop");
-        assert_eq!(with_backend_of("", "?backend=fallback"), "");
+        assert_eq!(with_page_keys_of("lab=loop", "?backend=webgl2&t=1"), "lab=loop&backend=webgl2");
+        assert_eq!(with_page_keys_of("", "?t=1&backend=webgpu"), "backend=webgpu");
+        assert_eq!(with_page_keys_of("lab=loop", "?t=1&backend=fallback"), "lab=loop");
+        assert_eq!(with_page_keys_of("", "?backend=fallback"), "");
+        assert_eq!(with_page_keys_of("t=1", "?pool=2&backend=webgpu"), "t=1&pool=2&backend=webgpu");
     }
 
     #[test]

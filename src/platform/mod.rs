@@ -12,6 +12,7 @@ mod gamepad;
 )]
 mod inbox;
 mod motion_files;
+mod pool_size;
 mod read_event;
 #[cfg_attr(
     not(any(test, target_arch = "wasm32")),
@@ -33,5 +34,6 @@ pub(crate) use web::*;
 pub(crate) use address::file_name_of;
 pub(crate) use file_bytes::{FileBytes, LargeFileStore, StoredFiles};
 pub(crate) use inbox::{Inbox, Incoming};
+pub(crate) use pool_size::PoolStats;
 pub(crate) use read_event::{ReadError, ReadEvent};
 pub(crate) use work::{NewClip, StoredWork, Work};

@@ -2,7 +2,8 @@
 // settles `window.segueReady`.
 //
 // The app (the wasm-bindgen module) must have a class `SegueHandle` with
-//   static start(canvas, newReader) -> Promise<SegueHandle>   the app runs on this canvas; newReader makes a worker for files
+//   static start(canvas, newReader, newComputer) -> Promise<SegueHandle>   the app runs on this canvas; newReader makes a worker
+//                                                  for files, newComputer one that computes
 //   firstFrame() -> Promise                        its first frame is on screen
 //   restart(canvas) -> Promise                     continues on a new canvas after the graphics context was lost; false: only a
 //                                                  module with WebGL 2 can
@@ -62,7 +63,7 @@ async function start() {
   agreePixels();
   const app = new RunningApp(memory);
   try {
-    app.handle = await Promise.race([SegueHandle.start(canvas(), newReader), app.trapped]);
+    app.handle = await Promise.race([SegueHandle.start(canvas(), newReader, newComputer), app.trapped]);
     app.watch();
     await Promise.race([app.handle.firstFrame(), app.trapped]);
   } catch (reason) {
@@ -106,6 +107,19 @@ function registerServiceWorker({ hasWebgl2 }) {
 
 /** Makes a worker that reads files; see reader.js. */
 const newReader = () => new Worker(new URL("./reader.js", import.meta.url), { type: "module" });
+
+let computerModule;
+
+/**
+ * Makes a worker that computes; see compute.js. Its WebAssembly is downloaded and compiled once,
+ * for the first one.
+ */
+function newComputer(maxBytes) {
+  const worker = new Worker(new URL("./compute.js", import.meta.url), { type: "module" });
+  computerModule ??= WebAssembly.compileStreaming(fetch(new URL("./compute/compute_bg.wasm", import.meta.url)));
+  computerModule.then((module) => worker.postMessage({ module, maxBytes }), (reason) => worker.postMessage({ failed: String(reason?.message ?? reason) }));
+  return worker;
+}
 
 /**
  * Returns the module that first.js downloads, or the one with WebGL 2 where that has WebGPU alone

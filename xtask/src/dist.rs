@@ -43,7 +43,10 @@ pub fn build(profile: Profile, modules: Modules) -> Result<()> {
         || {
             // The app ends in one long link on one core: the other core builds the tool meanwhile.
             progress::run(vec![
-                Build { name: "Segue for the web", cargo: app(profile, &["--bin=reader"]) },
+                Build {
+                    name: "Segue for the web",
+                    cargo: app(profile, &["--bin=reader", "--bin=compute"]),
+                },
                 Build { name: "its JavaScript's writer", cargo: bindgen() },
             ])
         },

@@ -12,6 +12,9 @@ use crate::shell::{Result, fail};
 
 /// Folders whose files are fetched on request, and cached from then on.
 const LATER: [&str; 3] = ["samples/", "lessons/", "lang/"];
+/// The folder of the page's scripts with the WebAssembly of the workers that compute, which are
+/// made for the first long work.
+const COMPUTE: &str = "/compute/";
 /// The beginning of the names of the app's module with WebGL 2, and of that without it.
 const WEBGL2: &str = "segue-";
 const WEBGPU: &str = "webgpu-";
@@ -57,7 +60,8 @@ pub fn seal(folder: &Path, is_release: bool) -> Result<()> {
     let with = |names: &[&str]| -> Vec<&String> {
         files.iter().filter(|file| names.iter().any(|name| file.starts_with(name))).collect()
     };
-    let (later, webgl2, webgpu) = (with(&LATER), with(&[WEBGL2]), with(&[WEBGPU]));
+    let (mut later, webgl2, webgpu) = (with(&LATER), with(&[WEBGL2]), with(&[WEBGPU]));
+    later.extend(files.iter().filter(|file| file.contains(COMPUTE)));
     let is_first = |file: &&String| {
         *file != WORKER && ![&later, &webgl2, &webgpu].iter().any(|other| other.contains(file))
     };
@@ -145,7 +149,7 @@ mod tests {
     fn folder(name: &str, boot: &str) -> PathBuf {
         let folder = std::env::temp_dir().join(format!("segue-seal-{}-{name}", std::process::id()));
         drop(fs::remove_dir_all(&folder));
-        fs::create_dir_all(folder.join("js")).unwrap();
+        fs::create_dir_all(folder.join("js/compute")).unwrap();
         fs::create_dir_all(folder.join("samples")).unwrap();
         for (file, text) in [
             (
@@ -153,6 +157,7 @@ mod tests {
                 "<html><head><meta charset=\"utf-8\"></head><script src=\"./js/boot.js\"></script></html>",
             ),
             ("js/boot.js", boot),
+            ("js/compute/compute_bg.wasm", "\0asm"),
             ("segue-1.wasm", "\0asm"),
             ("webgpu-2.wasm", "\0asm"),
             ("samples/walk.gz", "packed"),
@@ -190,6 +195,10 @@ mod tests {
         assert!(webgl2.contains("segue-1.wasm") && !webgl2.contains("webgpu"), "{worker}");
         assert!(webgpu.contains("webgpu-2.wasm") && !webgpu.contains("segue-"), "{worker}");
         assert!(!first.contains("samples") && later.contains("\"samples/walk.gz\""), "{worker}");
+        assert!(
+            !first.contains("compute") && later.contains("/compute/compute_bg.wasm"),
+            "{worker}"
+        );
         assert!(!worker.contains("sw.js"), "{worker}");
         let policy = page.find("Content-Security-Policy").unwrap();
         assert!(

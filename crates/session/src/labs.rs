@@ -55,6 +55,7 @@ pub use path::{FittedMotion, PathFacts, spline_ends};
 pub use recipe::file_stem;
 pub(super) use recipe::{recipe_id, recipe_ingredients, recipe_name, recipe_params};
 pub use register::{DistanceMap, FramePair, RegistrationFacts, weight_curve};
+pub(super) use register::{RegistrationRequest, registered, terms_of};
 pub use remedy::Remedy;
 pub(super) use remedy::remedies;
 pub use sliced::JobKind;

@@ -78,6 +78,7 @@ mod extra_characters;
 mod files;
 #[cfg(test)]
 mod fixtures;
+pub mod jobs;
 mod labs;
 pub mod lesson;
 mod library;

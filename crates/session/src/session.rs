@@ -3,6 +3,7 @@
 mod drive;
 mod files;
 mod graph;
+mod jobs;
 mod keep;
 mod lessons;
 mod queries;

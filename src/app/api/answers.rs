@@ -1,6 +1,7 @@
 //! Answers of the page's API as plain data.
 
 use crate::app::frame_stats::FrameTimes;
+use crate::platform::PoolStats;
 use segue_session::ClipInfo;
 use serde::Serialize;
 use serde_json::Value as Json;
@@ -90,6 +91,7 @@ pub(crate) struct Stats {
     pub(super) draw_ms: FrameTimes,
     pub(super) jobs: Vec<JobInfo>,
     pub(super) wasm_bytes: u64,
+    pub(super) workers: PoolStats,
 }
 
 /// A file to hand to the user.

@@ -4,6 +4,7 @@ mod files;
 mod film;
 mod frame_pacer;
 mod gamepad;
+mod pool;
 mod reader;
 mod storage;
 
@@ -11,6 +12,7 @@ pub(crate) use files::{download, open_files, read_arguments, read_dropped};
 pub(crate) use film::{Film, can_film, can_take_pictures, save_picture, take_picture};
 pub(crate) use frame_pacer::FramePacer;
 pub(crate) use gamepad::gamepad;
+pub(crate) use pool::{Pool, set_answer_listener};
 pub(crate) use reader::{LargeFile, Reader, outside_memory, update_memory};
 pub(crate) use storage::Storage;
 

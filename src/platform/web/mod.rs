@@ -7,6 +7,7 @@ mod folders;
 mod frame_pacer;
 mod gamepad;
 mod page;
+mod pool;
 mod reader;
 mod snapshot;
 mod storage;
@@ -25,6 +26,7 @@ pub(crate) use page::{
     now_ms, open_page, prefers_reduced_motion, replace_query, requested_backend, set_fullscreen,
     set_page_language, sleep, watch_hiding, watch_navigation,
 };
+pub(crate) use pool::{Pool, set_answer_listener, set_computer_factory};
 pub(crate) use reader::{
     LargeFile, Reader, outside_memory, set_worker_factory, update_memory, wasm_memory_bytes,
 };

@@ -1,6 +1,6 @@
 //! The browser's window: address, clock, events, and waiting.
 
-use crate::platform::address::{backend_of, state_of, with_backend_of};
+use crate::platform::address::{backend_of, pool_of, state_of, with_page_keys_of};
 use crate::platform::{Inbox, Incoming};
 use eframe::egui;
 use js_sys::{Function, Promise, Reflect};
@@ -64,10 +64,15 @@ pub(crate) fn requested_backend() -> Option<String> {
     backend_of(&search())
 }
 
+/// Returns the number of workers that the page's address selects.
+pub(super) fn requested_pool() -> Option<String> {
+    pool_of(&search())
+}
+
 /// Puts the state into the page's address, without an entry in the history.
 pub(crate) fn replace_query(query: &str) {
     let Some(window) = window() else { return };
-    let query = with_backend_of(query, &search());
+    let query = with_page_keys_of(query, &search());
     let location = window.location();
     let result = location.pathname().and_then(|path| {
         let hash = location.hash().unwrap_or_default();

@@ -252,6 +252,24 @@ impl Motion {
         *self.ground_m.get_or_init(|| self.feet.ground_m.unwrap_or_else(estimate))
     }
 
+    /// Returns the ground frames, if they are computed or given.
+    #[must_use]
+    pub fn known_ground_frames(&self) -> Option<&[Planar]> {
+        self.ground_frames.get().map(Vec::as_slice)
+    }
+
+    /// Returns the contacts before corrections, if they are detected or given.
+    #[must_use]
+    pub fn known_contacts(&self) -> Option<&Contacts> {
+        self.found_contacts.get()
+    }
+
+    /// Returns the height of the ground, metres, if it is estimated or given.
+    #[must_use]
+    pub fn known_ground_m(&self) -> Option<f32> {
+        self.ground_m.get().copied()
+    }
+
     /// Returns the usual speeds of its joints and root; measured on first use and kept.
     pub(crate) fn usual(&self) -> &UsualMotion {
         self.usual.get_or_init(|| UsualMotion::of(self))

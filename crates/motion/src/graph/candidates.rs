@@ -1,6 +1,9 @@
 //! Candidates for transitions.
 
-use super::{AllPairs, Construction, FrameDistances, FrameSet, GraphError, GraphOptions, Place};
+use super::{
+    AllPairs, Construction, FrameDistances, FrameSet, GraphError, GraphOptions, Place,
+    TileCandidates,
+};
 use crate::math::Planar;
 use crate::registration::Progress;
 use std::sync::Arc;
@@ -59,6 +62,20 @@ impl Candidates {
         let mut search = CandidateSearch::new(distances, options)?;
         while !search.advance(all, distances, usize::MAX)?.is_complete() {}
         Ok(search.finish())
+    }
+
+    /// Returns the candidates of all tiles of a set's matrix together, which may come in any order.
+    #[must_use]
+    pub fn of_tiles(
+        set: &Arc<FrameSet>,
+        options: &GraphOptions,
+        tiles: impl IntoIterator<Item = TileCandidates>,
+    ) -> Self {
+        let mut picker = Picker::new(Arc::clone(set), *options);
+        for tile in tiles {
+            picker.absorb(tile);
+        }
+        picker.finish()
     }
 
     /// Returns the candidates, closest first.
@@ -362,6 +379,26 @@ impl Picker {
             self.found.select_nth_unstable_by(MAX_CANDIDATES, closest_first);
             self.left_out += self.found.len() - MAX_CANDIDATES;
             self.found.truncate(MAX_CANDIDATES);
+        }
+    }
+
+    /// Returns the candidates of a part of the matrix.
+    pub(super) fn into_tile(mut self) -> TileCandidates {
+        self.thin_out();
+        TileCandidates {
+            nearest_m: self.nearest_m.is_finite().then_some(self.nearest_m),
+            found: self.found,
+            left_out: self.left_out,
+        }
+    }
+
+    /// Includes the candidates of a part of the matrix.
+    pub(super) fn absorb(&mut self, tile: TileCandidates) {
+        self.nearest_m = tile.nearest_m.map_or(self.nearest_m, |near| near.min(self.nearest_m));
+        self.left_out += tile.left_out;
+        self.found.extend(tile.found);
+        if self.found.len() > 2 * MAX_CANDIDATES {
+            self.thin_out();
         }
     }
 

@@ -1,9 +1,10 @@
 //! Distances between all windows of a set of clips.
 
-use super::{FrameSet, GraphError, Place};
+use super::tiles::row_start;
+use super::{DistanceTile, FrameSet, GraphError, Place};
 use crate::registration::{
     Alignment, DistanceMatrix, MAX_PAIRS, PairTerms, PausedSelfSweep, PausedSweep, PointClouds,
-    PointCloudsBuilder, Progress, RegistrationError, SelfSweep, SelfTerms, Sweep,
+    PointCloudsBuilder, Progress, ROWS_PER_SUM, RegistrationError, SelfSweep, SelfTerms, Sweep,
     SymmetricDistances,
 };
 use std::sync::Arc;
@@ -358,18 +359,54 @@ impl AllSweep<'_> {
 }
 
 /// The distances between all windows of one length of a set.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct FrameDistances {
     set: Arc<FrameSet>,
     window: usize,
     blocks: Vec<BlockDistances>,
 }
 
+impl PartialEq for FrameDistances {
+    fn eq(&self, other: &Self) -> bool {
+        let same = |(one, other): (&BlockDistances, &BlockDistances)| {
+            let rows = 0..one.size().0;
+            one.size() == other.size() && rows.into_iter().all(|row| one.row(row) == other.row(row))
+        };
+        (self.window, self.blocks.len()) == (other.window, other.blocks.len())
+            && self.set == other.set
+            && self.blocks.iter().zip(&other.blocks).all(same)
+    }
+}
+
 /// The distances of one pair of clips.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(super) enum BlockDistances {
     Itself(SymmetricDistances),
     Pair(DistanceMatrix),
+    Tiled(TiledDistances),
+}
+
+/// Distances that were computed as tiles.
+#[derive(Clone, Debug, Default)]
+pub(super) struct TiledDistances {
+    is_itself: bool,
+    rows: usize,
+    columns: usize,
+    /// [`ROWS_PER_SUM`] rows each.
+    tiles: Vec<Vec<f32>>,
+}
+
+impl TiledDistances {
+    fn row(&self, row: usize) -> &[f32] {
+        if row >= self.rows {
+            return &[];
+        }
+        let first = row / ROWS_PER_SUM * ROWS_PER_SUM;
+        let [own, next] =
+            [row, row + 1].map(|row| row_start(self.is_itself, self.columns, first, row));
+        let tile = self.tiles.get(row / ROWS_PER_SUM);
+        tile.and_then(|tile| tile.get(own..next)).unwrap_or_default()
+    }
 }
 
 impl BlockDistances {
@@ -378,6 +415,16 @@ impl BlockDistances {
         match self {
             Self::Itself(distances) => (distances.rows(), distances.rows()),
             Self::Pair(distances) => (distances.rows(), distances.columns()),
+            Self::Tiled(distances) => (distances.rows, distances.columns),
+        }
+    }
+
+    /// Returns whether a clip is compared with itself.
+    fn is_itself(&self) -> bool {
+        match self {
+            Self::Itself(_) => true,
+            Self::Pair(_) => false,
+            Self::Tiled(distances) => distances.is_itself,
         }
     }
 
@@ -385,6 +432,10 @@ impl BlockDistances {
         match self {
             Self::Itself(distances) => distances.get(row, column),
             Self::Pair(distances) => distances.get(row, column),
+            Self::Tiled(distances) if distances.is_itself => {
+                distances.row(row.min(column)).get(row.abs_diff(column)).copied()
+            }
+            Self::Tiled(distances) => distances.row(row).get(column).copied(),
         }
     }
 
@@ -393,6 +444,9 @@ impl BlockDistances {
         match self {
             Self::Itself(distances) => (row, distances.row(row)),
             Self::Pair(distances) => (0, distances.row(row)),
+            Self::Tiled(distances) => {
+                (if distances.is_itself { row } else { 0 }, distances.row(row))
+            }
         }
     }
 }
@@ -405,6 +459,36 @@ pub struct CountedTo {
 }
 
 impl FrameDistances {
+    /// Returns the distances that were computed as the tiles of [`DistanceTile::all`], which may
+    /// come in any order; missing ones have no distances.
+    #[must_use]
+    pub fn of_tiles(
+        set: &Arc<FrameSet>,
+        window: usize,
+        tiles: impl IntoIterator<Item = (DistanceTile, Vec<f32>)>,
+    ) -> Self {
+        let (window, clips) = (window.max(1), set.clips().len());
+        let windows = |clip: usize| (set.frames_of(clip) + 1).saturating_sub(window);
+        let mut blocks: Vec<TiledDistances> = (0..clips)
+            .flat_map(|a| (a..clips).map(move |b| (a, b)))
+            .map(|(a, b)| TiledDistances {
+                is_itself: a == b,
+                rows: windows(a),
+                columns: windows(b),
+                tiles: vec![Vec::new(); windows(a).div_ceil(ROWS_PER_SUM)],
+            })
+            .collect();
+        for (DistanceTile { a, b, rows }, distances) in tiles {
+            let block = if b < clips { blocks.get_mut(block_of(clips, a, b)) } else { None };
+            let place = block.and_then(|block| block.tiles.get_mut(rows.start / ROWS_PER_SUM));
+            if let Some(place) = place {
+                *place = distances;
+            }
+        }
+        let blocks = blocks.into_iter().map(BlockDistances::Tiled).collect();
+        Self { set: Arc::clone(set), window, blocks }
+    }
+
     /// Returns the frames that are compared.
     #[must_use]
     pub fn set(&self) -> &Arc<FrameSet> {
@@ -511,16 +595,22 @@ impl FrameDistances {
         bin_cm: f64,
         counts: &mut [u32],
     ) {
-        let Some(last) = counts.len().checked_sub(1) else {
-            return;
-        };
-        let scale = if bin_cm > 0.0 { (self.set.cm_per_m() / bin_cm) as f32 } else { f32::MAX };
         for row in rows {
             let (_, distances) = block.row(row);
-            let itself = usize::from(matches!(block, BlockDistances::Itself(_)));
-            for &distance in distances.get(itself..).unwrap_or_default() {
-                counts[((distance * scale) as usize).min(last)] += 1;
-            }
+            let itself = usize::from(block.is_itself());
+            let cells = distances.get(itself..).unwrap_or_default();
+            count_cells(cells, self.set.cm_per_m(), bin_cm, counts);
         }
+    }
+}
+
+/// Adds distances, metres, to the counts of a histogram whose last range is open.
+pub(super) fn count_cells(cells: &[f32], cm_per_m: f64, bin_cm: f64, counts: &mut [u32]) {
+    let Some(last) = counts.len().checked_sub(1) else {
+        return;
+    };
+    let scale = if bin_cm > 0.0 { (cm_per_m / bin_cm) as f32 } else { f32::MAX };
+    for &distance in cells {
+        counts[((distance * scale) as usize).min(last)] += 1;
     }
 }

@@ -77,6 +77,12 @@ impl FrameSet {
         self.clips.get(clip)
     }
 
+    /// Returns the height of the body by which distances are scaled, metres.
+    #[must_use]
+    pub fn body_height(&self) -> f64 {
+        self.body_height
+    }
+
     /// Returns the number of frames of one clip; 0 for an unknown one.
     #[must_use]
     pub fn frames_of(&self, clip: usize) -> usize {

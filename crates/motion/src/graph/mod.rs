@@ -113,6 +113,7 @@ mod overview;
 mod parts;
 mod stitch;
 mod stream;
+mod tiles;
 mod walk;
 mod weights;
 
@@ -127,7 +128,8 @@ pub use overview::{DistanceDetail, DistanceOverview};
 pub use stitch::{
     PieceSeam, StitchOptions, Stitcher, WalkAssembly, WalkMistake, WalkPiece, assembled,
 };
-pub use stream::CandidateStream;
+pub use stream::{CandidateStream, StreamComputer, StreamRow};
+pub use tiles::{DistanceTile, TileCandidates, TileComputer, TileDistances};
 pub use walk::{Stay, Walker};
 pub use weights::{Choices, Continuity, DistanceLaw, RunLength, WeightOptions};
 

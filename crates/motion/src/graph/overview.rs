@@ -1,7 +1,7 @@
 //! Coarse pictures of all distances.
 
 use super::parts::{Part, Parts};
-use super::{FrameSet, GraphError, Place};
+use super::{FrameSet, GraphError, Place, StreamRow};
 use crate::blend::align_onto;
 use crate::registration::{DistanceMatrix, Progress};
 use std::ops::Range;
@@ -77,6 +77,34 @@ impl DistanceOverview {
                 (column, cells) = (column + here.len(), rest);
             }
         }
+    }
+
+    /// Returns the blocks of the rows of one part, and the histogram, of an overview in which nothing
+    /// else is included.
+    pub(super) fn into_row(self, part: usize) -> (Vec<f32>, Vec<u32>) {
+        let blocks = self.blocks_of(part);
+        (self.nearest_m.get(blocks).unwrap_or_default().to_vec(), self.counts)
+    }
+
+    /// Includes the rows of one part.
+    pub(super) fn include(&mut self, row: &StreamRow) {
+        let blocks = self.blocks_of(row.part);
+        for (known, nearest) in
+            self.nearest_m.get_mut(blocks).unwrap_or_default().iter_mut().zip(&row.nearest_m)
+        {
+            *known = known.min(*nearest);
+        }
+        for (count, more) in self.counts.iter_mut().zip(&row.counts) {
+            *count = count.saturating_add(*more);
+        }
+    }
+
+    /// Returns the indices of the blocks in the rows of a part.
+    fn blocks_of(&self, part: usize) -> Range<usize> {
+        let Some(part) = self.parts.made().get(part) else { return 0..0 };
+        let rows = part.numbers();
+        let (first, end) = (rows.start / self.block, rows.end.div_ceil(self.block));
+        self.at(first, first)..self.at(end, end).min(self.nearest_m.len())
     }
 
     /// Returns the index of the block (row, column), row ≤ column.

@@ -4,6 +4,7 @@ use super::candidates::{Picker, is_minimum};
 use super::parts::Parts;
 use super::{
     Candidates, Construction, DistanceOverview, FrameSet, GraphError, GraphOptions, Place,
+    TileCandidates,
 };
 use crate::registration::Progress;
 use std::sync::Arc;
@@ -64,6 +65,31 @@ impl CandidateStream {
         })
     }
 
+    /// Returns the number of parts, into which the rows of the matrix are divided.
+    #[must_use]
+    pub fn parts(&self) -> usize {
+        match &self.work {
+            Work::Parts(parts) | Work::Tiles { parts, .. } => parts.count(),
+        }
+    }
+
+    /// Returns whether all parts are prepared, so that rows can be included.
+    #[must_use]
+    pub fn is_prepared(&self) -> bool {
+        matches!(self.work, Work::Tiles { .. })
+    }
+
+    /// Includes the comparison of a part with itself and all parts behind it, which was computed
+    /// elsewhere ([`StreamComputer`]), in place of a step for each. All parts must be prepared, and
+    /// each row included once, in any order.
+    pub fn include(&mut self, row: StreamRow) {
+        if let Work::Tiles { parts, overview, .. } = &mut self.work {
+            self.done += parts.count().saturating_sub(row.part);
+            overview.include(&row);
+            self.picker.absorb(row.candidates);
+        }
+    }
+
     /// Processes up to `steps` more steps, and returns the progress: each step prepares one part,
     /// or compares two. A step takes about 1.5 ms.
     ///
@@ -108,56 +134,113 @@ impl CandidateStream {
             Work::Tiles { parts, overview, next } => {
                 let (a, b) = *next;
                 *next = if b + 1 < parts.count() { (a, b + 1) } else { (a + 1, a + 1) };
-                Self::tile(&self.options, &mut self.picker, parts, (a, b), overview)
+                compare_parts(&self.options, &mut self.picker, parts, (a, b), overview)
             }
         }
+    }
+}
+
+/// The comparison of one part of a set with itself and all parts behind it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StreamRow {
+    /// The number of the part.
+    pub part: usize,
+    /// The smallest distances in the blocks of the overview, metres: row by row from the first row
+    /// that the part belongs to, each row from the diagonal on; infinity where no window starts.
+    pub nearest_m: Vec<f32>,
+    /// The number of pairs of windows in each range of the overview's histogram.
+    pub counts: Vec<u32>,
+    /// The candidates for transitions.
+    pub candidates: TileCandidates,
+}
+
+/// The computation of the rows of a [`CandidateStream`], in any order. All rows together give its
+/// result, to the last bit.
+#[derive(Debug)]
+pub struct StreamComputer {
+    parts: Arc<Parts>,
+}
+
+impl StreamComputer {
+    /// Prepares the parts of a set for windows of `window` frames.
+    ///
+    /// # Errors
+    /// [`GraphError`] without clips, or when a position is not finite.
+    pub fn new(set: &Arc<FrameSet>, window: usize) -> Result<Self, GraphError> {
+        let mut parts = Parts::new(set, window)?;
+        while parts.advance()? {}
+        Ok(Self { parts: Arc::new(parts) })
     }
 
-    fn tile(
-        options: &GraphOptions,
-        picker: &mut Picker,
-        parts: &Parts,
-        (a, b): (usize, usize),
-        overview: &mut DistanceOverview,
-    ) -> Result<(), GraphError> {
-        let (Some(a), Some(b)) = (parts.made().get(a), parts.made().get(b)) else {
-            return Ok(());
-        };
-        let (set, window) = (parts.set(), options.blend_window);
-        let (terms, distances) = a.tile(b, window)?;
-        overview.take(a, b, &distances);
-        let align = |leave: Place, enter: Place| {
-            let [p, q] = [leave, enter].map(|place| {
-                set.clip(place.clip).and_then(|source| source.ground_frames().get(place.frame))
-            });
-            let fallback = p.zip(q).map_or(0.0, |(p, q)| p.yaw - q.yaw);
-            Ok(terms.alignment(leave.frame, enter.frame, window, fallback)?.transform)
-        };
-        let at = |row: usize, column: usize| distances.get(row, column);
-        let only_minima = options.construction == Construction::Minima;
-        for i in a.starts.clone() {
-            let leave = Place { clip: a.clip, frame: i };
-            if !only_minima && !options.is_end(set, leave) {
+    /// Returns the number of frames of each window.
+    #[must_use]
+    pub fn window(&self) -> usize {
+        self.parts.window()
+    }
+
+    /// Compares a part with itself and all parts behind it.
+    ///
+    /// # Errors
+    /// [`GraphError`] when the options do not fit the clips.
+    pub fn row(&self, part: usize, options: &GraphOptions) -> Result<StreamRow, GraphError> {
+        options.check(self.parts.set())?;
+        let options = GraphOptions { blend_window: self.window(), ..*options };
+        let mut picker = Picker::new(Arc::clone(self.parts.set()), options);
+        let mut overview = DistanceOverview::new(Arc::clone(&self.parts));
+        for other in part..self.parts.count() {
+            compare_parts(&options, &mut picker, &self.parts, (part, other), &mut overview)?;
+        }
+        let (nearest_m, counts) = overview.into_row(part);
+        Ok(StreamRow { part, nearest_m, counts, candidates: picker.into_tile() })
+    }
+}
+
+/// Compares two parts a ≤ b: offers their windows to the picker, and includes their distances in the
+/// overview.
+fn compare_parts(
+    options: &GraphOptions,
+    picker: &mut Picker,
+    parts: &Parts,
+    (a, b): (usize, usize),
+    overview: &mut DistanceOverview,
+) -> Result<(), GraphError> {
+    let (Some(a), Some(b)) = (parts.made().get(a), parts.made().get(b)) else {
+        return Ok(());
+    };
+    let (set, window) = (parts.set(), options.blend_window);
+    let (terms, distances) = a.tile(b, window)?;
+    overview.take(a, b, &distances);
+    let align = |leave: Place, enter: Place| {
+        let [p, q] = [leave, enter].map(|place| {
+            set.clip(place.clip).and_then(|source| source.ground_frames().get(place.frame))
+        });
+        let fallback = p.zip(q).map_or(0.0, |(p, q)| p.yaw - q.yaw);
+        Ok(terms.alignment(leave.frame, enter.frame, window, fallback)?.transform)
+    };
+    let at = |row: usize, column: usize| distances.get(row, column);
+    let only_minima = options.construction == Construction::Minima;
+    for i in a.starts.clone() {
+        let leave = Place { clip: a.clip, frame: i };
+        if !only_minima && !options.is_end(set, leave) {
+            continue;
+        }
+        let row = i - a.from;
+        let cells = distances.row(row);
+        for j in b.starts.clone() {
+            let column = j - b.from;
+            let Some(&distance) = cells.get(column) else {
                 continue;
-            }
-            let row = i - a.from;
-            let cells = distances.row(row);
-            for j in b.starts.clone() {
-                let column = j - b.from;
-                let Some(&distance) = cells.get(column) else {
-                    continue;
-                };
-                let enter = Place { clip: b.clip, frame: j };
-                // Distances within one clip are symmetric: each pair is offered once.
-                if leave < enter
-                    && picker.is_worth(distance)
-                    && (only_minima || options.is_end(set, enter))
-                {
-                    let minimum = || !only_minima || is_minimum(at, row, column);
-                    picker.offer(leave, enter, distance, minimum, align)?;
-                }
+            };
+            let enter = Place { clip: b.clip, frame: j };
+            // Distances within one clip are symmetric: each pair is offered once.
+            if leave < enter
+                && picker.is_worth(distance)
+                && (only_minima || options.is_end(set, enter))
+            {
+                let minimum = || !only_minima || is_minimum(at, row, column);
+                picker.offer(leave, enter, distance, minimum, align)?;
             }
         }
-        Ok(())
     }
+    Ok(())
 }

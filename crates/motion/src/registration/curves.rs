@@ -37,6 +37,21 @@ pub struct Registration {
     alignment: AlignmentCurve,
 }
 
+/// The numbers of which a [`Registration`] is made.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RegistrationParts {
+    /// The path through the matrix.
+    pub path: RegistrationPath,
+    /// The points of the time warp.
+    pub warp: Vec<(f64, f64)>,
+    /// The mean frames over which the curves of the alignment are.
+    pub mean: Vec<f64>,
+    /// These curves, each as long: the yaw, and the centres of both windows, x and z.
+    pub curves: [Vec<f64>; 5],
+    /// The number of frames to either side over which the curves are smoothed.
+    pub smoothing: f64,
+}
+
 impl Registration {
     /// Finds the path and the curves through `matrix`, which was made from `terms`.
     ///
@@ -84,6 +99,32 @@ impl Registration {
         let warp = time_warp(&polyline, &fixed, smoothing).ok_or(PathError::NotFinite)?;
         let alignment = AlignmentCurve::new(terms, matrix, &path, &cells, smoothing)?;
         Ok(Self { path, warp, alignment })
+    }
+
+    /// Returns the numbers of which it is made, for a transfer.
+    #[must_use]
+    pub fn parts(&self) -> RegistrationParts {
+        let AlignmentCurve { yaw, source: [sx, sz], target: [tx, tz], smoothing } = &self.alignment;
+        RegistrationParts {
+            path: self.path.clone(),
+            warp: self.warp.points().collect(),
+            mean: yaw.x.clone(),
+            curves: [yaw, sx, sz, tx, tz].map(|curve| curve.y.clone()),
+            smoothing: *smoothing,
+        }
+    }
+
+    /// Returns the registration that is made of these numbers, with the bits of the one that
+    /// [`parts`](Self::parts) took apart; `None` where they are of none.
+    #[must_use]
+    pub fn of_parts(parts: RegistrationParts) -> Option<Self> {
+        let RegistrationParts { path, warp, mean, curves, smoothing } = parts;
+        if mean.is_empty() || curves.iter().any(|curve| curve.len() != mean.len()) {
+            return None;
+        }
+        let [yaw, sx, sz, tx, tz] = curves.map(|curve| SmoothedPolyline::new(mean.clone(), curve));
+        let alignment = AlignmentCurve { yaw, source: [sx, sz], target: [tx, tz], smoothing };
+        Some(Self { path, warp: MonotoneCurve::through(&warp)?, alignment })
     }
 
     /// Returns the path through the matrix.

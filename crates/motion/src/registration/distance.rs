@@ -16,6 +16,30 @@ pub struct DistanceMatrix {
 }
 
 impl DistanceMatrix {
+    /// Returns the matrix of these distances, metres, row by row, with `columns` in each row.
+    /// `first` are the frames of the first windows, source and target, and `stride` is the number
+    /// of frames from one row or column to the next. `None` where the last row is not whole.
+    #[must_use]
+    pub fn of_rows(
+        window: usize,
+        stride: usize,
+        first: (usize, usize),
+        columns: usize,
+        rms_m: Vec<f32>,
+    ) -> Option<Self> {
+        let (source_start, target_start) = first;
+        let rows = rms_m.len().checked_div(columns).unwrap_or(0);
+        (rms_m.len() == rows * columns).then_some(Self {
+            stride,
+            window,
+            source_start,
+            target_start,
+            rows,
+            columns,
+            rms_m,
+        })
+    }
+
     /// Returns the number of rows: source windows.
     #[must_use]
     pub fn rows(&self) -> usize {
@@ -51,6 +75,12 @@ impl DistanceMatrix {
     #[must_use]
     pub fn rms_m(&self) -> &[f32] {
         &self.rms_m
+    }
+
+    /// Returns the distances as [`rms_m`](Self::rms_m), without a copy.
+    #[must_use]
+    pub fn into_rms_m(self) -> Vec<f32> {
+        self.rms_m
     }
 
     /// Returns one distance, metres; `None` outside the matrix.

@@ -102,6 +102,7 @@ mod path;
 mod path_error;
 mod points;
 mod pose;
+mod row_terms;
 mod self_terms;
 mod sweep;
 mod terms;
@@ -109,7 +110,7 @@ mod transition;
 
 pub use align::{Alignment, align};
 pub(crate) use clouds::{PointClouds, PointCloudsBuilder};
-pub use curves::{Registration, RegistrationOptions};
+pub use curves::{Registration, RegistrationOptions, RegistrationParts};
 pub use distance::DistanceMatrix;
 pub use path::{
     MAX_SLOPE_LIMIT, PathEnd, PathOptions, RegistrationPath, TimeWarpSearch, optimal_path,
@@ -118,7 +119,9 @@ pub use path::{
 pub use path_error::PathError;
 pub use points::{REFERENCE_HEIGHT_M, limb_weights, rms_cm, uniform_weights};
 pub use pose::{PoseMatch, PoseSearch, PoseWeights};
+pub(crate) use row_terms::RowTerms;
 pub(crate) use self_terms::{PausedSelfSweep, SelfSweep, SelfTerms, SymmetricDistances};
+pub(crate) use sweep::ROWS_PER_SUM;
 pub use sweep::{PausedSweep, Sweep};
 pub(crate) use terms::MAX_PAIRS;
 pub use terms::{PairTerms, Progress, distances_directly};

@@ -54,7 +54,7 @@ impl Default for PathOptions {
 }
 
 /// A path through a distance matrix: the correspondence of the frames of two clips.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct RegistrationPath {
     /// Cells (row, column) from beginning to end; each step advances one row, one column, or both.
     pub cells: Vec<(usize, usize)>,

@@ -5,6 +5,12 @@ use super::{DistanceMatrix, RegistrationError};
 use glam::DVec2;
 use std::ops::Range;
 
+/// The number of rows after which the running sums begin anew.
+///
+/// They begin at the fixed multiples of it, so that some rows alone, beginning with such a one, have
+/// the same bits as among all rows: they can be computed anywhere.
+pub(crate) const ROWS_PER_SUM: usize = 512;
+
 impl PairTerms {
     /// Returns the computation of the distances between all windows of `window` frames that start
     /// in `sources` and `targets` (frames of the clips; clamped to the compared part), in slices.
@@ -22,6 +28,30 @@ impl PairTerms {
         let window = window.max(1);
         let [rows, columns] = self.starts(window, sources, targets);
         Ok(Sweep::new(self, window, rows, columns))
+    }
+
+    /// Returns the distances of the windows that start at the samples `rows` of the source, which
+    /// begin at a multiple of [`ROWS_PER_SUM`], row by row; of a clip with itself, each row has the
+    /// cells from the diagonal on.
+    ///
+    /// # Errors
+    /// [`RegistrationError::Unfinished`] where their pairs are not compared.
+    pub(super) fn packed_rows(
+        &self,
+        window: usize,
+        rows: &Range<usize>,
+    ) -> Result<Vec<f32>, RegistrationError> {
+        let window = window.max(1);
+        let [all, columns] = self.starts(window, &(0..usize::MAX), &(0..usize::MAX));
+        let rows = rows.start.min(all.end)..rows.end.min(all.end);
+        if rows.is_empty() || columns.is_empty() {
+            return Ok(Vec::new());
+        }
+        if !self.holds(&(rows.start..rows.end + self.samples_in(window) - 1)) {
+            let Progress { done, total } = self.progress();
+            return Err(RegistrationError::Unfinished { done, total });
+        }
+        Ok(Sweep::new(self, window, rows, columns).finish_packed())
     }
 
     /// Computes [`Self::sweep`] in one call.
@@ -42,8 +72,9 @@ impl PairTerms {
 /// diagonals, row by row.
 ///
 /// Each row's sums are those of the row above, one column to the left, plus the pair that enters
-/// the window, minus the pair that leaves it. The sums are `f64` over `f32` terms, so that the
-/// error after additions and subtractions is at most 1e-12 of the spread after 10,000 rows.
+/// the window, minus the pair that leaves it; every [`ROWS_PER_SUM`] rows they begin anew. The sums
+/// are `f64` over `f32` terms, so that the error after additions and subtractions is at most 1e-12
+/// of the spread.
 #[derive(Clone, Debug)]
 pub struct Sweep<'a> {
     terms: &'a PairTerms,
@@ -109,7 +140,8 @@ impl Moments {
             (cloud.centre(sample), cloud.square[sample] + cloud.centre(sample).length_squared())
         };
         for start in starts.clone() {
-            if start == starts.start {
+            if start == starts.start || start.is_multiple_of(ROWS_PER_SUM) {
+                (centre, square) = (DVec2::ZERO, 0.0);
                 for sample in start..start + samples {
                     centre += of(sample).0;
                     square += of(sample).1;
@@ -144,15 +176,14 @@ impl<'a> Sweep<'a> {
             source: Moments::new(&terms.source, &rows, samples),
             target: Moments::new(&terms.target, &columns, samples),
             // Filled row by row, as the terms are.
-            rms_m: Vec::with_capacity(if terms.is_triangle() {
-                packed_start(rows.len(), rows.len())
-            } else {
-                rows.len() * columns.len()
-            }),
+            rms_m: Vec::new(),
             rows,
             columns,
         };
-        Self { terms, sums }
+        let mut sweep = Self { terms, sums };
+        let cells = sweep.sums.row_start(terms, sweep.sums.rows.len());
+        sweep.sums.rms_m.reserve_exact(cells);
+        sweep
     }
 
     /// Computes up to `rows` more rows, and returns the progress.
@@ -199,12 +230,19 @@ impl<'a> Sweep<'a> {
     }
 }
 
-/// Returns the first column of a row that is summed.
-fn first_column(terms: &PairTerms, row: usize) -> usize {
-    if terms.is_triangle() { row } else { 0 }
-}
-
 impl Sums {
+    /// Returns the first column of a row that is summed: of a clip with itself, that on the
+    /// diagonal.
+    fn first_column(&self, terms: &PairTerms, row: usize) -> usize {
+        if terms.is_triangle() { self.rows.start + row - self.columns.start } else { 0 }
+    }
+
+    /// Returns the offset of a row's distances.
+    fn row_start(&self, terms: &PairTerms, row: usize) -> usize {
+        let columns = self.columns.len() - self.first_column(terms, 0).min(self.columns.len());
+        if terms.is_triangle() { packed_start(columns, row) } else { row * columns }
+    }
+
     fn progress(&self) -> Progress {
         Progress {
             done: self.done,
@@ -218,16 +256,21 @@ impl Sums {
     fn enter_row(&mut self, terms: &PairTerms, row: usize, samples: usize) {
         let (first, shift) = (self.rows.start + row, self.rows.len() - 1 - row);
         let columns = self.columns.len();
-        if row == 0 {
+        if row == 0 || first.is_multiple_of(ROWS_PER_SUM) {
+            let from = self.first_column(terms, row);
+            let n = columns - from;
+            for sums in [&mut self.dot, &mut self.cross, &mut self.height] {
+                sums[shift + from..][..n].fill(0.0);
+            }
             for k in 0..samples {
                 let centre = terms.source.centre(first + k);
-                let entering =
-                    TermSlice::new(terms, terms.row(first + k), self.columns.start + k, columns);
-                let sums = self.dot[shift..]
+                let (row, column) = (terms.row(first + k), self.columns.start + from + k);
+                let entering = TermSlice::new(terms, row, column, n);
+                let sums = self.dot[shift + from..]
                     .iter_mut()
-                    .zip(&mut self.cross[shift..])
-                    .zip(&mut self.height[shift..]);
-                for (c, ((dot, cross), height)) in sums.take(columns).enumerate() {
+                    .zip(&mut self.cross[shift + from..])
+                    .zip(&mut self.height[shift + from..]);
+                for (c, ((dot, cross), height)) in sums.take(n).enumerate() {
                     let (d, x) = centre_product(centre, DVec2::new(entering.x[c], entering.z[c]));
                     *dot += f64::from(entering.terms.dot[c]) + d;
                     *cross += f64::from(entering.terms.cross[c]) + x;
@@ -241,7 +284,7 @@ impl Sums {
         }
         // Below the diagonal there are no sums, so that the first column has preceding windows,
         // too.
-        let from = first_column(terms, row).max(1);
+        let from = self.first_column(terms, row).max(1);
         let n = columns - from;
         let (p, q) = (terms.source.centre(first + samples - 1), terms.source.centre(first - 1));
         let new = TermSlice::new(
@@ -288,13 +331,13 @@ impl Sums {
     /// Computes the distances of `row` from its sums.
     #[inline(never)]
     fn distances(&mut self, terms: &PairTerms, row: usize, samples: usize) {
-        let from = first_column(terms, row);
+        let from = self.first_column(terms, row);
         let n = self.columns.len() - from;
         let shift = self.rows.len() - 1 - row + from;
         let inverse = (samples as f64).recip();
         let (x, z, spread) =
             (self.source.x[row] * inverse, self.source.z[row] * inverse, self.source.spread[row]);
-        let start = if terms.is_triangle() { packed_start(self.rows.len(), row) } else { row * n };
+        let start = self.row_start(terms, row);
         self.rms_m.resize(start + n, 0.0);
         let out = &mut self.rms_m[start..][..n];
         let (dot, cross, height) =

@@ -70,6 +70,9 @@ pub struct PairTerms {
     /// Whether a clip is compared with itself: only pairs with column ≥ row are multiplied and
     /// stored, in whole groups.
     triangle: bool,
+    /// The rows that are compared and stored. They begin with a whole group.
+    rows: Range<usize>,
+    /// The end of those that are compared so far.
     done: usize,
     /// Per row: the products of [`tile`], `width` of each.
     terms: Vec<f32>,
@@ -153,18 +156,27 @@ impl PairTerms {
                 stride,
             })
         };
-        Ok(Self::of(&clouds(source, source_frames)?, &clouds(target, target_frames)?, band, false))
+        let (source, target) = (clouds(source, source_frames)?, clouds(target, target_frames)?);
+        Ok(Self::of(&source, &target, band, false, 0..source.samples()))
     }
 
-    /// Returns terms of which none is computed yet. The number of pairs is checked by the caller.
-    fn of(source: &PointClouds, target: &PointClouds, band: usize, triangle: bool) -> Self {
+    /// Returns terms of which none is computed yet. The number of pairs is checked by the caller;
+    /// `rows` lie inside the source and begin with a whole group.
+    fn of(
+        source: &PointClouds,
+        target: &PointClouds,
+        band: usize,
+        triangle: bool,
+        rows: Range<usize>,
+    ) -> Self {
         let mut terms = Self {
             stride: source.stride,
             shares: source.shares.clone(),
             frame_weight: source.frame_weight,
             band,
             triangle,
-            done: 0,
+            done: rows.start,
+            rows,
             terms: Vec::new(),
             width: target.cloud.groups() * LANES,
             source: Arc::clone(&source.cloud),
@@ -172,7 +184,7 @@ impl PairTerms {
             spread: Vec::new(),
         };
         // Only reserved: to clear all of it at once would take longer than a frame of the screen.
-        terms.terms = Vec::with_capacity(terms.row_start(terms.source.samples));
+        terms.terms = Vec::with_capacity(terms.row_start(terms.rows.end));
         terms
     }
 
@@ -187,20 +199,60 @@ impl PairTerms {
     ) -> Result<Self, RegistrationError> {
         let pairs = source.cloud.samples.saturating_mul(target.cloud.samples);
         check_pairs(pairs, || source.stride * 2)?;
-        Ok(Self::of(source, target, usize::MAX, false))
+        Ok(Self::of(source, target, usize::MAX, false, 0..source.samples()))
     }
 
     /// Prepares the comparison of a clip with itself: the pairs with column ≥ row alone.
     pub(super) fn of_itself(of: &PointClouds) -> Result<Self, RegistrationError> {
         let samples = of.cloud.samples;
         check_pairs(samples.saturating_mul(samples + 1) / 2, || of.stride * 2)?;
-        Ok(Self::of(of, of, usize::MAX, true))
+        Ok(Self::of(of, of, usize::MAX, true, 0..samples))
+    }
+
+    /// Prepares the comparison of some of the source's samples with the target: of `rows`, clamped
+    /// to the source, and those before them in the same group of four. With `is_itself` both clouds
+    /// are those of one clip, and only the pairs with column ≥ row are compared.
+    ///
+    /// The terms of a pair have the same bits as among all rows.
+    ///
+    /// # Errors
+    /// [`RegistrationError::TooManyPairs`] when there are more than 67 million pairs.
+    pub(super) fn of_rows(
+        source: &PointClouds,
+        target: &PointClouds,
+        is_itself: bool,
+        rows: &Range<usize>,
+    ) -> Result<Self, RegistrationError> {
+        let rows = rows.start.min(source.samples()) / LANES * LANES..rows.end.min(source.samples());
+        check_pairs(rows.len().saturating_mul(target.samples()), || source.stride * 2)?;
+        Ok(Self::of(source, target, usize::MAX, is_itself, rows))
+    }
+
+    /// Extends the rows that are compared to those before `end`; the new ones are not compared yet.
+    ///
+    /// # Errors
+    /// [`RegistrationError::TooManyPairs`] when there are more than 67 million pairs.
+    pub(super) fn extend_rows(&mut self, end: usize) -> Result<(), RegistrationError> {
+        let end = end.min(self.source.samples).max(self.rows.end);
+        let pairs = (end - self.rows.start).saturating_mul(self.target.samples);
+        check_pairs(pairs, || self.stride * 2)?;
+        self.rows.end = end;
+        // Exactly: grown step by step, it would take twice the memory.
+        let more = self.row_start(end).saturating_sub(self.terms.len());
+        self.terms.reserve_exact(more);
+        Ok(())
+    }
+
+    /// Returns the number of bytes of the terms in memory.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        size_of::<f32>() * self.terms.capacity()
     }
 
     /// Compares at least `rows` more frames of the source with all frames of the target (in groups
     /// of four rows), and returns the progress.
     pub fn advance(&mut self, rows: usize) -> Progress {
-        let end = self.done.saturating_add(rows).min(self.source.samples).div_ceil(LANES);
+        let end = self.done.saturating_add(rows).min(self.rows.end).div_ceil(LANES);
         let mut group = self.done / LANES;
         while group < end {
             let groups = group..(group + GROUPS_AT_ONCE).min(end);
@@ -219,7 +271,8 @@ impl PairTerms {
     /// Returns the progress.
     #[must_use]
     pub fn progress(&self) -> Progress {
-        Progress { done: self.done, total: self.source.samples }
+        let compared = self.done.clamp(self.rows.start, self.rows.end);
+        Progress { done: compared - self.rows.start, total: self.rows.len() }
     }
 
     /// Returns the number of frames between samples.
@@ -266,8 +319,13 @@ impl PairTerms {
         if self.triangle { row / LANES * LANES } else { 0 }
     }
 
-    /// Returns the offset of a row's terms.
+    /// Returns the offset of a stored row's terms.
     fn row_start(&self, row: usize) -> usize {
+        self.offset(row) - self.offset(self.rows.start)
+    }
+
+    /// Returns the offset of a row's terms where all rows are stored.
+    fn offset(&self, row: usize) -> usize {
         let (groups, lane) = (row / LANES, row % LANES);
         // Every group of rows is one group of columns shorter than the one above.
         let missing = if self.triangle {
@@ -288,6 +346,11 @@ impl PairTerms {
             cross: &row[width..2 * width],
             height: &row[2 * width..],
         }
+    }
+
+    /// Returns whether these rows are compared and stored.
+    pub(super) fn holds(&self, rows: &Range<usize>) -> bool {
+        rows.start >= self.rows.start && rows.end <= self.done
     }
 
     pub(super) fn samples_in(&self, window: usize) -> usize {
@@ -346,6 +409,10 @@ impl PairTerms {
                     window,
                 });
             }
+        }
+        if row < self.rows.start || row + samples > self.done {
+            let Progress { done, total } = self.progress();
+            return Err(RegistrationError::Unfinished { done, total });
         }
         let mut sums = PairMoments::default();
         for k in 0..samples {

@@ -3,6 +3,7 @@
 
 use super::sliced::{JobKind, Sliced};
 use super::{MeasuredMotion, Outcome};
+use crate::jobs::JobBoard;
 use segue_motion::clip::Clip;
 use segue_motion::metrics::{MotionTrace, ResultMetrics, TraceMeter};
 use segue_motion::skeleton::Roles;
@@ -93,7 +94,7 @@ impl Sliced for ArtefactMeter {
         self.is_ready = false;
     }
 
-    fn work(&mut self) -> bool {
+    fn work(&mut self, _jobs: &mut JobBoard) -> bool {
         let Some((clip, roles)) = self.wanted.first() else {
             return false;
         };

@@ -5,6 +5,7 @@ use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs};
 use super::pair::{Pair, Pairs};
 use super::sliced::{JobKind, Sliced};
 use super::{MatchSearch, Outcome, PlacedClip, Slot, Transition};
+use crate::jobs::JobBoard;
 use crate::labs::LabError;
 use crate::metrics::{Metric, MetricId};
 use crate::params::{Key, MAX_PANES, Params};
@@ -403,7 +404,7 @@ impl Sliced for BlendCache {
         self.is_ready = false;
     }
 
-    fn work(&mut self) -> bool {
+    fn work(&mut self, _jobs: &mut JobBoard) -> bool {
         let searching = self.is_searching();
         if searching {
             self.compare_rows(ROWS_PER_SLICE);

@@ -9,6 +9,8 @@ mod graph_clips;
 mod plan;
 mod requests;
 mod scheduler;
+mod streamed_search;
+mod tiled_search;
 mod walk;
 mod walk_builder;
 

@@ -16,6 +16,7 @@ use super::speed::{self, GaitFinder};
 use super::view::{self, ViewCache};
 use super::{edit, in_place, make, transition};
 use crate::LabId;
+use crate::jobs::JobBoard;
 use crate::motion::FeetReader;
 
 /// Returns the definition of a lab.
@@ -55,6 +56,8 @@ pub(crate) struct LabSet {
     pub(crate) meter: ArtefactMeter,
     /// Clips whose feet are read with options other than the defaults.
     pub(crate) feet: FeetReader,
+    /// The jobs for workers.
+    pub(crate) jobs: JobBoard,
 }
 
 impl LabSet {
@@ -73,8 +76,8 @@ impl LabSet {
         ]
     }
 
-    fn sliced_mut(&mut self) -> [&mut dyn Sliced; 9] {
-        [
+    fn sliced_mut(&mut self) -> ([&mut dyn Sliced; 9], &mut JobBoard) {
+        let sliced: [&mut dyn Sliced; 9] = [
             &mut self.pairs,
             &mut self.blends,
             &mut self.registrations,
@@ -84,21 +87,23 @@ impl LabSet {
             &mut self.drives,
             &mut self.meter,
             &mut self.graphs,
-        ]
+        ];
+        (sliced, &mut self.jobs)
     }
 
     /// Clears the pending requests of all labs; each pane then requests what it needs again.
     pub(crate) fn clear_requests(&mut self) {
-        for sliced in self.sliced_mut() {
+        for sliced in self.sliced_mut().0 {
             sliced.clear_requests();
         }
     }
 
     /// Does one slice of work; `now_secs` is the playhead. Returns `false` if there was nothing to
-    /// do.
+    /// do but to wait for workers.
     pub(crate) fn work(&mut self, now_secs: f64) -> bool {
         self.graphs.play_at(now_secs);
-        self.sliced_mut().into_iter().any(Sliced::work)
+        let (sliced, jobs) = self.sliced_mut();
+        sliced.into_iter().any(|sliced| sliced.work(jobs))
     }
 
     /// Returns whether any requested result is available.

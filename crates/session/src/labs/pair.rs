@@ -2,6 +2,7 @@
 
 use super::RetargetReport;
 use super::sliced::{JobKind, Sliced};
+use crate::jobs::JobBoard;
 use crate::labs::LabError;
 use crate::params::{Key, Params};
 use segue_motion::clip::{Clip, Interpolation, Motion, resample};
@@ -294,7 +295,7 @@ impl Sliced for Pairs {
         }
     }
 
-    fn work(&mut self) -> bool {
+    fn work(&mut self, _jobs: &mut JobBoard) -> bool {
         self.under_way.retain(|pending| pending.is_wanted);
         if self.under_way.is_empty() {
             return false;

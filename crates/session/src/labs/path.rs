@@ -6,6 +6,7 @@ use super::sliced::{JobKind, Sliced};
 use super::{LabFacts, Outcome, PlacedClip, Slot};
 use crate::choices;
 use crate::extra_characters::MAX_CHARACTERS;
+use crate::jobs::JobBoard;
 use crate::labs::LabError;
 use crate::metrics::{Metric, MetricId};
 use crate::params::{Key, List, MAX_PANES, Params, Value};
@@ -264,7 +265,7 @@ impl Sliced for Paths {
         self.locked_feet.clear_requests();
     }
 
-    fn work(&mut self) -> bool {
+    fn work(&mut self, _jobs: &mut JobBoard) -> bool {
         self.locked_feet.work()
     }
 

@@ -8,7 +8,7 @@ mod map;
 mod scheduler;
 
 pub use map::DistanceMap;
-pub(crate) use scheduler::RegistrationSchedulers;
+pub(crate) use scheduler::{RegistrationRequest, RegistrationSchedulers, registered, terms_of};
 
 use super::blend::weight_law;
 use super::feet::{Lock, slide, slide_before, with_feet};

@@ -1,5 +1,7 @@
 //! Work that takes longer than a frame, and is done in slices.
 
+use crate::jobs::JobBoard;
+
 /// The kinds of work that is done in slices.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum JobKind {
@@ -46,8 +48,9 @@ pub(crate) trait Sliced {
     /// Clears the pending requests. Call before a refresh; each pane requests again what it needs.
     fn clear_requests(&mut self);
 
-    /// Does one slice. Returns `false` if there was nothing to do.
-    fn work(&mut self) -> bool;
+    /// Does one slice; what takes long is offered as jobs where workers take them. Returns `false`
+    /// if there was nothing to do, or workers are at all of it.
+    fn work(&mut self, jobs: &mut JobBoard) -> bool;
 
     /// Returns whether a requested result is available, so that its pane should ask again.
     fn is_ready(&self) -> bool;

@@ -6,6 +6,7 @@ use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs, can_change_result};
 use super::sliced::{JobKind, Sliced};
 use super::{ArtefactMeter, MeasuredMotion, Outcome};
 use crate::contact_edits::with_own_edits;
+use crate::jobs::JobBoard;
 use crate::labs::LabError;
 use crate::metrics::{Metric, MetricId};
 use crate::params::{Compare, Key, Kind, MAX_PANES, PARAMS, Param, Params, Value};
@@ -337,7 +338,7 @@ impl Sliced for ViewCache {
         }
     }
 
-    fn work(&mut self) -> bool {
+    fn work(&mut self, _jobs: &mut JobBoard) -> bool {
         self.under_way.retain(|at| at.is_wanted);
         let before = self.under_way.len();
         if before == 0 {

@@ -2,6 +2,7 @@
 
 use crate::NumberTable;
 use crate::fixtures::*;
+use crate::jobs::JobBoard;
 use crate::labs::sliced::Sliced as _;
 use crate::labs::{ArtefactMeter, MeasuredMotion};
 use crate::metrics::{Better, METRICS, Metric, of_result};
@@ -132,7 +133,7 @@ fn measured(outcome: &Outcome) -> ResultMetrics {
         if let Some(found) = meter.numbers(outcome) {
             return found;
         }
-        while meter.work() {}
+        while meter.work(&mut JobBoard::default()) {}
         assert!(meter.is_ready());
     }
 }

@@ -201,6 +201,110 @@ proptest! {
     }
 }
 
+/// Computes all tiles in an order drawn by `seed`, shared out among several computers as if they
+/// were workers; then again with another window, from the products that these kept.
+fn tiled(
+    set: &Arc<FrameSet>,
+    options: &[GraphOptions],
+    workers: usize,
+    max_bytes: usize,
+    seed: u64,
+) -> (FrameDistances, Vec<u32>, Candidates) {
+    let mut computers: Vec<TileComputer> =
+        (0..workers).map(|_| TileComputer::new(Arc::clone(set), max_bytes).unwrap()).collect();
+    let mut state = seed;
+    let mut draw = |below: usize| {
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below
+    };
+    let mut result = None;
+    for options in options {
+        let mut tiles = DistanceTile::all(set, options.blend_window);
+        let mut counts = vec![0; DistanceOverview::BINS];
+        let (mut distances, mut candidates) = (Vec::new(), Vec::new());
+        while !tiles.is_empty() {
+            let tile = tiles.swap_remove(draw(tiles.len()));
+            let made = computers[draw(workers)].compute(&tile, options).unwrap();
+            assert_eq!(made.rms_m.len(), tile.cells(set, options.blend_window));
+            counts.iter_mut().zip(&made.counts).for_each(|(sum, count)| *sum += count);
+            distances.push((tile, made.rms_m));
+            candidates.push(made.candidates);
+        }
+        result = Some((
+            FrameDistances::of_tiles(set, options.blend_window, distances),
+            counts,
+            Candidates::of_tiles(set, options, candidates),
+        ));
+    }
+    result.unwrap()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(10))]
+    #[test]
+    fn tiles_in_any_order_give_the_bits_of_all_pairs(
+        frames in [500usize..1_200, 20usize..90, 5usize..560],
+        windows in [1usize..18, 1usize..18],
+        segment in prop::option::of(19usize..40),
+        threshold in 0.5f64..30.0,
+        workers in 1usize..4,
+        max_bytes in prop::option::of(1usize..2_000_000),
+        seed: u64,
+    ) {
+        let set = three(frames);
+        let construction = segment
+            .map_or(Construction::Minima, |segment_size| Construction::Segments { segment_size });
+        let all = compared(&set);
+        let options = windows.map(|window| options(construction, window, threshold));
+        let wanted = all.distances(windows[1]).unwrap();
+        let max_bytes = max_bytes.unwrap_or(usize::MAX);
+        let (found, counts, candidates) = tiled(&set, &options, workers, max_bytes, seed);
+        prop_assert!(found == wanted);
+        prop_assert_eq!(
+            counts,
+            wanted.histogram(DistanceOverview::BIN_CM, DistanceOverview::BINS)
+        );
+        prop_assert_eq!(candidates, Candidates::find(&all, &wanted, &options[1]).unwrap());
+        for (a, b) in [(0, set.frames() - 1), (set.frames() / 2, 3), (530, 4)] {
+            let place = |frame| set.place(frame);
+            if let (Some(a), Some(b)) = (place(a), place(b)) {
+                prop_assert_eq!(found.cm(a, b), wanted.cm(a, b));
+            }
+        }
+    }
+}
+
+#[test]
+fn stream_rows_in_any_order_give_the_bits_of_the_stream() {
+    let set = three([1_300, 530, 40]);
+    for (construction, window) in
+        [(Construction::Minima, 20), (Construction::Segments { segment_size: 35 }, 12)]
+    {
+        let options = options(construction, window, 12.0);
+        let (wanted, whole) = CandidateStream::new(&set, &options).unwrap().finish().unwrap();
+        let computer = StreamComputer::new(&set, window).unwrap();
+        let mut stream = CandidateStream::new(&set, &options).unwrap();
+        let parts = stream.parts();
+        let mut rows: Vec<usize> = (0..parts).collect();
+        rows.sort_by_key(|row| (row * 7 + 3) % parts);
+        while !stream.is_prepared() {
+            stream.advance(1).unwrap();
+        }
+        for row in rows {
+            assert!(!stream.progress().is_complete());
+            stream.include(computer.row(row, &options).unwrap());
+        }
+        assert!(stream.progress().is_complete());
+        let (found, overview) = stream.finish().unwrap();
+        assert!(found == wanted && !found.found().is_empty());
+        assert_eq!(overview.histogram(), whole.histogram());
+        let all = || 0..set.frames();
+        let pictures = [&overview, &whole].map(|overview| overview.picture(all(), all(), 1));
+        assert!(pictures[0].iter().zip(&pictures[1]).all(|(a, b)| a.to_bits() == b.to_bits()));
+    }
+}
+
 #[test]
 fn candidate_stream_of_long_clips_has_no_gap() {
     let set = three([2_600, 530, 40]);

@@ -2,6 +2,7 @@
 
 use super::super::sliced::{JobKind, Sliced};
 use super::{CleanInputs, Mends};
+use crate::jobs::JobBoard;
 use crate::labs::LabError;
 use crate::params::{Key, MAX_PANES, Params};
 use segue_motion::clean::{Fault, FaultSearch, MendOptions, Mended, Mending, damage};
@@ -217,7 +218,7 @@ impl Sliced for CleanCache {
         }
     }
 
-    fn work(&mut self) -> bool {
+    fn work(&mut self, _jobs: &mut JobBoard) -> bool {
         self.under_way.retain(|at| at.is_wanted);
         if self.under_way.is_empty() {
             return false;

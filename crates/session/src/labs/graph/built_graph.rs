@@ -34,6 +34,11 @@ impl DistanceField {
         Self { distances: Distances::Held(distances), histogram: vec![0; DistanceOverview::BINS] }
     }
 
+    /// Returns a field of distances with their histogram.
+    pub(super) fn counted(distances: FrameDistances, histogram: Vec<u32>) -> Self {
+        Self { distances: Distances::Held(distances), histogram }
+    }
+
     pub(super) fn overview(overview: DistanceOverview) -> Self {
         Self { distances: Distances::Overview(Box::new(overview)), histogram: Vec::new() }
     }

@@ -3,15 +3,18 @@
 use super::super::sliced::{JobKind, Sliced};
 use super::built_graph::Building;
 use super::requests::{GraphKey, WalkRequest};
+use super::streamed_search::StreamedSearch;
+use super::tiled_search::{TiledSearch, TiledStep};
 use super::walk_builder::WalkBuilder;
 use super::{BuiltGraph, DistanceField, GraphClips, GraphInputs};
+use crate::jobs::JobBoard;
 use crate::labs::LabError;
 use crate::labs::pair::{FRAMES_PER_SLICE, FittedClip, Fitting, FittingOptions, retarget_options};
 use crate::params::{MAX_PANES, Params};
 use segue_motion::clip::Motion;
 use segue_motion::graph::{
-    AllPairs, CandidateSearch, CandidateStream, Candidates, CountedTo, GraphError, GraphOptions,
-    PausedAllSweep,
+    AllPairs, CandidateSearch, CandidateStream, Candidates, CountedTo, DistanceOverview,
+    GraphError, GraphOptions, PausedAllSweep,
 };
 use segue_motion::registration::Progress;
 use segue_motion::retarget::RetargetOptions;
@@ -22,6 +25,9 @@ use std::sync::Arc;
 const PAIRS: usize = 100_000;
 /// The number of cells of the matrix in one slice.
 const CELLS: usize = 250_000;
+/// The number of pairs of frames from which on workers are asked: what takes them longer than to
+/// begin.
+const FOR_WORKERS: usize = 400_000;
 /// Above this number of frames the distance matrix (300 MB) is not kept in memory.
 const MAX_FRAMES: usize = 6_000;
 /// The number of cells of all distance fields that are kept: 160 MB.
@@ -50,6 +56,11 @@ pub(crate) struct GraphScheduler {
     fields: Vec<Arc<DistanceField>>,
     /// The search in progress, with the options whose threshold it covers.
     search: Option<(GraphOptions, Search)>,
+    /// The search that workers are at.
+    tiled: Option<TiledSearch>,
+    streamed: Option<StreamedSearch>,
+    /// Whether workers gave no answer, and everything is done here.
+    in_line: bool,
     /// The last candidates, with their options.
     found: Vec<(GraphOptions, Arc<Candidates>)>,
     building: Option<(GraphKey, Building)>,
@@ -89,6 +100,23 @@ fn serves(known: &GraphOptions, options: &GraphOptions) -> bool {
         ..*options
     };
     alike == *known && options.edge_threshold_cm <= known.edge_threshold_cm
+}
+
+/// What became of a slice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Progressed {
+    /// There may be more to do.
+    Worked,
+    /// Workers are at what is to be done.
+    Waits,
+}
+
+/// What became of a slice of a search for candidates.
+#[derive(Debug)]
+enum Searched {
+    Found(Arc<Candidates>),
+    Worked,
+    Waits,
 }
 
 /// The stages of a search for candidates.
@@ -164,9 +192,13 @@ impl GraphScheduler {
             builder.took(secs);
         }
         self.stepped = false;
-        let Some(key) = self.worked_for.take() else {
-            return;
-        };
+        if let Some(key) = self.worked_for.take() {
+            self.add_secs(key, secs);
+        }
+    }
+
+    /// Adds to the time that a graph took, seconds.
+    fn add_secs(&mut self, key: GraphKey, secs: f64) {
         match self.took.iter_mut().find(|(known, _)| *known == key) {
             Some((_, sum)) => *sum += secs,
             None => self.took.push((key, secs)),
@@ -208,6 +240,11 @@ impl GraphScheduler {
         }
         let fitting = self.fitting.as_ref().map_or(0.0, |fitting| f64::from(fitting.progress()));
         let fitted = (self.fitted.len() as f64 + fitting) / self.clips.len().max(1) as f64;
+        let by_workers = self.tiled.as_ref().map(TiledSearch::progress);
+        let by_workers = by_workers.or(self.streamed.as_ref().map(StreamedSearch::progress));
+        if let Some(progress) = by_workers {
+            return Some(0.1 * fitted + 0.75 * progress);
+        }
         let pairs = self.all.as_ref().map_or(0.0, |all| share(all.progress()));
         let window = wanted.graph.options.blend_window;
         let swept = if self.fields.iter().any(|field| field.window() == window) {
@@ -262,7 +299,7 @@ impl GraphScheduler {
     }
 
     /// Does a slice of the most urgent work.
-    fn step(&mut self, wanted: &WalkRequest) -> Result<(), LabError> {
+    fn step(&mut self, wanted: &WalkRequest, jobs: &mut JobBoard) -> Result<Progressed, LabError> {
         if let Some(guide) = &wanted.guide {
             // Without the walk to follow, this one would be random. If that one has failed, there
             // is nothing to follow.
@@ -272,10 +309,10 @@ impl GraphScheduler {
                 None => true,
             };
             if is_to_be_made {
-                if let Err(problem) = self.step(guide) {
+                return Ok(self.step(guide, jobs).unwrap_or_else(|problem| {
                     self.settle(guide, Err(problem));
-                }
-                return Ok(());
+                    Progressed::Worked
+                }));
             }
         }
         if let Some(at) = self.builders.iter().position(|(known, _)| known == wanted) {
@@ -290,10 +327,10 @@ impl GraphScheduler {
                 let guide = guide.and_then(|(_, guide)| Some(guide.as_mut().ok()?.plan()));
                 self.is_ready |= builder.step(self.now_secs, guide)?;
             }
-            return Ok(());
+            return Ok(Progressed::Worked);
         }
         let Some(graph_clips) = self.ready_graph_clips()? else {
-            return Ok(());
+            return Ok(Progressed::Worked);
         };
         wanted.graph.options.check(graph_clips.set())?;
         if let Some(built) = self.known(wanted.graph) {
@@ -301,19 +338,23 @@ impl GraphScheduler {
             let like = self.builders.iter().filter_map(|(_, builder)| builder.as_ref().ok());
             let builder = WalkBuilder::new(&built, wanted, like);
             self.settle(wanted, builder);
-            return Ok(());
+            return Ok(Progressed::Worked);
         }
         self.worked_for = Some(wanted.graph);
         let key = wanted.graph;
         let Some((_, building)) = self.building.take().filter(|(known, _)| *known == key) else {
-            let found = self.search_slice(&graph_clips, key)?;
-            self.building = found.map(|found| (key, Building::Found(found)));
-            return Ok(());
+            let found = match self.search_slice(&graph_clips, key, jobs)? {
+                Searched::Found(found) => found,
+                Searched::Worked => return Ok(Progressed::Worked),
+                Searched::Waits => return Ok(Progressed::Waits),
+            };
+            self.building = Some((key, Building::Found(found)));
+            return Ok(Progressed::Worked);
         };
         let found = match building.advance(&graph_clips, key) {
             Ok(ControlFlow::Continue(building)) => {
                 self.building = Some((key, building));
-                return Ok(());
+                return Ok(Progressed::Worked);
             }
             Ok(ControlFlow::Break(built)) => Ok(Arc::new(built)),
             Err(error) => Err(error.into()),
@@ -322,7 +363,7 @@ impl GraphScheduler {
             drop(self.built.remove(0));
         }
         self.built.push((wanted.graph, found));
-        Ok(())
+        Ok(Progressed::Worked)
     }
 
     /// Fits the clips to one skeleton, a part of one in each slice.
@@ -371,10 +412,121 @@ impl GraphScheduler {
         &mut self,
         graph_clips: &Arc<GraphClips>,
         key: GraphKey,
-    ) -> Result<Option<Arc<Candidates>>, GraphError> {
+        jobs: &mut JobBoard,
+    ) -> Result<Searched, GraphError> {
         if let Some(found) = self.places(&key.options) {
-            return Ok(Some(Arc::clone(found)));
+            return Ok(Searched::Found(Arc::clone(found)));
         }
+        if self.is_for_workers(jobs) {
+            return if self.is_streamed() {
+                self.stream_by_workers(graph_clips, key, jobs)
+            } else {
+                Ok(self.ask_workers(graph_clips, key, jobs))
+            };
+        }
+        Ok(self.slice_in_line(graph_clips, key)?.map_or(Searched::Worked, Searched::Found))
+    }
+
+    /// Returns whether workers compute the distances.
+    fn is_for_workers(&self, jobs: &JobBoard) -> bool {
+        let frames = self.graph_clips().map_or(0, |graph_clips| graph_clips.set().frames());
+        let is_long = frames * (frames + 1) / 2 >= FOR_WORKERS;
+        is_long
+            && jobs.has_workers()
+            && !self.in_line
+            && self.all.is_none()
+            && self.search.is_none()
+    }
+
+    /// Asks workers for the candidates, and for the distances where they are not known, or takes one
+    /// of their answers.
+    fn ask_workers(
+        &mut self,
+        graph_clips: &Arc<GraphClips>,
+        key: GraphKey,
+        jobs: &mut JobBoard,
+    ) -> Searched {
+        let under_way = self.tiled.take().filter(|tiled| serves(tiled.options(), &key.options));
+        let mut tiled = under_way.unwrap_or_else(|| {
+            let window = key.options.blend_window;
+            let wants_field = self.fields.iter().all(|field| field.window() != window);
+            TiledSearch::begin(graph_clips, widened(&key.options), wants_field, jobs)
+        });
+        match tiled.advance(jobs) {
+            TiledStep::Waits => {
+                self.tiled = Some(tiled);
+                Searched::Waits
+            }
+            TiledStep::Took(secs) => {
+                self.add_secs(key, secs);
+                self.tiled = Some(tiled);
+                Searched::Worked
+            }
+            TiledStep::Complete => {
+                let options = *tiled.options();
+                let (field, found) = tiled.finish(graph_clips.set());
+                if let Some(field) = field {
+                    self.keep_field(Arc::new(field));
+                }
+                Searched::Found(self.keep_found(options, found))
+            }
+            TiledStep::Failed => {
+                self.in_line = true;
+                Searched::Worked
+            }
+        }
+    }
+
+    /// Asks workers for the candidates of clips that are too long for keeping their distances, or
+    /// takes one of their answers.
+    fn stream_by_workers(
+        &mut self,
+        graph_clips: &Arc<GraphClips>,
+        key: GraphKey,
+        jobs: &mut JobBoard,
+    ) -> Result<Searched, GraphError> {
+        let under_way = self.streamed.take().filter(|known| serves(known.options(), &key.options));
+        let mut streamed = match under_way {
+            Some(streamed) => streamed,
+            None => StreamedSearch::begin(graph_clips, widened(&key.options), jobs)?,
+        };
+        match streamed.advance(jobs)? {
+            TiledStep::Waits => {
+                self.streamed = Some(streamed);
+                Ok(Searched::Waits)
+            }
+            TiledStep::Took(secs) => {
+                self.add_secs(key, secs);
+                self.streamed = Some(streamed);
+                Ok(Searched::Worked)
+            }
+            TiledStep::Complete => {
+                let options = *streamed.options();
+                let (found, overview) = streamed.finish()?;
+                self.keep_overview(overview);
+                Ok(Searched::Found(self.keep_found(options, found)))
+            }
+            TiledStep::Failed => {
+                self.in_line = true;
+                Ok(Searched::Worked)
+            }
+        }
+    }
+
+    /// Keeps the distances of long clips, where they are not known: they are the same for every
+    /// threshold, so that drawings of them stay valid.
+    fn keep_overview(&mut self, overview: DistanceOverview) {
+        if self.fields.iter().all(|field| field.window() != overview.window()) {
+            self.keep_field(Arc::new(DistanceField::overview(overview)));
+        }
+    }
+
+    /// Does a slice of the search for candidates here.
+    fn slice_in_line(
+        &mut self,
+        graph_clips: &Arc<GraphClips>,
+        key: GraphKey,
+    ) -> Result<Option<Arc<Candidates>>, GraphError> {
         if self.is_streamed() {
             let (options, mut stream) = match self.search.take() {
                 Some((known, Search::Streamed(stream))) if serves(&known, &key.options) => {
@@ -387,10 +539,7 @@ impl GraphScheduler {
             };
             if stream.advance(1)?.is_complete() {
                 let (found, overview) = stream.finish()?;
-                // The same for every threshold, so that drawings of it stay valid.
-                if self.fields.iter().all(|field| field.window() != overview.window()) {
-                    self.keep_field(Arc::new(DistanceField::overview(overview)));
-                }
+                self.keep_overview(overview);
                 return Ok(Some(self.keep_found(options, found)));
             }
             self.search = Some((options, Search::Streamed(stream)));
@@ -505,15 +654,25 @@ impl Sliced for GraphScheduler {
         self.is_ready = false;
     }
 
-    fn work(&mut self) -> bool {
+    fn work(&mut self, jobs: &mut JobBoard) -> bool {
         (self.worked_for, self.stepped) = (None, false);
-        let next = (!self.stopped && !self.is_ready).then(|| self.next().cloned()).flatten();
-        let Some(wanted) = next else { return false };
-        if let Err(problem) = self.step(&wanted) {
-            self.settle(&wanted, Err(problem));
-            self.is_ready = true;
+        if self.is_ready {
+            return false;
         }
-        true
+        let next = if self.stopped { None } else { self.next().cloned() };
+        let Some(wanted) = next else {
+            // Jobs of workers for what is not requested any more are cancelled.
+            (self.tiled, self.streamed) = (None, None);
+            return false;
+        };
+        match self.step(&wanted, jobs) {
+            Ok(progressed) => progressed == Progressed::Worked,
+            Err(problem) => {
+                self.settle(&wanted, Err(problem));
+                self.is_ready = true;
+                true
+            }
+        }
     }
 
     fn is_ready(&self) -> bool {

@@ -4,6 +4,7 @@ use super::super::sliced::{JobKind, Sliced};
 use super::tagging::{filter_of, tagged};
 use super::trace::Tracer;
 use crate::choices;
+use crate::jobs::JobBoard;
 use crate::labs::LabError;
 use crate::labs::Outcome;
 use crate::labs::lab::{LabClips, LabInputs};
@@ -269,7 +270,7 @@ impl Sliced for DriveScheduler {
         self.is_ready = false;
     }
 
-    fn work(&mut self) -> bool {
+    fn work(&mut self, _jobs: &mut JobBoard) -> bool {
         if self.is_ready {
             return false;
         }

@@ -20,12 +20,18 @@ pub struct DistanceMap {
 
 impl DistanceMap {
     pub(super) fn new(matrix: DistanceMatrix, pair: &Pair) -> Self {
-        let skeleton = pair.a.clip().skeleton();
+        Self::of_motions(matrix, [Arc::clone(&pair.a), Arc::clone(&pair.incoming)])
+    }
+
+    /// Returns the distances of A, and of B on the skeleton and at the rate of A.
+    pub(crate) fn of_motions(matrix: DistanceMatrix, motions: [Arc<Motion>; 2]) -> Self {
+        let skeleton = motions[0].clip().skeleton();
+        let height = motions[0].roles().body_height(skeleton);
         Self {
             matrix,
             weights: limb_weights(skeleton),
-            cm_scale: DistanceMatrix::cm_scale(pair.a.roles().body_height(skeleton).into()),
-            motions: [Arc::clone(&pair.a), Arc::clone(&pair.incoming)],
+            cm_scale: DistanceMatrix::cm_scale(height.into()),
+            motions,
         }
     }
 

@@ -3,16 +3,22 @@
 use super::super::sliced::{JobKind, Sliced};
 use super::{DistanceMap, ExtraClip, RegisterInputs, RegisteredKind};
 use crate::choices;
+use crate::jobs::{JobBoard, RegistrationAnswer, RegistrationTask, Taken, Ticket};
 use crate::labs::LabError;
 use crate::labs::feet::Lock;
 use crate::labs::pair::Pair;
 use crate::params::{Key, MAX_PANES, Params};
+use segue_motion::clip::Motion;
 use segue_motion::registration::{
-    PairTerms, PathEnd, PathError, PathOptions, PausedSweep, Registration, RegistrationOptions,
-    RegistrationPath, TimeWarpSearch, limb_weights,
+    PairTerms, PathEnd, PathError, PathOptions, PausedSweep, Registration, RegistrationError,
+    RegistrationOptions, RegistrationPath, TimeWarpSearch, limb_weights, optimal_path,
 };
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
+/// The number of pairs of frames from which on workers are asked: what takes them longer than to
+/// begin.
+const FOR_WORKERS: usize = 300_000;
 /// The number of pairs of frames that are processed at once: a few seconds of motion need no second
 /// slice.
 const AT_ONCE: usize = 100_000;
@@ -22,9 +28,9 @@ const PER_SLICE: usize = 60_000;
 const MAX_PAIRS: f64 = 4e6;
 
 /// A request for registration curves, besides the two clips.
-#[derive(Clone, Debug, PartialEq)]
-struct RegistrationRequest {
-    window: usize,
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct RegistrationRequest {
+    pub(crate) window: usize,
     path: PathOptions,
     smoothing: usize,
 }
@@ -100,8 +106,10 @@ impl Sliced for RegistrationSchedulers {
         self.all_mut().for_each(RegistrationScheduler::clear_requests);
     }
 
-    fn work(&mut self) -> bool {
-        self.all_mut().any(RegistrationScheduler::work)
+    fn work(&mut self, jobs: &mut JobBoard) -> bool {
+        // Each offers its jobs, before any of them waits for an answer.
+        let worked = self.all_mut().map(|one| one.ask_workers(jobs)).fold(false, |a, b| a | b);
+        worked || self.all_mut().any(|one| one.work(jobs))
     }
 
     fn is_ready(&self) -> bool {
@@ -122,6 +130,7 @@ impl Sliced for RegistrationSchedulers {
 #[derive(Debug, Default)]
 struct RegistrationScheduler {
     pair: Option<Arc<Pair>>,
+    stride: usize,
     terms: Option<PairTerms>,
     sweep: Option<PausedSweep>,
     /// The last ones requested, at most one for each pane.
@@ -132,6 +141,10 @@ struct RegistrationScheduler {
     wanted: Vec<RegistrationRequest>,
     /// Whether all of them were found and not been fetched yet.
     is_ready: bool,
+    /// The requests that workers were asked for.
+    offered: Vec<(RegistrationRequest, Ticket<RegistrationTask>)>,
+    /// A request that workers gave no answer to.
+    in_line: Option<RegistrationRequest>,
 }
 
 impl RegistrationScheduler {
@@ -148,7 +161,7 @@ impl RegistrationScheduler {
         pair: &Arc<Pair>,
         wanted: RegistrationRequest,
     ) -> Result<Option<Arc<FoundRegistration>>, LabError> {
-        self.set_pair(pair)?;
+        self.set_pair(pair);
         let at_once =
             pair.a.clip().frames().saturating_mul(pair.incoming.clip().frames()) <= AT_ONCE;
         loop {
@@ -168,14 +181,88 @@ impl RegistrationScheduler {
         self.maps.last()
     }
 
-    /// Does one slice of the requested work. Returns `false` if there was nothing to do.
-    fn work(&mut self) -> bool {
-        let Some(wanted) = self.next().cloned() else {
+    /// Does one slice of the requested work. Returns `false` if there was nothing to do, or workers
+    /// are at it.
+    fn work(&mut self, jobs: &JobBoard) -> bool {
+        let is_known =
+            |wanted: &&RegistrationRequest| self.found.iter().any(|(known, _)| known == *wanted);
+        let mut open = self.wanted.iter().filter(|wanted| !is_known(wanted));
+        let Some(wanted) = open.find(|wanted| !self.is_for_workers(jobs, wanted)).cloned() else {
             return false;
         };
         self.step(&wanted);
         self.is_ready = self.next().is_none();
         true
+    }
+
+    /// Returns whether workers find a registration.
+    fn is_for_workers(&self, jobs: &JobBoard, wanted: &RegistrationRequest) -> bool {
+        let Some(pair) = self.pair.as_ref().filter(|_| jobs.has_workers()) else {
+            return false;
+        };
+        let samples = |clip: &segue_motion::clip::Clip| clip.frames().div_ceil(self.stride.max(1));
+        let pairs = samples(pair.a.clip()).saturating_mul(samples(pair.incoming.clip()));
+        pairs >= FOR_WORKERS && self.terms.is_none() && self.in_line.as_ref() != Some(wanted)
+    }
+
+    /// Asks workers for what is requested, and takes one answer. Returns `false` if there was
+    /// nothing to do.
+    fn ask_workers(&mut self, jobs: &mut JobBoard) -> bool {
+        // What is not requested any more is cancelled.
+        let wanted = &self.wanted;
+        self.offered.retain(|(asked, _)| wanted.contains(asked));
+        let mut worked = false;
+        for wanted in self.wanted.clone() {
+            let is_known = self.found.iter().any(|(known, _)| *known == wanted);
+            let is_asked = self.offered.iter().any(|(asked, _)| *asked == wanted);
+            if is_known || is_asked || !self.is_for_workers(jobs, &wanted) {
+                continue;
+            }
+            if let Some(pair) = &self.pair {
+                let task = RegistrationTask {
+                    wants_matrix: self
+                        .maps
+                        .iter()
+                        .all(|map| map.matrix().window() != wanted.window),
+                    stride: self.stride,
+                    request: wanted.clone(),
+                };
+                let ticket = jobs.offer(task, &[Arc::clone(&pair.a), Arc::clone(&pair.incoming)]);
+                self.offered.push((wanted, ticket));
+                worked = true;
+            }
+        }
+        for at in 0..self.offered.len() {
+            let answer = match jobs.take(&self.offered[at].1) {
+                Taken::Waits => continue,
+                Taken::Answer(answer, _) => Some(answer),
+                Taken::Failed => None,
+            };
+            let (wanted, _) = self.offered.remove(at);
+            match answer.and_then(|answer| self.taken(&wanted, answer)) {
+                Some(found) => self.keep(&wanted, Ok(found)),
+                None => self.in_line = Some(wanted),
+            }
+            self.is_ready = self.next().is_none();
+            return true;
+        }
+        worked
+    }
+
+    /// Returns the registration in a worker's answer; `None` where it has none, as where there is no
+    /// path.
+    fn taken(
+        &mut self,
+        wanted: &RegistrationRequest,
+        answer: RegistrationAnswer,
+    ) -> Option<FoundRegistration> {
+        let pair = self.pair.as_ref()?;
+        if let Some(matrix) = answer.matrix {
+            keep_map(&mut self.maps, Arc::new(DistanceMap::new(matrix, pair)));
+        }
+        let map = self.maps.iter().find(|map| map.matrix().window() == wanted.window)?;
+        let [registration, lockstep] = answer.curves?.map(Arc::new);
+        Some(FoundRegistration { map: Arc::clone(map), registration, lockstep })
     }
 
     /// Returns whether a requested result is available, so that its pane should ask again.
@@ -204,28 +291,34 @@ impl RegistrationScheduler {
         Some(0.45 * terms + 0.45 * swept)
     }
 
-    fn set_pair(&mut self, pair: &Arc<Pair>) -> Result<(), LabError> {
+    fn set_pair(&mut self, pair: &Arc<Pair>) {
         if self.pair.as_ref().is_some_and(|known| Arc::ptr_eq(known, pair)) {
-            return Ok(());
+            return;
         }
         *self = Self { wanted: std::mem::take(&mut self.wanted), ..Self::default() };
         let (a, b) = (pair.a.clip(), pair.incoming.clip());
         let pairs = a.frames() as f64 * b.frames() as f64;
-        let stride = (pairs / MAX_PAIRS).sqrt().ceil().max(1.0) as usize;
-        let weights = limb_weights(a.skeleton());
-        let terms = PairTerms::new(a, 0..a.frames(), b, 0..b.frames(), &weights, stride);
-        self.terms = Some(terms?);
+        self.stride = (pairs / MAX_PAIRS).sqrt().ceil().max(1.0) as usize;
         self.pair = Some(Arc::clone(pair));
-        Ok(())
     }
 
     /// Does a slice of the most urgent work.
     fn step(&mut self, wanted: &RegistrationRequest) {
-        let (Some(pair), Some(terms)) = (&self.pair, &mut self.terms) else {
+        let Some(pair) = &self.pair else {
             self.keep(wanted, Err(LabError::NothingToRegister));
             return;
         };
-        let stride = terms.stride();
+        let terms = match &mut self.terms {
+            Some(terms) => terms,
+            None => match terms_of(&pair.a, &pair.incoming, self.stride) {
+                Ok(terms) => self.terms.insert(terms),
+                Err(error) => {
+                    self.keep(wanted, Err(error.into()));
+                    return;
+                }
+            },
+        };
+        let stride = self.stride;
         let rows = (PER_SLICE * stride / pair.incoming.clip().frames().max(1)).max(4);
         if !terms.progress().is_complete() {
             terms.advance(rows);
@@ -245,6 +338,10 @@ impl RegistrationScheduler {
                 }
                 path.map(|path| curves(terms, &map, path, wanted.smoothing)).transpose()
             });
+            let found = found.map(|found| {
+                let [registration, lockstep] = found?.map(Arc::new);
+                Some(FoundRegistration { map: Arc::clone(&map), registration, lockstep })
+            });
             if let Some(found) = found.transpose() {
                 self.keep(wanted, found.map_err(|error| in_frames(error, map.middle())));
             }
@@ -261,10 +358,7 @@ impl RegistrationScheduler {
                     self.sweep = Some(sweep.pause());
                     return;
                 }
-                if self.maps.len() >= MAX_PANES {
-                    self.maps.remove(0);
-                }
-                self.maps.push(Arc::new(DistanceMap::new(sweep.finish(), pair)));
+                keep_map(&mut self.maps, Arc::new(DistanceMap::new(sweep.finish(), pair)));
             }
             Err(error) => self.keep(wanted, Err(error.into())),
         }
@@ -314,13 +408,41 @@ fn in_cells(path: &PathOptions, map: &DistanceMap) -> PathOptions {
     PathOptions { pins: path.pins.iter().map(cell).collect(), ..path.clone() }
 }
 
-/// Returns the curves along a path through the distances.
+/// Adds a map, and drops the oldest one where there are more than panes.
+fn keep_map(maps: &mut Vec<Arc<DistanceMap>>, map: Arc<DistanceMap>) {
+    if maps.len() >= MAX_PANES {
+        maps.remove(0);
+    }
+    maps.push(map);
+}
+
+/// Returns the products of the frames of A, and of B on its skeleton, none of which is computed yet.
+pub(crate) fn terms_of(
+    a: &Motion,
+    b: &Motion,
+    stride: usize,
+) -> Result<PairTerms, RegistrationError> {
+    let (a, b) = (a.clip(), b.clip());
+    PairTerms::new(a, 0..a.frames(), b, 0..b.frames(), &limb_weights(a.skeleton()), stride)
+}
+
+/// Returns the registration that is requested, and that at equal speed.
+pub(crate) fn registered(
+    terms: &PairTerms,
+    map: &DistanceMap,
+    request: &RegistrationRequest,
+) -> Result<[Registration; 2], PathError> {
+    let path = optimal_path(map.matrix(), &in_cells(&request.path, map))?;
+    curves(terms, map, path, request.smoothing)
+}
+
+/// Returns the registration along a path through the distances, and that at equal speed.
 fn curves(
     terms: &PairTerms,
-    map: &Arc<DistanceMap>,
+    map: &DistanceMap,
     path: RegistrationPath,
     smoothing: usize,
-) -> Result<FoundRegistration, PathError> {
+) -> Result<[Registration; 2], PathError> {
     let matrix = map.matrix();
     let registration = Registration::along(terms, matrix, path, smoothing)?;
     let (row, column) = registration.path().cells.first().copied().unwrap_or_default();
@@ -329,11 +451,7 @@ fn curves(
     let sum: f64 = cells.iter().filter_map(|cell| matrix.get(cell.0, cell.1)).map(f64::from).sum();
     let diagonal = RegistrationPath { pins: Vec::new(), mean_m: sum / steps.max(1) as f64, cells };
     let lockstep = Registration::along(terms, matrix, diagonal, smoothing)?;
-    Ok(FoundRegistration {
-        map: Arc::clone(map),
-        registration: Arc::new(registration),
-        lockstep: Arc::new(lockstep),
-    })
+    Ok([registration, lockstep])
 }
 
 /// Returns the error with the frames that its windows represent.

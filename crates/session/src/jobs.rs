@@ -1,0 +1,33 @@
+//! Long work as jobs: plain data in, a pure function, plain data out.
+//!
+//! The labs offer jobs to a [`JobBoard`]; the app takes them from the session
+//! ([`Session::take_job`](crate::Session::take_job)), has them run elsewhere and hands the answers
+//! back. A page sends them to workers that share nothing with it: a [`Worker`] runs there, and
+//! [`Parcel`]s carry clips and answers. Each clip is sent once to each worker, under a number. A
+//! window runs the same [`Worker`]s on threads.
+//!
+//! An answer does not depend on where a job ran, on what the worker did before, or on the order in
+//! which answers arrive; and it equals, to the last bit, what the labs compute in slices where no
+//! worker takes jobs ([`Session::set_workers`](crate::Session::set_workers)).
+//!
+//! A new job is a file with a [`Task`](task::Task), and a row of the table in `task.rs`.
+
+mod board;
+mod candidates;
+mod distances;
+mod motion_parcel;
+mod parcel;
+mod registration;
+mod stream;
+mod task;
+#[cfg(test)]
+mod tests;
+mod worker;
+
+pub(crate) use board::{JobBoard, Taken, Ticket};
+pub(crate) use distances::DistanceTask;
+pub use parcel::{Parcel, ParcelError};
+pub(crate) use registration::{RegistrationAnswer, RegistrationTask};
+pub(crate) use stream::StreamTask;
+pub use task::{Answer, Job, JobClip};
+pub use worker::{JobError, Worker};

@@ -1,0 +1,46 @@
+//! The form in which clips and answers travel.
+
+use bytemuck::{NoUninit, Pod, pod_read_unaligned};
+
+/// A message between a page and its workers: a JSON header, and long arrays. The arrays have the
+/// byte order of the machine, on which both sides run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Parcel {
+    /// The header.
+    pub head: String,
+    /// The long array.
+    pub floats: Vec<f32>,
+    /// Everything else, as bytes.
+    pub bytes: Vec<u8>,
+}
+
+/// The reason why a parcel cannot be made or opened.
+#[derive(Debug, thiserror::Error)]
+pub enum ParcelError {
+    /// An invalid header.
+    #[error("the head of a message cannot be read: {0}")]
+    Head(#[from] serde_json::Error),
+    /// Arrays of other lengths than the header states, or with invalid content.
+    #[error("a message has other arrays than its head states")]
+    Arrays,
+}
+
+/// Appends values to bytes.
+pub(super) fn put<T: NoUninit>(bytes: &mut Vec<u8>, values: &[T]) {
+    bytes.extend_from_slice(bytemuck::cast_slice(values));
+}
+
+/// Moves `count` values from the front of `bytes`.
+pub(super) fn take<T: Pod>(bytes: &mut &[u8], count: usize) -> Result<Vec<T>, ParcelError> {
+    let length = count.checked_mul(size_of::<T>()).ok_or(ParcelError::Arrays)?;
+    let (now, later) = bytes.split_at_checked(length).ok_or(ParcelError::Arrays)?;
+    *bytes = later;
+    Ok(now.chunks_exact(size_of::<T>()).map(pod_read_unaligned).collect())
+}
+
+/// Moves `count` numbers from the front of `floats`.
+pub(super) fn take_floats(floats: &mut &[f32], count: usize) -> Result<Vec<f32>, ParcelError> {
+    let (now, later) = floats.split_at_checked(count).ok_or(ParcelError::Arrays)?;
+    *floats = later;
+    Ok(now.to_vec())
+}

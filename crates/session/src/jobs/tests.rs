@@ -1,0 +1,298 @@
+//! Tests of jobs: results do not depend on where and in which order they are run.
+
+use super::*;
+use crate::fixtures::*;
+use crate::labs::Distances;
+use crate::params::MAX_PANES;
+use proptest::prelude::*;
+use segue_motion::clip::ContactCorrection;
+use segue_motion::skeleton::Side;
+
+/// Workers as a page has them: jobs, clips and answers are messages.
+struct Workers {
+    workers: Vec<Worker>,
+    clips: Vec<std::collections::BTreeSet<u32>>,
+    /// Jobs that were run, whose answers have not been handed in.
+    ended: Vec<(u64, Answer)>,
+    /// The number of jobs that were run.
+    run: usize,
+    state: u64,
+}
+
+impl Workers {
+    fn new(count: usize, seed: u64) -> Self {
+        Self {
+            workers: (0..count).map(|_| Worker::new(1 << 26)).collect(),
+            clips: vec![Default::default(); count],
+            ended: Vec::new(),
+            run: 0,
+            state: seed,
+        }
+    }
+
+    fn draw(&mut self, below: usize) -> usize {
+        let next = self.state.wrapping_mul(6_364_136_223_846_793_005);
+        self.state = next.wrapping_add(1_442_695_040_888_963_407);
+        (self.state >> 33) as usize % below.max(1)
+    }
+
+    /// Replaces a worker that ended.
+    fn replace(&mut self, session: &mut Session, worker: usize) {
+        self.workers[worker] = Worker::new(1 << 26);
+        self.clips[worker].clear();
+        session.forget_worker(worker);
+    }
+
+    /// Runs one waiting job in a worker drawn by chance; returns `false` without one.
+    fn run_one(&mut self, session: &mut Session) -> bool {
+        let at = self.draw(self.workers.len());
+        for number in session.take_dropped_clips() {
+            for (worker, clips) in self.workers.iter_mut().zip(&mut self.clips) {
+                worker.drop_clip(number);
+                clips.remove(&number);
+            }
+        }
+        let Some(job) = session.take_job(at) else { return false };
+        let worker = &mut self.workers[at];
+        for clip in &job.clips {
+            if self.clips[at].insert(clip.number) {
+                worker.take_clip(clip.number, &clip.parcel().unwrap()).unwrap();
+            }
+        }
+        let parcel = worker.run_message(&job.message().unwrap()).unwrap();
+        self.ended.push((job.number, job.answer(parcel).unwrap()));
+        self.run += 1;
+        true
+    }
+
+    /// Does all work of a session, in an order drawn by chance.
+    fn settle(&mut self, session: &mut Session) {
+        loop {
+            while session.work() {}
+            let has_run = self.draw(3) > 0 && self.run_one(session);
+            if !has_run && !self.ended.is_empty() {
+                let at = self.draw(self.ended.len());
+                let (number, answer) = self.ended.swap_remove(at);
+                session.finish_job(number, Some(answer), 0.01);
+            } else if !has_run && !self.run_one(session) {
+                assert!(session.jobs().is_empty(), "{:?}", session.jobs());
+                return;
+            }
+        }
+    }
+}
+
+fn set(session: &mut Session, key: Key, value: Value) {
+    session.apply(Command::Set(vec![(key, value)])).unwrap();
+}
+
+/// Asserts that two sessions show the same, to the last bit.
+fn assert_same(one: &Session, other: &Session) {
+    for (one, other) in one.panes().iter().zip(other.panes()) {
+        assert_eq!(one.problem, other.problem);
+        let (one, other) = (one.outcome.as_ref().unwrap(), other.outcome.as_ref().unwrap());
+        assert!(one.motion == other.motion, "another motion");
+        assert_eq!(one.metrics, other.metrics);
+    }
+    match (one.graph_field(), other.graph_field()) {
+        (Some(one), Some(other)) => {
+            assert_eq!(one.histogram(), other.histogram());
+            let [Distances::Held(one), Distances::Held(other)] =
+                [one.distances(), other.distances()]
+            else {
+                panic!("the distances are not held");
+            };
+            assert!(one == other, "other distances");
+        }
+        (None, None) => {}
+        _ => panic!("one has distances"),
+    }
+    let jumps =
+        |session: &Session| session.graph_built().map(|built| built.graph().jumps().to_vec());
+    assert!(jumps(one) == jumps(other), "another graph");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(4))]
+    #[test]
+    fn graph_of_workers_is_that_of_a_session_without(workers in 1usize..4, seed: u64) {
+        let link = "lab=graph&walk_seconds=10&play=off";
+        let mut alone = opened(link);
+        let mut workers = Workers::new(workers, seed);
+        let mut session = Session::new();
+        session.set_workers(workers.workers.len());
+        session.apply(Command::OpenLink(link.into())).unwrap();
+        workers.settle(&mut session);
+        prop_assert!(workers.run > 3);
+        assert_same(&session, &alone);
+        // Another window from the same products; another threshold from the same distances.
+        for (key, value) in [(Key::BlendWindow, 17.0), (Key::EdgeThreshold, 19.0)] {
+            let before = workers.run;
+            for session in [&mut session, &mut alone] {
+                set(session, key, Value::Number(value));
+            }
+            while alone.work() {}
+            workers.settle(&mut session);
+            prop_assert!(workers.run > before);
+            assert_same(&session, &alone);
+        }
+    }
+
+    #[test]
+    fn registrations_of_workers_are_those_of_a_session_without(workers in 1usize..4, seed: u64) {
+        let made = [1.0, 2.0, 3.0].map(made_bvh_of_12_secs);
+        let open = |session: &mut Session| {
+            let ids: Vec<String> = (made.iter().zip(["x.bvh", "y.bvh", "z.bvh"]))
+                .map(|(bytes, name)| session.load(name, Arc::clone(bytes)).unwrap().ids.remove(0))
+                .collect();
+            let link = format!(
+                "lab=register&play=off&a={}&b={}&warp_also={}:0.3", ids[0], ids[1], ids[2]
+            );
+            session.apply(Command::OpenLink(link)).unwrap();
+        };
+        let mut workers = Workers::new(workers, seed);
+        let (mut alone, mut session) = (Session::new(), Session::new());
+        session.set_workers(workers.workers.len());
+        open(&mut alone);
+        while alone.work() {}
+        open(&mut session);
+        workers.settle(&mut session);
+        prop_assert_eq!(workers.run, 2);
+        assert_same(&session, &alone);
+        for (key, value) in [(Key::RegistrationWindow, 9.0), (Key::SlopeLimit, 3.0)] {
+            for session in [&mut session, &mut alone] {
+                set(session, key, Value::Number(value));
+            }
+            while alone.work() {}
+            workers.settle(&mut session);
+            assert_same(&session, &alone);
+        }
+        prop_assert_eq!(workers.run, 6);
+    }
+}
+
+/// Returns a synthesised walk of 12 seconds as a BVH file.
+fn made_bvh_of_12_secs(seed: f64) -> Arc<[u8]> {
+    let mut session = opened(&format!("lab=make&make_seconds=12&seed={seed}"));
+    session.work();
+    let clip = Arc::clone(session.main_outcome().unwrap().motion.clip());
+    segue_formats::bvh::write(&clip, &segue_formats::bvh::WriteOptions::default())
+        .into_bytes()
+        .into()
+}
+
+#[test]
+fn job_of_a_worker_that_ended_is_done_by_another() {
+    let link = "lab=graph&walk_seconds=10&play=off";
+    let mut workers = Workers::new(2, 1);
+    let mut session = Session::new();
+    session.set_workers(2);
+    session.apply(Command::OpenLink(link.into())).unwrap();
+    while session.work() {}
+    // The first job is lost with its worker; the app keeps it, and gives it to the next one.
+    let lost = session.take_job(0).unwrap();
+    workers.replace(&mut session, 0);
+    assert!(session.is_job_wanted(lost.number));
+    let mut other = Worker::new(1 << 20);
+    workers.ended.push((lost.number, other.run(&lost).unwrap()));
+    workers.settle(&mut session);
+    assert_same(&session, &opened(link));
+}
+
+#[test]
+fn job_that_no_worker_can_run_is_done_by_the_session() {
+    let link = "lab=graph&walk_seconds=10&play=off";
+    let alone = opened(link);
+    for all in [false, true] {
+        let mut session = Session::new();
+        session.set_workers(2);
+        session.apply(Command::OpenLink(link.into())).unwrap();
+        while session.work() {}
+        let job = session.take_job(1).unwrap();
+        if all {
+            // All workers have ended for good.
+            session.set_workers(0);
+        } else {
+            session.finish_job(job.number, None, 0.0);
+        }
+        while session.work() {}
+        assert!(session.take_job(0).is_none());
+        assert_same(&session, &alone);
+    }
+}
+
+#[test]
+fn jobs_for_what_was_left_are_cancelled() {
+    let mut session = Session::new();
+    session.set_workers(1);
+    session.apply(Command::OpenLink("lab=graph&play=off".into())).unwrap();
+    while session.work() {}
+    let job = session.take_job(0).unwrap();
+    assert!(session.has_waiting_jobs() && session.is_job_wanted(job.number));
+    let progress = |session: &Session| session.jobs().first().map(|job| job.progress);
+    let before = progress(&session).unwrap();
+    let answer = Worker::new(0).run(&job).unwrap();
+    session.finish_job(job.number, Some(answer), 0.1);
+    while session.work() {}
+    assert!(progress(&session).unwrap() > before);
+    // Another window: the jobs of the first one are not run.
+    set(&mut session, Key::BlendWindow, Value::Number(12.0));
+    let stale = session.take_job(0).unwrap();
+    while session.work() {}
+    assert!(!session.is_job_wanted(stale.number));
+    let job = session.take_job(0).unwrap();
+    assert!(session.is_job_wanted(job.number) && job.message().unwrap().contains(":12,"));
+    session.apply(Command::OpenLink("lab=view".into())).unwrap();
+    while session.work() {}
+    assert!(!session.has_waiting_jobs() && !session.is_job_wanted(job.number));
+    assert!(session.jobs().is_empty());
+}
+
+#[test]
+fn short_work_is_not_offered() {
+    let mut session = Session::new();
+    session.set_workers(MAX_PANES);
+    for link in ["lab=graph&clips=walk,walk_left&play=off", "lab=register&play=off", "lab=blend"] {
+        session.apply(Command::OpenLink(link.into())).unwrap();
+        while session.work() {}
+        assert!(!session.has_waiting_jobs() && session.main_outcome().is_some(), "{link}");
+    }
+}
+
+#[test]
+fn motion_in_a_parcel_stays_the_same() {
+    let session = opened("lab=view&a=walk");
+    let motion = &session.main_outcome().unwrap().motion;
+    let correction = ContactCorrection { side: Side::Left, frames: 3..9, planted: false };
+    let corrected = Motion::clone(motion)
+        .with_contact_corrections([correction].into_iter().collect())
+        .with_seams(vec![4..7])
+        .declared_cycle(true);
+    let fresh = Motion::with_roles(Arc::clone(motion.clip()), motion.roles());
+    for motion in [Motion::clone(motion), corrected, fresh] {
+        let clip = JobClip { number: 1, motion: Arc::new(motion.clone()) };
+        let parcel = clip.parcel().unwrap();
+        assert!(motion_parcel::unpack(&parcel).unwrap() == motion);
+        // What is torn is refused.
+        let torn = Parcel { floats: parcel.floats[1..].to_vec(), ..parcel.clone() };
+        assert!(motion_parcel::unpack(&torn).is_err());
+        let torn = Parcel { head: parcel.head[1..].to_owned(), ..parcel };
+        assert!(motion_parcel::unpack(&torn).is_err());
+    }
+}
+
+#[test]
+fn answer_that_is_none_is_refused() {
+    let mut session = Session::new();
+    session.set_workers(1);
+    session.apply(Command::OpenLink("lab=graph&play=off".into())).unwrap();
+    while session.work() {}
+    let job = session.take_job(0).unwrap();
+    let parcel = Worker::new(0).run(&job).unwrap().pack().unwrap();
+    assert!(job.answer(parcel.clone()).is_ok());
+    let torn = Parcel { bytes: parcel.bytes[4..].to_vec(), ..parcel.clone() };
+    assert!(job.answer(torn).is_err());
+    assert!(job.answer(Parcel { head: "{}".into(), ..parcel }).is_err());
+    assert!(Worker::new(0).run_message(&job.message().unwrap()).is_err(), "without the clips");
+    assert!(Worker::new(0).run_message("no message").is_err());
+}

@@ -1,0 +1,56 @@
+//! The worker that computes for the page. It contains the algorithms of segue-motion, and nothing of
+//! the app. `web/js/compute.js` calls it.
+
+#[cfg(target_arch = "wasm32")]
+mod worker {
+    use js_sys::{Array, Float32Array, Uint8Array};
+    use segue_session::jobs::{Parcel, Worker};
+    use wasm_bindgen::JsValue;
+    use wasm_bindgen::prelude::wasm_bindgen;
+
+    /// A worker with its clips and its memory.
+    #[wasm_bindgen]
+    #[derive(Debug)]
+    pub struct Computer(Worker);
+
+    #[wasm_bindgen]
+    impl Computer {
+        /// Returns a worker that keeps about `max_bytes` of intermediate results.
+        #[wasm_bindgen(constructor)]
+        pub fn new(max_bytes: f64) -> Self {
+            Self(Worker::new(max_bytes as usize))
+        }
+
+        /// Takes in a clip under a number.
+        #[wasm_bindgen(js_name = takeClip)]
+        pub fn take_clip(
+            &mut self,
+            number: u32,
+            head: String,
+            floats: Vec<f32>,
+            bytes: Vec<u8>,
+        ) -> Result<(), JsValue> {
+            let parcel = Parcel { head, floats, bytes };
+            self.0.take_clip(number, &parcel).map_err(|error| error.to_string().into())
+        }
+
+        /// Drops a clip.
+        #[wasm_bindgen(js_name = dropClip)]
+        pub fn drop_clip(&mut self, number: u32) {
+            self.0.drop_clip(number);
+        }
+
+        /// Runs a job and returns its answer: head, floats, bytes.
+        pub fn run(&mut self, message: &str) -> Result<Array, JsValue> {
+            let answer = self.0.run_message(message).map_err(|error| error.to_string())?;
+            Ok(Array::of3(
+                &JsValue::from(answer.head),
+                &Float32Array::from(&answer.floats[..]),
+                &Uint8Array::from(&answer.bytes[..]),
+            ))
+        }
+    }
+}
+
+/// Natively, the app's own threads compute.
+fn main() {}

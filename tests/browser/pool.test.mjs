@@ -1,0 +1,101 @@
+// Tests of the workers that compute: their results are those of a page without them, and a worker
+// that ends is replaced.
+
+import assert from "node:assert/strict";
+import { onOneBackend } from "./harness.mjs";
+import { striding, until } from "./help.mjs";
+
+const SMALL = { viewport: [800, 600] };
+const GRAPH = "lab=graph&walk_seconds=10&play=off";
+
+/** Waits until nothing is computed, and returns what the page shows. */
+async function result({ segue }) {
+  await segue("set", {});
+  const times = [0, 2.5, 7.1];
+  const poses = [];
+  for (const time of times) poses.push(await segue("pose", "result", time));
+  return { metrics: await segue("metrics"), poses };
+}
+
+const workers = async ({ segue }) => (await segue("stats")).workers;
+
+// Fails when no job goes to a worker, when its result differs in a bit, and when `pool=` becomes a
+// part of the link.
+onOneBackend("results of workers are those of a page without them", async ({ open }) => {
+  const [alone, shared] = [await open(`${GRAPH}&pool=off`, SMALL), await open(`${GRAPH}&pool=2`, SMALL)];
+  assert.deepEqual(await result(shared), await result(alone));
+  const first = await workers(shared);
+  assert.ok(first.jobs >= 3 && first.running === 2 && first.replaced === 0, JSON.stringify(first));
+  for (const values of [{ blend_window: 21 }, { edge_threshold: 19.5 }]) {
+    for (const page of [alone, shared]) await page.segue("set", values);
+    assert.deepEqual(await result(shared), await result(alone), JSON.stringify(values));
+  }
+  assert.ok((await workers(shared)).jobs > first.jobs);
+  assert.deepEqual(await workers(alone), { running: 0, jobs: 0, replaced: 0 });
+  assert.ok(!(await shared.segue("url")).includes("pool"), "it is no part of the link");
+
+  // Registrations, of clips that came from files.
+  for (const { segue, load } of [alone, shared]) {
+    const [a, b] = [await load("a.bvh", striding({ frames: 900, hertz: 0.9 })), await load("b.bvh", striding({ frames: 800, hertz: 1.1, swing: 40 }))];
+    await segue("set", { lab: "register", a: a.clips[0].id, b: b.clips[0].id });
+  }
+  const before = (await workers(shared)).jobs;
+  assert.deepEqual(await result(shared), await result(alone));
+  for (const page of [alone, shared]) await page.segue("set", { registration_window: 11, slope_limit: 3 });
+  assert.deepEqual(await result(shared), await result(alone));
+  assert.ok((await workers(shared)).jobs > before - 1);
+});
+
+// Fails when the jobs of a worker that ended are lost.
+onOneBackend("jobs of a worker that ends are done by another", async ({ open }) => {
+  const alone = await open(`${GRAPH}&pool=off`, SMALL);
+  const shared = await open("lab=view&play=off&pool=2", { ...SMALL, prepare: watchWorkers });
+  await shared.page.evaluate((values) => {
+    // The first job ends its worker.
+    window.endNext = true;
+    return window.segue.set(values);
+  }, { lab: "graph", walk_seconds: 10 });
+  assert.deepEqual(await result(shared), await result(alone));
+  const { replaced, jobs } = await workers(shared);
+  assert.ok(replaced === 1 && jobs >= 3, `${replaced} replaced, ${jobs} jobs`);
+});
+
+// Fails when the page waits for workers that do not come.
+onOneBackend("page whose workers do not start computes by itself", async ({ open }) => {
+  const alone = await open(`${GRAPH}&pool=off`, SMALL);
+  const prepare = (page) => page.route("**/compute_bg.wasm", (route) => route.abort());
+  const shared = await open(`${GRAPH}&pool=2`, { ...SMALL, prepare });
+  assert.deepEqual(await result(shared), await result(alone));
+  assert.deepEqual(await workers(shared), { running: 0, jobs: 0, replaced: 0 });
+});
+
+// Fails when workers go on with what nobody looks at.
+onOneBackend("work for what was left is cancelled", async ({ open }) => {
+  const shared = await open("lab=view&play=off&pool=1", SMALL);
+  const clips = [];
+  for (let i = 0; i < 3; i++) clips.push((await shared.load(`${i}.bvh`, striding({ frames: 1500, hertz: 0.8 + 0.1 * i }))).clips[0].id);
+  await shared.page.evaluate((clips) => { window.segue.set({ lab: "graph", clips, blend_window: 40 }); }, clips.join(","));
+  await until("a job has been done", async () => (await workers(shared)).jobs > 0);
+  await shared.segue("set", { lab: "view" });
+  const left = (await workers(shared)).jobs;
+  assert.deepEqual((await shared.segue("stats")).jobs, []);
+  await shared.page.waitForTimeout(1500);
+  // Those that the worker had already are answered.
+  assert.ok((await workers(shared)).jobs <= left + 2);
+});
+
+/** Makes the page end the worker of the next job when `endNext` is set. */
+function watchWorkers(page) {
+  return page.addInitScript(() => {
+    window.Worker = class extends Worker {
+      postMessage(message, ...rest) {
+        super.postMessage(message, ...rest);
+        if (window.endNext && message.job !== undefined) {
+          window.endNext = false;
+          this.terminate();
+          setTimeout(() => this.dispatchEvent(new ErrorEvent("error", { message: "ended by the test" })));
+        }
+      }
+    };
+  });
+}
