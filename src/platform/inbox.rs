@@ -130,7 +130,13 @@ impl Inbox {
         self.wake();
     }
 
+    /// Takes out the first answer.
+    pub(crate) fn pop(&self) -> Option<Incoming> {
+        self.inner().queue.pop_front()
+    }
+
     /// Takes out all answers, in order of arrival.
+    #[cfg(test)]
     pub(crate) fn take(&self) -> VecDeque<Incoming> {
         std::mem::take(&mut self.inner().queue)
     }

@@ -89,10 +89,22 @@ impl Records {
     /// names may be left out.
     pub(crate) fn read<'a>(texts: impl IntoIterator<Item = (&'a str, &'a str)>) -> Self {
         let (mut records, mut later) = (Self::default(), Vec::new());
-        for (key, text) in texts {
-            let read = if key == LATEST {
-                serde_json::from_str(text).map(|saved| records.saved = Some(saved))
-            } else if clip_id(key).is_some() {
+        let (latest, others): (Vec<_>, Vec<_>) =
+            texts.into_iter().partition(|(key, _)| *key == LATEST);
+        for (_, text) in latest {
+            match serde_json::from_str(text) {
+                Ok(saved) => records.saved = Some(saved),
+                Err(error) => records.problem = Some(error.to_string()),
+            }
+        }
+        let mut ids = records.ids();
+        // A window that is closed may have removed clips, which were then added again.
+        let may_be_newer = others.iter().any(|(key, _)| is_exit_key(key));
+        for (key, text) in others {
+            let read = if let Some(id) = clip_id(key) {
+                if ids.contains(id) && !may_be_newer {
+                    continue;
+                }
                 serde_json::from_str(text).map(|ClipRecord { at_ms, entry }| {
                     later.push((at_ms, LaterRecord::Clip(Box::new(entry))));
                 })
@@ -103,34 +115,34 @@ impl Records {
             } else {
                 Ok(())
             };
-            match read {
-                Err(error) if key == LATEST => records.problem = Some(error.to_string()),
-                Err(error) => log::warn!("stored under `{key}`: {error}"),
-                Ok(()) => {}
+            if let Err(error) = read {
+                log::warn!("stored under `{key}`: {error}");
             }
         }
         later.sort_by(|(one, _), (other, _)| one.total_cmp(other));
         for (_, record) in later {
-            records.add(record);
+            match record {
+                LaterRecord::Clip(entry) => {
+                    if ids.insert(entry.id.clone()) {
+                        let saved = records.saved.as_mut();
+                        saved.map_or(&mut records.loose, |saved| &mut saved.entries).push(*entry);
+                    }
+                }
+                LaterRecord::Exit(known, saved) => {
+                    let mut there = records.saved.take().unwrap_or_default();
+                    there.entries.append(&mut records.loose);
+                    records.saved = Some(saved.with_others_of(&there, &known));
+                    ids = records.ids();
+                }
+            }
         }
         records
     }
 
-    fn add(&mut self, record: LaterRecord) {
-        match record {
-            LaterRecord::Clip(entry) => {
-                let entries =
-                    self.saved.as_mut().map_or(&mut self.loose, |saved| &mut saved.entries);
-                if entries.iter().all(|there| there.id != entry.id) {
-                    entries.push(*entry);
-                }
-            }
-            LaterRecord::Exit(known, saved) => {
-                let mut there = self.saved.take().unwrap_or_default();
-                there.entries.append(&mut self.loose);
-                self.saved = Some(saved.with_others_of(&there, &known));
-            }
-        }
+    /// Returns the ids of all clips.
+    fn ids(&self) -> BTreeSet<String> {
+        let saved = self.saved.iter().flat_map(|saved| &saved.entries);
+        saved.chain(&self.loose).map(|entry| entry.id.clone()).collect()
     }
 
     /// Returns the work with the loose clips.
@@ -216,6 +228,16 @@ mod tests {
             (all.query.as_str(), ids(&all.entries)),
             ("t=2", vec!["b", "c", "theirs", "later"])
         );
+    }
+
+    #[test]
+    fn clip_that_was_added_again_after_an_exit_record_is_there() {
+        let records = read(&[
+            latest(&saved("t=1", &["a", "b"])),
+            exit_record(10.0, saved("t=2", &["b"]), &["a", "b"]),
+            clip_record(20.0, "a"),
+        ]);
+        assert_eq!(ids(&records.saved.unwrap().entries), ["b", "a"]);
     }
 
     #[test]
