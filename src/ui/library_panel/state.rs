@@ -1,6 +1,8 @@
 //! The state of the library between frames.
 
+use super::arrange::{Arranged, RowHeights};
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// The order of the clips in the list.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -12,6 +14,8 @@ pub(crate) enum ClipOrder {
     Name,
     /// By length, the shortest first.
     Length,
+    /// By mean speed over the ground, the slowest first.
+    Speed,
 }
 
 /// The state of the library: what is searched, folded and selected.
@@ -31,6 +35,12 @@ pub(crate) struct LibraryState {
     pub(super) is_shown: bool,
     /// Whether the list was shown in the last frame.
     pub(super) was_shown: bool,
+    /// The list as it was arranged last.
+    pub(super) arranged: Option<Arc<Arranged>>,
+    /// The heights of its rows.
+    pub(super) heights: RowHeights,
+    /// The id of the clip whose row has the focus.
+    pub(super) focused: Option<String>,
 }
 
 /// The keys that are held during a click.
