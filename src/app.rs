@@ -239,20 +239,20 @@ impl Segue {
             self.session.work_took((platform::now_ms() - began_ms) / 1e3);
             more = more || self.picture.work();
         }
-        more = more || is_converting;
+        more = more || is_converting || !self.inbox.is_empty();
         self.clock.left_work = more.then_some(now_ms);
         // The work may have made new requests.
         self.send_requests();
         more
     }
 
-    /// Takes in the answers of the platform. Files that were read wait for the next frame once that
-    /// has taken [`MAX_RECEIVING_MS`].
+    /// Takes in the answers of the platform. Those of files wait for the next frame once that has
+    /// taken [`MAX_RECEIVING_MS`].
     fn receive_all(&mut self) {
         let began_ms = platform::now_ms();
         while let Some(incoming) = self.inbox.pop() {
             // What follows from several files is computed once.
-            let is_of_file = matches!(incoming, Incoming::Reading { .. });
+            let is_of_file = matches!(incoming, Incoming::Reading { .. } | Incoming::Large { .. });
             if is_of_file {
                 self.session.hold();
             } else {

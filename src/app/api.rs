@@ -154,6 +154,7 @@ impl Segue {
     /// that is being read.
     pub(crate) fn is_loading(&mut self) -> bool {
         self.is_restoring()
+            || !self.inbox.is_empty()
             || !self.downloads.is_empty()
             || !self.session.awaited_samples().is_empty()
             || self.session.is_reading_any()

@@ -88,7 +88,17 @@ impl Records {
     /// Reads and merges texts, each with its key. Records of clips that the record of all work
     /// names may be left out.
     pub(crate) fn read<'a>(texts: impl IntoIterator<Item = (&'a str, &'a str)>) -> Self {
-        let (mut records, mut later) = (Self::default(), Vec::new());
+        Self::read_over(None, texts)
+    }
+
+    /// Reads and merges texts as [`Self::read`] does, over a record of all work that is known
+    /// already and not among them.
+    pub(crate) fn read_over<'a>(
+        known: Option<Saved>,
+        texts: impl IntoIterator<Item = (&'a str, &'a str)>,
+    ) -> Self {
+        let mut records = Self { saved: known, ..Self::default() };
+        let mut later = Vec::new();
         let (latest, others): (Vec<_>, Vec<_>) =
             texts.into_iter().partition(|(key, _)| *key == LATEST);
         for (_, text) in latest {
@@ -238,6 +248,17 @@ mod tests {
             clip_record(20.0, "a"),
         ]);
         assert_eq!(ids(&records.saved.unwrap().entries), ["b", "a"]);
+    }
+
+    #[test]
+    fn texts_are_merged_over_a_known_record() {
+        let known = saved("t=1", &["a"]);
+        let texts = [clip_record(8.0, "c"), clip_record(7.0, "a")];
+        let merged = |known, texts: &[(String, String)]| {
+            Records::read_over(known, texts.iter().map(|(key, text)| (key.as_str(), text.as_str())))
+        };
+        let all = [&[latest(&known)], &texts[..]].concat();
+        assert_eq!(merged(Some(known), &texts), read(&all));
     }
 
     #[test]

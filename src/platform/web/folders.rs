@@ -76,7 +76,7 @@ async fn motion_files(folder: FileSystemEntry) -> Result<Vec<(String, File)>, Js
     while let Some(entry) = waiting.pop() {
         if entry.is_directory() {
             let mut children = children_of(entry.unchecked_ref()).await?;
-            children.sort_by_key(FileSystemEntry::name);
+            children.sort_by_cached_key(FileSystemEntry::name);
             waiting.extend(children.into_iter().rev());
         } else if is_motion_file(&entry.name()) {
             files.push((path_of(&entry), file_of(entry).await?));

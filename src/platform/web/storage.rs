@@ -17,7 +17,7 @@ use idb::{
     TransactionResult,
 };
 use js_sys::{Date, Math, Object, Reflect, Uint8Array};
-use segue_session::{SavedEntry, StorageState};
+use segue_session::{Saved, SavedEntry, StorageState};
 use segue_text::{Message, msg};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -79,6 +79,9 @@ struct State {
     channel: Option<BroadcastChannel>,
     /// The random name of this window.
     window: String,
+    /// The record of all work as this window wrote it last, with its text: while it is the stored
+    /// one, it need not be read.
+    written: Option<(String, Saved)>,
 }
 
 /// The reason why something was not written.
@@ -369,6 +372,10 @@ impl Storage {
             (works.get(JsValue::from(LATEST))?, works.get_all_keys(None, None)?);
         let held = files.get_all_keys(None, None)?;
         let latest = latest.await?.and_then(|text| text.as_string());
+        let written = self.state.borrow_mut().written.take();
+        let known = written.filter(|(text, _)| Some(text) == latest.as_ref());
+        let known = known.map(|(_, saved)| saved);
+        let latest = latest.filter(|_| known.is_none());
         let (work_keys, held) = (keys_of(work_keys.await?), keys_of(held.await?));
         let mut texts: Vec<(&str, String)> =
             latest.map(|text| (LATEST, text)).into_iter().collect();
@@ -382,7 +389,8 @@ impl Storage {
                 texts.push((key, text));
             }
         }
-        let records = Records::read(texts.iter().map(|(key, text)| (*key, text.as_str())));
+        let texts_by_key = texts.iter().map(|(key, text)| (*key, text.as_str()));
+        let records = Records::read_over(known, texts_by_key);
         let mut some_are_unread = work_keys.iter().any(|key| is_unread_key(key));
         if let (Some(problem), Some((_, text))) = (&records.problem, texts.first()) {
             log::warn!("the stored work cannot be read and is kept: {problem}");
@@ -391,7 +399,8 @@ impl Storage {
         }
         let there = records.all();
         let all = work.over(&there, |sha256| held.contains(sha256));
-        works.put(&JsValue::from(text_of(&all)?), Some(&JsValue::from(LATEST)))?;
+        let text = text_of(&all)?;
+        works.put(&JsValue::from(&text), Some(&JsValue::from(LATEST)))?;
         let clip_records: BTreeMap<String, &SavedEntry> =
             (all.entries.iter().filter(|entry| entry.file.is_some()))
                 .map(|entry| (clip_key(&entry.id), entry))
@@ -417,6 +426,7 @@ impl Storage {
             freed = true;
         }
         committed((transaction.commit()?, watched)).await?;
+        self.state.borrow_mut().written = Some((text, all));
         Ok(freed)
     }
 
