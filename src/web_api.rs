@@ -448,8 +448,15 @@ impl SegueHandle {
 
     /// Waits until results that wait for clips to be read again are computed.
     async fn results_read(&self) -> Result<(), JsValue> {
-        let awaits = self.borrow()?.awaits_clips();
-        if awaits { self.settled().await } else { Ok(()) }
+        if !self.borrow()?.awaits_clips() {
+            return Ok(());
+        }
+        while self.borrow()?.awaits_clips() {
+            sleep(5).await;
+            // A hidden page has no frames that would poll.
+            self.borrow_mut()?.poll();
+        }
+        self.settled().await
     }
 
     /// Waits until the stored work is restored, or no longer expected.
