@@ -22,7 +22,7 @@ pub(crate) use address_bar::{link_query, link_query_for_others};
 pub(crate) use events::Event;
 pub(crate) use view::View;
 
-use crate::platform::{self, Inbox, LargeFileStore, Pool, Reader, Storage};
+use crate::platform::{self, Inbox, Incoming, LargeFile, LargeFileStore, Pool, Reader, Storage};
 use crate::ui::{self, CurveCache, UiState};
 use address_bar::AddressBar;
 use api::{ApiError, LoadedClips};
@@ -35,7 +35,7 @@ use picture::Picture;
 #[cfg(target_arch = "wasm32")]
 use segue_session::StorageState;
 use segue_session::{
-    Command, CommandError, Key, Lesson, Level, PlaybackCommand, Session, Value, link,
+    Command, CommandError, Job, Key, Lesson, Level, PlaybackCommand, Session, Value, link,
 };
 use segue_text::ToMessage;
 use std::cell::RefCell;
@@ -50,6 +50,10 @@ const MIN_WORK_MS: f64 = 5.0;
 const WORK_SHARE: f64 = 0.25;
 /// The longest time limit for sliced work in a frame, milliseconds.
 const MAX_WORK_MS: f64 = 60.0;
+/// The time limit for taking in files that were read in a frame, milliseconds.
+const MAX_RECEIVING_MS: f64 = 8.0;
+/// The most memory of motions that nothing uses, bytes: about 20 minutes at 120 frames a second.
+const MAX_IDLE_BYTES: u64 = 128_000_000;
 /// The longest step of the playhead, seconds. After a longer pause, such as that of a page in the
 /// background, the playhead does not jump ahead.
 const MAX_STEP_SECS: f64 = 0.25;
@@ -66,6 +70,9 @@ pub(crate) struct Segue {
     reader: Reader,
     pool: Pool,
     large_files: LargeFileStore,
+    /// The bytes of the file that was read last, by its task, if they are to be stored instead of
+    /// the browser's handle.
+    unstored: Option<(u64, LargeFile)>,
     /// The results of the files that the page's API has loaded, by task; `None` while a file is
     /// being read.
     read: BTreeMap<u64, Option<Result<LoadedClips, ApiError>>>,
@@ -145,6 +152,7 @@ impl Segue {
         } else {
             Session::new()
         };
+        session.limit_idle_motions(MAX_IDLE_BYTES);
         session.set_workers(pool.size());
         Self {
             session,
@@ -152,6 +160,7 @@ impl Segue {
             autosave: Autosave::new(storage, link, now_ms),
             reader: Reader::new(&inbox),
             large_files: LargeFileStore::default(),
+            unstored: None,
             read: BTreeMap::new(),
             inbox,
             address: AddressBar::default(),
@@ -211,9 +220,7 @@ impl Segue {
     /// limited time. Returns whether there is more to do.
     pub(crate) fn poll(&mut self) -> bool {
         platform::update_memory(&mut self.reader, &mut self.session);
-        for incoming in self.inbox.take() {
-            self.receive(incoming);
-        }
+        self.receive_all();
         let now_ms = platform::now_ms();
         if self.autosave.begin_if_overdue(&mut self.session, &mut self.large_files, now_ms) {
             self.address.sync_from_session(&self.session);
@@ -237,17 +244,39 @@ impl Segue {
             more = more || self.picture.work();
         }
         let has_begun = self.frame_stats.count() > 0;
-        more = self.pool.exchange(&mut self.session, has_begun) || more || is_converting;
+        more = self.pool.exchange(&mut self.session, has_begun) || more;
+        more = more || is_converting || !self.inbox.is_empty();
         self.clock.left_work = more.then_some(now_ms);
         // The work may have made new requests.
         self.send_requests();
         more
     }
 
+    /// Takes in the answers of the platform. Those of files wait for the next frame once that has
+    /// taken [`MAX_RECEIVING_MS`].
+    fn receive_all(&mut self) {
+        let began_ms = platform::now_ms();
+        while let Some(incoming) = self.inbox.pop() {
+            // What follows from several files is computed once.
+            let is_of_file = matches!(incoming, Incoming::Reading { .. } | Incoming::Large { .. });
+            if is_of_file {
+                self.session.hold();
+            } else {
+                self.session.release();
+            }
+            self.receive(incoming);
+            if is_of_file && platform::now_ms() - began_ms > MAX_RECEIVING_MS {
+                self.inbox.wake();
+                break;
+            }
+        }
+        self.session.release();
+    }
+
     /// Returns whether something is under way that soon changes what is shown. A large file that a
     /// worker reads does not count.
     pub(crate) fn is_busy(&self) -> bool {
-        let soon = self.session.jobs().iter().any(|job| job.task.is_none())
+        let soon = self.session.jobs().iter().any(Job::is_computed)
             || matches!(self.session.lesson(), Some(Lesson::Waiting));
         self.autosave.is_waiting()
             || !self.downloads.is_empty()

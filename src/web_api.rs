@@ -14,12 +14,10 @@ use crate::platform::{
 use eframe::WebRunner;
 use eframe::egui::Modifiers;
 use js_sys::{Error, Function, Uint8Array};
-use segue_session::reading::LARGE_BYTES;
 use serde::Serialize;
 use serde_wasm_bindgen::Serializer;
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
-use std::sync::Arc;
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 use wasm_bindgen_futures::spawn_local;
@@ -213,13 +211,10 @@ impl SegueHandle {
     /// Reads a file, as if it were dropped on the page.
     pub async fn load(&self, name: String, bytes: Uint8Array) -> Result<JsValue, JsValue> {
         self.opened().await?;
-        let file = if u64::from(bytes.length()) > LARGE_BYTES {
-            let large = LargeFile::of_bytes(&bytes)
-                .ok_or_else(|| error(format!("{name}: this browser has no room for the file")))?;
-            FileBytes::Large(large)
-        } else {
-            FileBytes::Here(Arc::from(bytes.to_vec()))
-        };
+        // The browser holds it, so that the app's memory has no copy.
+        let large = LargeFile::of_bytes(&bytes)
+            .ok_or_else(|| error(format!("{name}: this browser has no room for the file")))?;
+        let file = FileBytes::Large(large);
         let task = self.borrow_mut()?.load_in_background(&name, file);
         self.changed();
         while self.borrow()?.is_reading(task) {
@@ -312,13 +307,15 @@ impl SegueHandle {
     }
 
     /// Returns a pose in the world; `which` is a clip's id, `result`, or `result:1` for the second
-    /// pane.
-    pub fn pose(&self, which: &str, seconds: f64) -> Result<JsValue, JsValue> {
-        to_js(&self.borrow()?.pose(which, seconds).map_err(error)?)
+    /// pane. A clip whose motion is not in memory is read first.
+    pub async fn pose(&self, which: String, seconds: f64) -> Result<JsValue, JsValue> {
+        self.read(&which).await?;
+        to_js(&self.borrow()?.pose(&which, seconds).map_err(error)?)
     }
 
-    /// Returns the metrics of the results by their names.
-    pub fn metrics(&self) -> Result<JsValue, JsValue> {
+    /// Returns the metrics of the results by their names, once the clips are read that they need.
+    pub async fn metrics(&self) -> Result<JsValue, JsValue> {
+        self.results_read().await?;
         to_js(&self.borrow()?.metrics().map_err(error)?)
     }
 
@@ -328,18 +325,18 @@ impl SegueHandle {
     }
 
     /// Returns a motion as the bytes of a file. A GLB file has the body that `body` names:
-    /// "character" or "plain".
-    #[expect(clippy::needless_pass_by_value, reason = "wasm-bindgen hands over what it has made")]
+    /// "character" or "plain". A clip whose motion is not in memory is read first.
     #[wasm_bindgen(js_name = exportClip)]
-    pub fn export_clip(
+    pub async fn export_clip(
         &self,
-        which: &str,
-        format: &str,
+        which: String,
+        format: String,
         body: Option<String>,
     ) -> Result<Vec<u8>, JsValue> {
+        self.read(&which).await?;
         Ok(self
             .borrow()?
-            .export(which, format, body.as_deref())
+            .export(&which, &format, body.as_deref())
             .map_err(|reason| error(format!("export: {reason}")))?
             .bytes)
     }
@@ -435,6 +432,34 @@ impl SegueHandle {
         if let Ok(mut segue) = self.segue.try_borrow_mut() {
             report_events(&self.listener, segue.take_events());
         }
+    }
+
+    /// Reads the motion of a clip if it is not in memory, and waits for it; a result waits for the
+    /// clips that it is made of.
+    async fn read(&self, which: &str) -> Result<(), JsValue> {
+        let is_asked = self.borrow_mut()?.read_clip(which);
+        if !is_asked {
+            return self.results_read().await;
+        }
+        while self.borrow()?.is_reading_clip(which) {
+            sleep(5).await;
+            // A hidden page has no frames that would poll.
+            self.borrow_mut()?.poll();
+        }
+        Ok(())
+    }
+
+    /// Waits until results that wait for clips to be read again are computed.
+    async fn results_read(&self) -> Result<(), JsValue> {
+        if !self.borrow()?.awaits_clips() {
+            return Ok(());
+        }
+        while self.borrow()?.awaits_clips() {
+            sleep(5).await;
+            // A hidden page has no frames that would poll.
+            self.borrow_mut()?.poll();
+        }
+        self.settled().await
     }
 
     /// Waits until the stored work is restored, or no longer expected.

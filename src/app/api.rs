@@ -25,13 +25,16 @@ use segue_session::metrics::MetricId;
 use segue_session::outside;
 use segue_session::reading::Content;
 use segue_session::{
-    ClipInfo, Command, CommandError, FileCommand, Key, Kind, List, LoadedFile, NoResult, PARAMS,
-    Pane, PaneResult, Param, PlaybackCommand, ReportFacts, Value, check_graph_clips, file_stem,
-    frame_at, report,
+    ClipInfo, Command, CommandError, FileCommand, Key, Kind, LabError, List, LoadedFile, NoResult,
+    PARAMS, Pane, PaneResult, Param, PlaybackCommand, ReportFacts, Value, check_graph_clips,
+    file_stem, frame_at, report,
 };
 use serde_json::{Map, Value as Json};
 use std::collections::BTreeMap;
 use std::sync::Arc;
+
+/// The name of the job of many files that are read, by which they are stopped together.
+const FILES: &str = "files";
 
 /// A motion that a call of the API names.
 enum Subject<'a> {
@@ -151,9 +154,34 @@ impl Segue {
     /// that is being read.
     pub(crate) fn is_loading(&mut self) -> bool {
         self.is_restoring()
+            || !self.inbox.is_empty()
             || !self.downloads.is_empty()
             || !self.session.awaited_samples().is_empty()
             || self.session.is_reading_any()
+    }
+
+    /// Has the motion of a clip read that is not in memory. Returns whether it has to be waited for.
+    pub(crate) fn read_clip(&mut self, which: &str) -> bool {
+        let entry = self.session.library().find(which).filter(|_| pane_number(which).is_none());
+        let Some(id) = entry.filter(|entry| entry.motion.is_none()).map(|entry| entry.id.clone())
+        else {
+            return false;
+        };
+        // A notice says why a file cannot be read; the call then finds no motion.
+        self.dispatch(Command::File(FileCommand::Read(id)));
+        self.poll();
+        self.is_reading_clip(which)
+    }
+
+    /// Returns whether the motion of a clip is still being read.
+    pub(crate) fn is_reading_clip(&self, which: &str) -> bool {
+        self.session.is_reading_clip(which)
+    }
+
+    /// Returns whether a result waits for the motion of a clip that is being read.
+    pub(crate) fn awaits_clips(&self) -> bool {
+        let waits = |pane: &Pane| matches!(pane.problem, Some(LabError::Reading { .. }));
+        self.session.panes().iter().any(waits)
     }
 
     /// Returns whether a task is still reading its file.
@@ -164,13 +192,10 @@ impl Segue {
     /// Stops reading or fetching the file of that name, which may be a lesson's.
     pub(crate) fn stop(&mut self, name: &str) -> Result<(), ApiError> {
         let name = outside::file_name(name);
-        let reading = self
-            .session
-            .jobs()
-            .into_iter()
-            .find(|job| job.kind.name() == name && job.task.is_some());
-        if let Some(task) = reading.and_then(|job| job.task) {
+        if let Some(task) = self.session.task_of(&name) {
             self.dispatch(Command::File(FileCommand::StopReading(task)));
+        } else if name == FILES && self.session.is_reading_new() {
+            self.dispatch(Command::File(FileCommand::StopReadingNew));
         } else if self.downloads.under_way().any(|(fetched, _)| fetched == name)
             || self.downloads.lessons_under_way().any(|lesson| lesson == name)
         {

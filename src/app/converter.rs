@@ -7,7 +7,7 @@ use crate::ui::{ConvertAction, ConvertShown};
 use segue_session::convert::{Conversion, ConversionRow, ConvertOptions, TargetRig};
 use segue_session::export::ExportOptions;
 use segue_session::reading::{Companion, Content, ReadSetup, ReadTask};
-use segue_session::{Level, Session, Slot};
+use segue_session::{Command, FileCommand, Level, Origin, Session, Slot};
 use segue_text::{Message, ToMessage as _, msg};
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -87,6 +87,8 @@ impl Converter {
                 current.done = done;
                 return;
             }
+            // What is converted is not stored.
+            ReadEvent::Bytes(_) => return,
             ReadEvent::NoRoom(_) => Err("there is no room for the file".into()),
             ReadEvent::Done(report) => report.map_err(|error| error.to_message()),
         };
@@ -149,11 +151,20 @@ impl Converter {
         (true, None)
     }
 
+    /// Returns the clip that is next if its motion is not in memory and can be read again.
+    fn awaited_clip(&self, session: &Session) -> Option<String> {
+        self.run.as_ref().filter(|run| run.current.is_none())?;
+        let Some(Item::Clip { id }) = self.waiting.front() else { return None };
+        let entry = session.library().find(id)?;
+        let can_be_read = matches!(entry.origin, Origin::File(_)) && entry.is_known();
+        (entry.motion.is_none() && can_be_read).then(|| entry.id.clone())
+    }
+
     /// Stops, and returns the archive of what is done.
     fn stop(&mut self, reader: &mut Reader) -> Option<Vec<u8>> {
         let run = self.run.as_mut()?;
         if let Some(current) = run.current.take() {
-            reader.stop(current.task);
+            reader.stop(&[current.task].into());
             run.conversion.fail(&current.name, stopped());
         }
         for item in self.waiting.drain(..) {
@@ -244,6 +255,14 @@ impl Segue {
     /// Begins with the next file when the one before is done, and saves the archive after the last.
     /// Returns whether there is more to do at once.
     pub(super) fn advance_conversion(&mut self) -> bool {
+        if let Some(id) = self.converter.awaited_clip(&self.session) {
+            if !self.session.is_reading_clip(&id) {
+                self.dispatch(Command::File(FileCommand::Read(id.clone())));
+            }
+            if self.session.is_reading_clip(&id) {
+                return false;
+            }
+        }
         let (more, archive) = self.converter.advance(&self.session, &mut self.reader);
         self.save_archive(archive);
         more

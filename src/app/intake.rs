@@ -9,6 +9,7 @@ use crate::ui;
 use segue_session::reading::Content;
 use segue_session::{Command, Key, Level, List, Request};
 use segue_text::{Message, ToMessage, msg};
+use std::collections::BTreeSet;
 
 impl Segue {
     /// Takes in an answer of the platform.
@@ -137,9 +138,15 @@ impl Segue {
         if Converter::is_own(task) {
             return self.converter.on_read_event(task, event);
         }
-        if let ReadEvent::Progress(done) = event {
-            return self.session.progress_reading(task, done);
-        }
+        let event = match event {
+            ReadEvent::Progress(done) => return self.session.progress_reading(task, done),
+            ReadEvent::Bytes(bytes) => {
+                self.unstored = Some((task, bytes));
+                return;
+            }
+            event => event,
+        };
+        let bytes = self.unstored.take().filter(|(of, _)| *of == task).map(|(_, bytes)| bytes);
         let brings_clips = self.session.brings_clips(task);
         if let Some(key) = self.session.reading_key(task).map(str::to_owned) {
             match &event {
@@ -155,7 +162,7 @@ impl Segue {
             }
         }
         let result = match event {
-            ReadEvent::Progress(_) => None,
+            ReadEvent::Progress(_) | ReadEvent::Bytes(_) => None,
             ReadEvent::NoRoom(needed) => self.session.refuse_for_memory(task, needed),
             ReadEvent::Done(report) => {
                 self.session.finish_reading(task, report.map_err(|error| error.to_message()))
@@ -163,7 +170,13 @@ impl Segue {
         };
         let Some(result) = result else { return };
         if let (true, Ok(loaded)) = (brings_clips, &result) {
-            self.autosave.store_clips(&self.session, &self.large_files, &loaded.ids);
+            let bytes = bytes.map(FileBytes::Large);
+            self.autosave.store_clips(&self.session, &self.large_files, &loaded.ids, bytes);
+            if platform::READS_IN_BACKGROUND {
+                for (sha256, bytes) in self.session.move_bytes_outside(&loaded.ids) {
+                    self.large_files.insert_as(sha256, platform::outside_memory(bytes));
+                }
+            }
         }
         if self.read.contains_key(&task) {
             let result = result.map(|loaded| self.loaded_clips(&loaded));
@@ -179,7 +192,9 @@ impl Segue {
             self.session.load(name, bytes)
         };
         match loaded {
-            Ok(loaded) => self.autosave.store_clips(&self.session, &self.large_files, &loaded.ids),
+            Ok(loaded) => {
+                self.autosave.store_clips(&self.session, &self.large_files, &loaded.ids, None);
+            }
             Err(error) => log::info!("{name} was not loaded: {error}"),
         }
     }
@@ -187,6 +202,7 @@ impl Segue {
     /// Sends the session's requests to the platform, and stops fetching files that the link no
     /// longer names.
     pub(super) fn send_requests(&mut self) {
+        let mut stopped = BTreeSet::new();
         for request in self.session.take_requests() {
             match request {
                 Request::Sample(sample) => platform::load_sample(sample, &self.inbox),
@@ -203,12 +219,15 @@ impl Segue {
                     }
                 }
                 Request::StopReading { task, forget } => {
-                    self.reader.stop(task);
+                    stopped.insert(task);
                     if let Some(key) = forget {
                         self.large_files.remove(&key);
                     }
                 }
             }
+        }
+        if !stopped.is_empty() {
+            self.reader.stop(&stopped);
         }
         let wanted = self.session.params().source_addresses();
         self.downloads.keep_only(|address| wanted.iter().any(|source| source == address));

@@ -10,17 +10,24 @@ use std::sync::Arc;
 pub(crate) enum FileBytes {
     /// A small file in memory.
     Here(Arc<[u8]>),
-    /// A large file that the platform holds.
+    /// A file that the platform holds.
     Large(LargeFile),
+}
+
+impl FileBytes {
+    /// Returns whether only the storage has them.
+    pub(crate) fn is_stored(&self) -> bool {
+        matches!(self, Self::Large(file) if file.is_stored())
+    }
 }
 
 /// The files of stored work, by the SHA-256 of their bytes in hexadecimal.
 pub(crate) type StoredFiles = BTreeMap<String, FileBytes>;
 
-/// A store of the large files, to which the document refers by keys.
+/// A store of the files that are outside of the document, which refers to them by keys.
 #[derive(Debug, Default)]
 pub(crate) struct LargeFileStore {
-    files: BTreeMap<String, LargeFile>,
+    files: BTreeMap<String, FileBytes>,
     inserted: u64,
 }
 
@@ -30,8 +37,13 @@ impl LargeFileStore {
         self.inserted += 1;
         // A SHA-256 contains no space, so the keys are distinct.
         let key = format!("file {}", self.inserted);
-        self.files.insert(key.clone(), file);
+        self.files.insert(key.clone(), FileBytes::Large(file));
         key
+    }
+
+    /// Adds the file of that SHA-256.
+    pub(crate) fn insert_as(&mut self, sha256: String, bytes: FileBytes) {
+        self.files.insert(sha256, bytes);
     }
 
     /// Makes its SHA-256 the key of a file that was read.
@@ -52,7 +64,7 @@ impl LargeFileStore {
         Some(match stored.get(sha256)? {
             FileBytes::Here(bytes) => Content::Here(bytes.clone()),
             FileBytes::Large(file) => {
-                self.files.insert(sha256.to_owned(), file.clone());
+                self.files.insert(sha256.to_owned(), FileBytes::Large(file.clone()));
                 Content::Outside(sha256.to_owned())
             }
         })
@@ -62,7 +74,7 @@ impl LargeFileStore {
     pub(crate) fn bytes_of(&self, content: &Content) -> Option<FileBytes> {
         match content {
             Content::Here(bytes) => Some(FileBytes::Here(bytes.clone())),
-            Content::Outside(key) => self.files.get(key).cloned().map(FileBytes::Large),
+            Content::Outside(key) => self.files.get(key).cloned(),
         }
     }
 }

@@ -130,7 +130,18 @@ impl Inbox {
         self.wake();
     }
 
+    /// Returns whether there are no answers.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.inner().queue.is_empty()
+    }
+
+    /// Takes out the first answer.
+    pub(crate) fn pop(&self) -> Option<Incoming> {
+        self.inner().queue.pop_front()
+    }
+
     /// Takes out all answers, in order of arrival.
+    #[cfg(test)]
     pub(crate) fn take(&self) -> VecDeque<Incoming> {
         std::mem::take(&mut self.inner().queue)
     }

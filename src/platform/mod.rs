@@ -4,6 +4,8 @@
 //! Answers that take time come through an [`Inbox`], which the app empties before each frame.
 
 mod address;
+#[cfg(any(test, target_arch = "wasm32"))]
+mod begun;
 mod file_bytes;
 mod gamepad;
 #[cfg_attr(

@@ -13,9 +13,6 @@ pub(super) fn endings() -> Vec<&'static str> {
     [&MOTION_ENDINGS[..], &ARCHIVE_ENDINGS].concat()
 }
 
-/// The greatest number of files that are read from a folder, the same as from an archive.
-pub(super) const MAX_FILES_OF_FOLDER: usize = segue_formats::archive::MAX_FILES;
-
 /// Returns the refusal of a file with more than `max` bytes; `None` for a smaller one.
 pub(super) fn too_large(name: &str, bytes: u64, max: u64) -> Option<Message> {
     (bytes > max).then(|| {
@@ -44,15 +41,6 @@ pub(super) fn is_motion_file(name: &str) -> bool {
 pub(super) fn no_motion_in(folder: &str) -> Message {
     let endings: Vec<String> = endings().iter().map(|ending| format!(".{ending}")).collect();
     msg!("{folder} has no motion files ({endings}).", folder = folder.to_owned(), endings)
-}
-
-/// Returns the notice about a folder with more files than are read.
-pub(super) fn too_many_in(folder: &str) -> Message {
-    msg!(
-        "{folder} has more than {most} motion files: the first {most} are read.",
-        folder = folder.to_owned(),
-        most = MAX_FILES_OF_FOLDER
-    )
 }
 
 /// Returns the first few of several names, and the number of the others:

@@ -1,5 +1,6 @@
 //! Events of files that a thread or worker reads.
 
+use super::LargeFile;
 use segue_session::reading::ReadReport;
 use segue_text::{Message, ToMessage};
 
@@ -8,6 +9,12 @@ use segue_text::{Message, ToMessage};
 pub(crate) enum ReadEvent {
     /// The number of bytes that are read.
     Progress(u64),
+    /// The bytes of a small new file, to be stored.
+    #[cfg_attr(
+        not(target_arch = "wasm32"),
+        expect(dead_code, reason = "a window has the bytes of its files")
+    )]
+    Bytes(LargeFile),
     /// There is no memory for the report; the number of bytes that it needs.
     NoRoom(u64),
     /// The end of the task.

@@ -88,11 +88,33 @@ impl Records {
     /// Reads and merges texts, each with its key. Records of clips that the record of all work
     /// names may be left out.
     pub(crate) fn read<'a>(texts: impl IntoIterator<Item = (&'a str, &'a str)>) -> Self {
-        let (mut records, mut later) = (Self::default(), Vec::new());
-        for (key, text) in texts {
-            let read = if key == LATEST {
-                serde_json::from_str(text).map(|saved| records.saved = Some(saved))
-            } else if clip_id(key).is_some() {
+        Self::read_over(None, texts)
+    }
+
+    /// Reads and merges texts as [`Self::read`] does, over a record of all work that is known
+    /// already and not among them.
+    pub(crate) fn read_over<'a>(
+        known: Option<Saved>,
+        texts: impl IntoIterator<Item = (&'a str, &'a str)>,
+    ) -> Self {
+        let mut records = Self { saved: known, ..Self::default() };
+        let mut later = Vec::new();
+        let (latest, others): (Vec<_>, Vec<_>) =
+            texts.into_iter().partition(|(key, _)| *key == LATEST);
+        for (_, text) in latest {
+            match serde_json::from_str(text) {
+                Ok(saved) => records.saved = Some(saved),
+                Err(error) => records.problem = Some(error.to_string()),
+            }
+        }
+        let mut ids = records.ids();
+        // A window that is closed may have removed clips, which were then added again.
+        let may_be_newer = others.iter().any(|(key, _)| is_exit_key(key));
+        for (key, text) in others {
+            let read = if let Some(id) = clip_id(key) {
+                if ids.contains(id) && !may_be_newer {
+                    continue;
+                }
                 serde_json::from_str(text).map(|ClipRecord { at_ms, entry }| {
                     later.push((at_ms, LaterRecord::Clip(Box::new(entry))));
                 })
@@ -103,34 +125,34 @@ impl Records {
             } else {
                 Ok(())
             };
-            match read {
-                Err(error) if key == LATEST => records.problem = Some(error.to_string()),
-                Err(error) => log::warn!("stored under `{key}`: {error}"),
-                Ok(()) => {}
+            if let Err(error) = read {
+                log::warn!("stored under `{key}`: {error}");
             }
         }
         later.sort_by(|(one, _), (other, _)| one.total_cmp(other));
         for (_, record) in later {
-            records.add(record);
+            match record {
+                LaterRecord::Clip(entry) => {
+                    if ids.insert(entry.id.clone()) {
+                        let saved = records.saved.as_mut();
+                        saved.map_or(&mut records.loose, |saved| &mut saved.entries).push(*entry);
+                    }
+                }
+                LaterRecord::Exit(known, saved) => {
+                    let mut there = records.saved.take().unwrap_or_default();
+                    there.entries.append(&mut records.loose);
+                    records.saved = Some(saved.with_others_of(&there, &known));
+                    ids = records.ids();
+                }
+            }
         }
         records
     }
 
-    fn add(&mut self, record: LaterRecord) {
-        match record {
-            LaterRecord::Clip(entry) => {
-                let entries =
-                    self.saved.as_mut().map_or(&mut self.loose, |saved| &mut saved.entries);
-                if entries.iter().all(|there| there.id != entry.id) {
-                    entries.push(*entry);
-                }
-            }
-            LaterRecord::Exit(known, saved) => {
-                let mut there = self.saved.take().unwrap_or_default();
-                there.entries.append(&mut self.loose);
-                self.saved = Some(saved.with_others_of(&there, &known));
-            }
-        }
+    /// Returns the ids of all clips.
+    fn ids(&self) -> BTreeSet<String> {
+        let saved = self.saved.iter().flat_map(|saved| &saved.entries);
+        saved.chain(&self.loose).map(|entry| entry.id.clone()).collect()
     }
 
     /// Returns the work with the loose clips.
@@ -216,6 +238,27 @@ mod tests {
             (all.query.as_str(), ids(&all.entries)),
             ("t=2", vec!["b", "c", "theirs", "later"])
         );
+    }
+
+    #[test]
+    fn clip_that_was_added_again_after_an_exit_record_is_there() {
+        let records = read(&[
+            latest(&saved("t=1", &["a", "b"])),
+            exit_record(10.0, saved("t=2", &["b"]), &["a", "b"]),
+            clip_record(20.0, "a"),
+        ]);
+        assert_eq!(ids(&records.saved.unwrap().entries), ["b", "a"]);
+    }
+
+    #[test]
+    fn texts_are_merged_over_a_known_record() {
+        let known = saved("t=1", &["a"]);
+        let texts = [clip_record(8.0, "c"), clip_record(7.0, "a")];
+        let merged = |known, texts: &[(String, String)]| {
+            Records::read_over(known, texts.iter().map(|(key, text)| (key.as_str(), text.as_str())))
+        };
+        let all = [&[latest(&known)], &texts[..]].concat();
+        assert_eq!(merged(Some(known), &texts), read(&all));
     }
 
     #[test]

@@ -36,6 +36,8 @@ pub(crate) struct Work {
     pub(crate) known: BTreeSet<String>,
     /// The bytes of the library's files. Stored files that no stored clip comes from are deleted.
     pub(crate) files: StoredFiles,
+    /// The SHA-256 of files that are not deleted, because undo may restore their clips.
+    pub(crate) kept: BTreeSet<String>,
 }
 
 impl Work {
@@ -90,6 +92,7 @@ mod tests {
             },
             known: BTreeSet::new(),
             files: [("22".to_owned(), FileBytes::Here(Arc::from([2_u8])))].into(),
+            kept: BTreeSet::new(),
         };
         let held = |sha256: &str| sha256 == "11";
         let ids: Vec<String> =

@@ -39,6 +39,9 @@ pub(crate) fn clip_panel_ui(
         if !status.is_empty() && entry.warnings.is_empty() {
             sentence_ui(status, palette_of(ui).muted, ui);
         }
+        if entry.is_known() && !session.is_reading_clip(&entry.id) {
+            out.commands.push(Command::File(FileCommand::Read(entry.id.clone())));
+        }
         return;
     };
     facts_ui(motion, ui);

@@ -5,7 +5,9 @@ mod files;
 mod row;
 mod selection;
 
-use self::arrange::{Section, arrange};
+pub(in crate::ui) use self::arrange::{Arranged, RowHeights};
+
+use self::arrange::{ArrangedFor, Row, Section, arrange};
 use self::files::files_ui;
 use self::row::entry_ui;
 use self::selection::selection_ui;
@@ -23,6 +25,7 @@ use eframe::egui::{
     pos2, vec2,
 };
 use segue_session::{Entry, Origin, Session, Slot, StorageState};
+use std::sync::Arc;
 
 /// The number of clips from which on they can be searched and sorted.
 const SEARCHED_FROM: usize = 9;
@@ -128,6 +131,7 @@ fn search_ui(state: &mut UiState, ui: &mut Ui) {
             (ClipOrder::Added, text::ORDER_ADDED),
             (ClipOrder::Name, text::ORDER_NAME),
             (ClipOrder::Length, text::ORDER_LENGTH),
+            (ClipOrder::Speed, text::ORDER_SPEED),
         ] {
             let item = MenuItem {
                 text: words.into(),
@@ -141,45 +145,99 @@ fn search_ui(state: &mut UiState, ui: &mut Ui) {
     });
 }
 
+/// The number of rows up to which all are drawn: a screen reader then has the whole list. Of a
+/// longer list only the rows in sight are laid out.
+const MAX_DRAWN_WHOLE: usize = 100;
+/// The rows beyond either edge that are drawn of a long list, so that the focus finds the next one.
+const ROWS_BEYOND: f32 = 3.0;
+
 /// Draws the list of clips: first the user's, then the built-in ones.
 fn library_list_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     ui.spacing_mut().item_spacing.y = 1.0;
     let entries = session.library().entries();
     state.library.picked.retain(|id| session.library().get(id).is_some());
+    let list = arranged(session, state, ui);
     let search = state.library.search.clone();
-    let sections = arrange(entries, state.library.order, &search, |entry| say(&entry.title(), ui));
-    if sections.is_empty() && !search.is_empty() {
+    if list.sections.is_empty() && !search.is_empty() {
         kit::note_ui(text::NO_SUCH_CLIP, palette_of(ui).muted, ui);
     }
     // A search looks into folded groups as well.
-    let is_open = |section: &Section<'_>, state: &UiState| {
+    let is_open = |section: &Section, state: &UiState| {
         let folded = &state.library.folded;
         !search.is_empty() || section.head.as_ref().is_none_or(|(key, _)| !folded.contains(key))
     };
     let arrived = arrived_clip(entries.iter().map(|entry| &**entry), ui);
-    let shown: Vec<&str> = sections
-        .iter()
-        .filter(|section| is_open(section, state))
-        .flat_map(|section| section.entries.iter().map(|entry| entry.id.as_str()))
-        .collect();
+    let mut rows = Vec::new();
+    for section in &list.sections {
+        if section.head.is_some() {
+            rows.push(Row::Head(section));
+        }
+        let own = section.entries.iter().filter(|_| is_open(section, state));
+        rows.extend(own.filter_map(|&index| entries.get(index)).map(|entry| Row::Clip(entry)));
+    }
+    let shown: Vec<&str> = rows.iter().filter_map(Row::clip).map(|entry| &*entry.id).collect();
     ui.scope(|ui| {
         kit::set_role(Role::List, text::LIBRARY, ui);
-        for section in &sections {
-            head_of_section_ui(section, is_open(section, state), state, ui);
-            if !is_open(section, state) {
+        let sight = ui.clip_rect().expand(ROWS_BEYOND * state.library.heights.clip);
+        let draws_all = rows.len() <= MAX_DRAWN_WHOLE;
+        // The height of the rows since the last one that was drawn.
+        let mut left_out = 0.0;
+        for row in &rows {
+            let height = state.library.heights.of(row) + ui.spacing().item_spacing.y;
+            let top = ui.cursor().top() + left_out;
+            let is_in_sight = top <= sight.bottom() && top + height >= sight.top();
+            let id = row.clip().map(|entry| entry.id.as_str());
+            let is_needed = id.is_some_and(|id| {
+                arrived.as_deref() == Some(id)
+                    || state.library.focused.as_deref() == Some(id)
+                    || state.renaming.as_ref().is_some_and(|renaming| renaming.id == id)
+            });
+            if !(draws_all || is_in_sight || is_needed) {
+                left_out += height;
                 continue;
             }
-            for entry in &section.entries {
-                let row = ui.push_id(&entry.id, |ui| {
-                    kit::set_role(Role::ListItem, Word::default(), ui);
-                    entry_ui(entry, &shown, session, state, out, ui);
-                });
-                if arrived.as_ref() == Some(&entry.id) {
-                    row.response.scroll_to_me(None);
+            ui.add_space(std::mem::take(&mut left_out));
+            let drawn = match row {
+                Row::Head(section) => {
+                    head_of_section_ui(section, is_open(section, state), entries, state, ui)
                 }
-            }
+                Row::Clip(entry) => {
+                    let row = ui.push_id(&entry.id, |ui| {
+                        kit::set_role(Role::ListItem, Word::default(), ui);
+                        entry_ui(entry, &shown, session, state, out, ui);
+                    });
+                    if arrived.as_ref() == Some(&entry.id) {
+                        row.response.scroll_to_me(None);
+                    }
+                    row.response.rect.height()
+                }
+            };
+            let is_plain =
+                id.is_some_and(|id| state.details.as_deref() != Some(id)) && row.is_known();
+            state.library.heights.note(row, is_plain, drawn);
         }
+        ui.add_space(left_out);
     });
+}
+
+/// Returns the sections of the list, which are arranged again only where something has changed.
+fn arranged(session: &Session, state: &mut UiState, ui: &Ui) -> Arc<Arranged> {
+    let library = &state.library;
+    let key = ArrangedFor {
+        revision: session.revision(),
+        language: state.language.tag(),
+        order: library.order,
+        search: library.search.clone(),
+    };
+    if let Some(known) = library.arranged.as_ref().filter(|known| known.key == key) {
+        return Arc::clone(known);
+    }
+    let entries = session.library().entries();
+    let sections =
+        arrange(entries, library.order, &library.search, |entry| say(&entry.title(), ui));
+    let list = Arc::new(Arranged { key, sections });
+    state.library.arranged = Some(Arc::clone(&list));
+    list
 }
 
 /// Returns the newest clip in the frame in which it arrives: it is scrolled into sight once.
@@ -187,7 +245,7 @@ fn arrived_clip<'a>(
     entries: impl DoubleEndedIterator<Item = &'a Entry>,
     ui: &Ui,
 ) -> Option<String> {
-    let is_own = |entry: &&Entry| !matches!(entry.origin, Origin::Preset) && entry.motion.is_some();
+    let is_own = |entry: &&Entry| !matches!(entry.origin, Origin::Preset) && entry.is_known();
     let newest = entries.rev().find(is_own).map(|entry| entry.id.clone());
     let seen_id = Id::unique("newest clip seen");
     let seen: Option<Option<String>> = ui.data(|data| data.get_temp(seen_id));
@@ -196,24 +254,34 @@ fn arrived_clip<'a>(
     arrived
 }
 
-/// Draws the head row of a group: a click folds it, with Ctrl or Cmd it selects its clips.
-fn head_of_section_ui(section: &Section<'_>, open: bool, state: &mut UiState, ui: &mut Ui) {
+/// Draws the head row of a group: a click folds it, with Ctrl or Cmd it selects its clips. Returns
+/// its height.
+fn head_of_section_ui(
+    section: &Section,
+    open: bool,
+    entries: &[Arc<Entry>],
+    state: &mut UiState,
+    ui: &mut Ui,
+) -> f32 {
     let Some((key, title)) = &section.head else {
-        return;
+        return 0.0;
     };
     let count = (!section.is_counted).then_some(section.entries.len());
     let head = ui.push_id(key, |ui| kit::group_head_ui(Text::from(title), count, open, ui));
+    let height = head.response.rect.height();
     if !head.inner.clicked() {
-        return;
+        return height;
     }
     let library = &mut state.library;
     if ui.input(|input| input.modifiers.command) {
-        library.picked.extend(section.entries.iter().map(|entry| entry.id.clone()));
+        let own = section.entries.iter().filter_map(|&index| entries.get(index));
+        library.picked.extend(own.map(|entry| entry.id.clone()));
     } else if open {
         library.folded.insert(key.clone());
     } else {
         library.folded.remove(key);
     }
+    height
 }
 
 /// Draws the button that opens the library where it is a drawer. The notices stand beside it.

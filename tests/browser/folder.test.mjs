@@ -2,40 +2,9 @@
 
 import assert from "node:assert/strict";
 import { onBothBackends, onOneBackend } from "./harness.mjs";
-import { striding, until } from "./help.mjs";
+import { dropFolder, striding, until } from "./help.mjs";
 
 const isAccent = (red, green, blue) => green > 150 && green - red > 60 && green - blue > 20;
-
-/**
- * Drops a folder. A transfer that a script makes cannot contain one, so `webkitGetAsEntry` is
- * replaced.
- */
-function dropFolder(page, files) {
-  return page.evaluate(async (files) => {
-    const file = (path, text) => {
-      const name = path.split("/").at(-1);
-      return { isFile: true, isDirectory: false, name, fullPath: path, file: (resolve) => resolve(new File([text], name)) };
-    };
-    const folder = (path) => {
-      const below = files.filter(([name]) => name.startsWith(`${path}/`)).map(([name, text]) => [name.slice(path.length + 1), text]);
-      const own = below.filter(([name]) => !name.includes("/")).map(([name, text]) => file(`${path}/${name}`, text));
-      const folders = [...new Set(below.filter(([name]) => name.includes("/")).map(([name]) => name.split("/")[0]))];
-      const parts = [own, folders.map((name) => folder(`${path}/${name}`)), []];
-      const name = path.split("/").at(-1);
-      return { isFile: false, isDirectory: true, name, fullPath: path, createReader: () => ({ readEntries: (resolve) => resolve(parts.shift()) }) };
-    };
-    const [root] = files[0][0].split("/").filter(Boolean);
-    const whole = folder(`/${root}`);
-    DataTransferItem.prototype.webkitGetAsEntry = () => whole;
-    const dataTransfer = new DataTransfer();
-    dataTransfer.items.add(new File([], root));
-    const canvas = document.getElementById("segue");
-    for (const type of ["dragenter", "dragover", "dragover", "drop"]) {
-      canvas.dispatchEvent(new DragEvent(type, { bubbles: true, cancelable: true, composed: true, clientX: 400, clientY: 300, dataTransfer }));
-      await new Promise((resolve) => requestAnimationFrame(resolve));
-    }
-  }, files);
-}
 
 // Fails when a folder is read as a file, when a file is read twice or out of order, and when the
 // drop zone stays open.

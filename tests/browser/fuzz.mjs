@@ -66,9 +66,9 @@ async function sound({ page, segue }, what, seconds) {
   const bad = await page.evaluate(async (seconds) => {
     const { segue } = window;
     try {
-      const { positions, rotations } = segue.pose("result", seconds);
+      const { positions, rotations } = await segue.pose("result", seconds);
       if (![...positions, ...rotations].every(Number.isFinite)) return "a pose that is not finite";
-      const odd = Object.entries(segue.metrics()).find(([, { value }]) => value !== null && !Number.isFinite(value));
+      const odd = Object.entries(await segue.metrics()).find(([, { value }]) => value !== null && !Number.isFinite(value));
       return odd && `${odd[0]} is ${odd[1].value}`;
     } catch (error) {
       return error.message ? undefined : "a refusal without a sentence";

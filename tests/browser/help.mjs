@@ -35,6 +35,37 @@ export const stored = (page) => page.evaluate(async () => {
 /** Waits until the stored link contains `part`. */
 export const linkStored = (page, part) => until(`a link with ${part} is stored`, async () => (await stored(page)).query.includes(part));
 
+/**
+ * Drops a folder of files, each a path and a text. A transfer that a script makes cannot contain a
+ * folder, so `webkitGetAsEntry` is replaced.
+ */
+export function dropFolder(page, files) {
+  return page.evaluate(async (files) => {
+    const file = (path, text) => {
+      const name = path.split("/").at(-1);
+      return { isFile: true, isDirectory: false, name, fullPath: path, file: (resolve) => resolve(new File([text], name)) };
+    };
+    const folder = (path) => {
+      const below = files.filter(([name]) => name.startsWith(`${path}/`)).map(([name, text]) => [name.slice(path.length + 1), text]);
+      const own = below.filter(([name]) => !name.includes("/")).map(([name, text]) => file(`${path}/${name}`, text));
+      const folders = [...new Set(below.filter(([name]) => name.includes("/")).map(([name]) => name.split("/")[0]))];
+      const parts = [own, folders.map((name) => folder(`${path}/${name}`)), []];
+      const name = path.split("/").at(-1);
+      return { isFile: false, isDirectory: true, name, fullPath: path, createReader: () => ({ readEntries: (resolve) => resolve(parts.shift()) }) };
+    };
+    const [root] = files[0][0].split("/").filter(Boolean);
+    const whole = folder(`/${root}`);
+    DataTransferItem.prototype.webkitGetAsEntry = () => whole;
+    const dataTransfer = new DataTransfer();
+    dataTransfer.items.add(new File([], root));
+    const canvas = document.getElementById("segue");
+    for (const type of ["dragenter", "dragover", "dragover", "drop"]) {
+      canvas.dispatchEvent(new DragEvent(type, { bubbles: true, cancelable: true, composed: true, clientX: 400, clientY: 300, dataTransfer }));
+      await new Promise((resolve) => requestAnimationFrame(resolve));
+    }
+  }, files);
+}
+
 /** Returns a generator of random numbers from 0 to 1 by a seed (mulberry32). */
 export function random(seed) {
   let state = seed;

@@ -58,10 +58,10 @@ export function makeApi(handle, { stopped, onLost }) {
     pause: () => call("pause"),
     seek: (seconds) => call("seek", number("seek: seconds", seconds)),
     time: () => call("time"),
-    pose: (which, seconds) => call("pose", text("pose: which", which, WHICH), number("pose: seconds", seconds)),
-    metrics: () => call("metrics"),
-    export: (which, format, body) =>
-      call("exportClip", text("export: which", which, WHICH), text("export: format", format, FORMAT), body == null ? undefined : text("export: body", body, BODY)),
+    pose: async (which, seconds) => callAsync("pose", text("pose: which", which, WHICH), number("pose: seconds", seconds)),
+    metrics: () => callAsync("metrics"),
+    export: async (which, format, body) =>
+      callAsync("exportClip", text("export: which", which, WHICH), text("export: format", format, FORMAT), body == null ? undefined : text("export: body", body, BODY)),
     keep: (which) => call("keep", text("keep: which", which, PANE)),
     report: () => callAsync("report"),
     snapshot: () => callAsync("snapshot"),

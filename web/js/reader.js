@@ -1,8 +1,10 @@
 // A worker that reads motion files, with a WebAssembly of its own (src/bin/reader.rs).
 // src/platform/web/reader.rs gives it tasks.
 //
-// Tasks are { task, name, setup, file }. For each the worker answers with messages { task, progress
-// }, { task, head }, { task, piece } …, { task, end: true }, or { task, failed: reason }.
+// Tasks are { task, name, setup, file, stored, returnsBytes }: a Blob, or the place of the bytes in
+// the storage, or both. For each the worker answers with messages { task, progress }, { task, head },
+// { task, piece } …, { task, end: true, bytes }, or { task, failed: reason }, or { task, lost: true }
+// when there is no such file any more.
 
 import init, { readFile } from "./read/reader.js";
 
@@ -12,22 +14,55 @@ started.catch(() => {}); // each task reports a failure
 /** The memory from which on a trap is taken for a failed allocation, bytes. */
 const MIN_EXHAUSTED_BYTES = 1 << 30;
 
-self.onmessage = async ({ data: { task, name, setup, file } }) => {
+self.onmessage = async ({ data: { task, name, setup, file, stored, returnsBytes } }) => {
   const post = (message, transfer = []) => self.postMessage({ task, ...message }, transfer);
   try {
     await started;
-    const buffer = await file.arrayBuffer();
+    const buffer = await bytesOf(file, stored);
+    if (!buffer) return post({ lost: true });
     const sha256 = await digest(buffer);
     const bytes = new Uint8Array(buffer);
     const progress = (done) => post({ progress: done });
     readFile(name, bytes, setup, sha256, progress, (head) => post({ head }), (piece) => post({ piece }, [piece.buffer]));
-    post({ end: true });
+    if (returnsBytes) post({ end: true, bytes }, [buffer]);
+    else post({ end: true });
   } catch (reason) {
     const trapped = reason instanceof WebAssembly.RuntimeError;
     const noMemory = trapped && (await started).memory.buffer.byteLength >= MIN_EXHAUSTED_BYTES;
     post({ failed: noMemory ? "there is no memory to read it" : String(reason?.message ?? reason) });
   }
 };
+
+/** Returns the bytes of a file, from the storage where the file cannot be read; null where there are none. */
+async function bytesOf(file, stored) {
+  try {
+    if (file) return await file.arrayBuffer();
+  } catch (reason) {
+    if (!stored) throw reason;
+  }
+  const value = stored && (await storedValue(stored).catch(() => undefined));
+  if (!value) return null;
+  if (value instanceof Blob) return value.arrayBuffer();
+  // The array may be a part of its buffer.
+  return value.byteLength === value.buffer.byteLength ? value.buffer : value.slice().buffer;
+}
+
+/** Returns what the storage has under a key. */
+async function storedValue({ database, store, key }) {
+  const answer = (request) => new Promise((resolve, reject) => {
+    request.onsuccess = () => resolve(request.result);
+    request.onerror = () => reject(request.error);
+  });
+  const opening = indexedDB.open(database);
+  // A storage that is not there must not be made.
+  opening.onupgradeneeded = () => opening.transaction.abort();
+  const opened = await answer(opening);
+  try {
+    return await answer(opened.transaction(store).objectStore(store).get(key));
+  } finally {
+    opened.close();
+  }
+}
 
 /**
  * Returns the browser's SHA-256, which is several times as fast as the app's; undefined on an

@@ -59,6 +59,10 @@ cargo xtask match-quality
 cargo xtask match-speed
     Asks databases of 5,000, 50,000 and 500,000 frames for the best frame by four methods, and prints the median and the 99th percentile.
 
+cargo xtask make-corpus N FOLDER
+    Writes N BVH files of synthesised motion into a folder, in twelve rigs and ways of writing: 3,000 files have about 540 MB. The same N gives the same
+    files. `node tests/browser/many.mjs FOLDER` measures the page with them.
+
 cargo xtask docs
     Writes the table of docs/parameters.md from the program's parameters.
 
@@ -79,6 +83,7 @@ fn main() -> ExitCode {
         Some((&"clean-quality", rest)) => quality::try_cleaning(rest),
         Some((&"match-quality", rest)) => quality::run_drives(rest),
         Some((&"match-speed", rest)) => quality::time_searches(rest),
+        Some((&"make-corpus", rest)) => quality::make_corpus(rest),
         Some((&"docs", _)) => docs(),
         Some((&"seal", _)) => seal::run(),
         None | Some((&("help" | "--help" | "-h"), _)) => {

@@ -1,6 +1,6 @@
 //! `cargo xtask quality`, `clean-quality`, `match-quality` and `match-speed`: measurements of every
 //! lab on any motion, of faults found and mended, of characters driven by recorded input, and of
-//! searches.
+//! searches. `make-corpus` writes the files of a large library.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -57,6 +57,14 @@ pub fn run_drives(args: &[&str]) -> Result<()> {
 
 pub fn time_searches(args: &[&str]) -> Result<()> {
     run_made("match_speed", args)
+}
+
+pub fn make_corpus(args: &[&str]) -> Result<()> {
+    let &[count, folder] = args else {
+        return fail("make-corpus is followed by a number of files and a folder");
+    };
+    let mut tool = tool("make_corpus", "release");
+    run(tool.arg("--").arg(count).arg(std::path::absolute(folder)?))
 }
 
 fn run_made(name: &str, args: &[&str]) -> Result<()> {

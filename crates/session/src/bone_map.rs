@@ -193,7 +193,8 @@ pub(crate) fn adopt(maps: &BoneMaps, entry: &mut Entry) {
     let Some(motion) = &entry.motion else { return };
     let Some(roles) = mapped(maps, motion.clip().skeleton(), motion.roles()) else { return };
     if roles != *motion.roles() {
-        entry.motion = Some(Arc::new(Motion::clone(motion).with_corrected_roles(&roles)));
+        let corrected = Motion::clone(motion).with_corrected_roles(&roles);
+        entry.set_motion(Arc::new(corrected));
     }
     entry.roles_by_hand = Some(roles);
 }

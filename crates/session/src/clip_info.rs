@@ -1,5 +1,6 @@
 //! Clips as the page's API has them.
 
+use crate::clip_facts::ClipFacts;
 use crate::library::Entry;
 
 /// A clip as the page's API has it.
@@ -27,18 +28,16 @@ pub struct ClipInfo {
 
 impl ClipInfo {
     pub(crate) fn of(entry: &Entry) -> Self {
-        let motion = entry.motion.as_deref();
-        let clip = motion.map(segue_motion::clip::Motion::clip);
+        let facts = entry.facts.as_deref();
         Self {
             id: entry.id.clone(),
             name: entry.name.clone(),
             format: entry.format(),
-            joints: clip.map_or(0, |clip| clip.skeleton().len()),
-            frames: clip.map_or(0, |clip| clip.frames()),
-            fps: clip.map_or(0.0, |clip| clip.fps()),
-            duration: clip.map_or(0.0, |clip| clip.duration_secs()),
-            height: motion
-                .map_or(0.0, |motion| motion.roles().body_height(motion.clip().skeleton())),
+            joints: facts.map_or(0, |facts| facts.joints),
+            frames: facts.map_or(0, |facts| facts.frames),
+            fps: facts.map_or(0.0, |facts| facts.fps),
+            duration: facts.map_or(0.0, ClipFacts::duration_secs),
+            height: facts.map_or(0.0, |facts| facts.height_m),
             sha256: entry.sha256().map(str::to_owned),
         }
     }

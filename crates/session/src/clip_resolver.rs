@@ -5,7 +5,7 @@ use crate::bone_map::adopt;
 use crate::contact_edits::corrections_of;
 use crate::document::Document;
 use crate::files::FileIntake;
-use crate::labs::{Answer, Inputs, LabClips, LabError, LabSet, MoreClip};
+use crate::labs::{Answer, Inputs, LabClips, LabError, LabSet, MoreClip, Slot};
 use crate::labs::{lab_of, preset_motion, recipe_name, recipe_params, slots_of};
 use crate::library::{Entry, Origin, split_reference};
 use crate::motion::foot_options;
@@ -66,6 +66,9 @@ impl ClipResolver<'_> {
                 name: outside::short(split_reference(reference).0),
             });
         };
+        if matches!(entry.origin, Origin::File(_)) {
+            self.files.note_use(&entry.id);
+        }
         if let Some(motion) = &entry.motion {
             return Ok(Arc::clone(motion));
         }
@@ -108,11 +111,27 @@ impl ClipResolver<'_> {
         };
         let maps = Arc::clone(self.document.library.bone_maps());
         self.document.library.change(&id, |entry| {
-            entry.motion = Some(motion);
+            entry.set_motion(motion);
             adopt(&maps, entry);
         });
         let made = self.document.library.get(&id).and_then(|entry| entry.motion.clone());
         made.ok_or_else(|| LabError::MissingClip { name: outside::short(&id) })
+    }
+
+    /// Keeps the motions of the clips in A and B, and has that of the chosen character read if it is
+    /// not here.
+    pub(crate) fn keep_slots_and_character(&mut self) {
+        for slot in [Slot::A, Slot::B] {
+            let held = self.document.slot(slot).filter(|entry| entry.motion.is_some());
+            if let Some(entry) = held {
+                self.files.note_use(&entry.id);
+            }
+        }
+        let character = self.document.params.text(Key::Character).to_owned();
+        if self.document.library.find(&character).is_some_and(|entry| entry.has_mesh()) {
+            // If it cannot be read, a notice has said so.
+            let _is_here = self.motion(&character).is_ok();
+        }
     }
 
     /// Returns the motions of several clips, with their feet read as the parameters say. Makes or

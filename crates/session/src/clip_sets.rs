@@ -81,6 +81,5 @@ fn captured(lab: &dyn Lab<LabSet>) -> Option<Vec<(Key, Value)>> {
 
 /// Returns whether an entry is a motion file of the user's. A skeleton or a character alone is not.
 fn is_own_motion(entry: &Entry) -> bool {
-    let moves = entry.motion.as_ref().is_some_and(|motion| motion.clip().frames() > 1);
-    moves && matches!(entry.origin, Origin::File(_))
+    entry.moves() && matches!(entry.origin, Origin::File(_))
 }

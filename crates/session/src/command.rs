@@ -114,6 +114,10 @@ pub enum FileCommand {
     Correct(u64),
     /// Stops reading a file, by the number of its task.
     StopReading(u64),
+    /// Stops reading all files that are to join the library.
+    StopReadingNew,
+    /// Reads the motion of a clip again if it is not in memory.
+    Read(String),
 }
 
 /// The reason why a command could not be carried out. The session is unchanged.

@@ -12,6 +12,7 @@ use crate::library::{Entry, Library};
 use crate::params::{Key, Kind, ListKind, Mark, Params, Value, ValueError};
 use history::History;
 use places::forget_places;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// The state that a link and undo restore, and the steps between its versions.
@@ -67,6 +68,17 @@ impl Document {
         self.history.before_change(&self.params, &self.library, key);
     }
 
+    /// Records the state before a file arrives, as a step for undo. The files of one selection, by
+    /// its number, are one step.
+    pub(crate) fn remember_arrival(&mut self, batch: Option<u32>) {
+        self.history.before_arrival(&self.params, &self.library, batch);
+    }
+
+    /// Returns the SHA-256 of the files that steps may restore.
+    pub(crate) fn files_of_steps(&self) -> BTreeSet<String> {
+        self.history.files()
+    }
+
     /// Records an earlier library as the state before a change.
     pub(crate) fn remember_library(&mut self, library: &Library) {
         self.history.before_change(&self.params, library, None);
@@ -80,6 +92,13 @@ impl Document {
     /// Adds clips to every step that lacks them, so that undo does not remove them.
     pub(crate) fn add_to_steps(&mut self, entries: &[Arc<Entry>]) {
         self.history.add_to_all(entries);
+    }
+
+    /// Replaces entries in the library and in every step by newer ones, which `newer` has by the
+    /// addresses of the old ones. That is no change of the work.
+    pub(crate) fn replace_entries(&mut self, newer: &BTreeMap<*const Entry, Arc<Entry>>) {
+        self.library.replace_shared(newer);
+        self.history.replace_in_all(newer);
     }
 
     /// Drops the motions of files that only steps of undo contain. Returns whether there were any.

@@ -3,6 +3,7 @@
 
 mod admission;
 mod corrections;
+mod idle;
 mod intake;
 mod messages;
 mod reread;
@@ -35,6 +36,8 @@ mod fixtures;
 mod group_tests;
 #[cfg(test)]
 mod humanoid_tests;
+#[cfg(test)]
+mod idle_tests;
 #[cfg(test)]
 mod memory_tests;
 #[cfg(test)]

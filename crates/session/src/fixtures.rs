@@ -130,6 +130,11 @@ pub(crate) fn serve(session: &mut Session) {
     }
 }
 
+/// Has the motion of a clip read if it is not in memory.
+pub(crate) fn read_clip(session: &mut Session, id: &str) {
+    session.apply(Command::File(FileCommand::Read(id.to_owned()))).unwrap();
+}
+
 /// Sets the blend window, in frames.
 pub(crate) fn blend_window(session: &mut Session, frames: f64) {
     session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(frames))])).unwrap();

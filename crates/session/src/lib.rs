@@ -65,6 +65,7 @@
 
 pub mod bone_map;
 mod built_in;
+mod clip_facts;
 mod clip_info;
 mod clip_resolver;
 mod clip_sets;
@@ -100,6 +101,7 @@ mod samples;
 mod saved;
 mod session;
 
+pub use clip_facts::ClipFacts;
 pub use clip_info::ClipInfo;
 pub use clip_sets::ClipSet;
 pub use command::{
@@ -139,5 +141,5 @@ pub use params::{
 pub use playback::Span;
 pub use report::{ReportFacts, report};
 pub use samples::{SAMPLES_CREDIT, Sample, SampleSet};
-pub use saved::{Saved, SavedEntry, StorageState};
+pub use saved::{KnownClip, Saved, SavedEntry, StorageState};
 pub use session::Session;

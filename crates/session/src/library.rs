@@ -1,6 +1,7 @@
 //! The library of clips: built in, dropped, or made in labs.
 
 use super::bone_map::{BoneMap, BoneMaps, MAX_RIGS};
+use super::clip_facts::ClipFacts;
 use super::outside;
 use super::reading::{About, Companion, Content, LARGE_BYTES};
 use super::samples::Sample;
@@ -9,6 +10,7 @@ use segue_motion::clip::Motion;
 use segue_motion::skeleton::Roles;
 use segue_motion::skin::{Character, SkinnedMesh};
 use segue_text::Message;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// The way in which a file has arrived.
@@ -74,7 +76,14 @@ impl SourceFile {
     /// Returns whether reading it takes longer than a frame.
     #[must_use]
     pub fn is_large(&self) -> bool {
-        self.size > LARGE_BYTES || matches!(self.content, Content::Outside(_))
+        self.size > LARGE_BYTES
+    }
+
+    /// Returns whether it was read in the same way as another file: the same clip of the same bytes
+    /// with the same options and the same skeleton.
+    pub(crate) fn is_read_like(&self, other: &Self) -> bool {
+        (&self.sha256, self.index, self.options, &self.companion)
+            == (&other.sha256, other.index, other.options, &other.companion)
     }
 }
 
@@ -90,8 +99,12 @@ pub struct Entry {
     /// The origin.
     pub origin: Origin,
     /// The motion; `None` for a bundled take that has not been loaded, a preset that has not been
-    /// used, and a file that is being read.
+    /// used, a file that is being read, and one whose motion nothing has needed for a while: it is
+    /// read again when it is needed. [`Entry::set_motion`] keeps the facts in step.
     pub motion: Option<Arc<Motion>>,
+    /// The facts of the motion, which stay known while it is not here; `None` before it was first
+    /// made or read.
+    pub facts: Option<Arc<ClipFacts>>,
     /// The mesh of the file on the clip's skeleton.
     pub mesh: Option<Arc<SkinnedMesh>>,
     /// The reason why a known file has no motion: reading it failed or was stopped. It is read
@@ -129,6 +142,7 @@ impl Entry {
             own_name,
             origin,
             motion: None,
+            facts: None,
             mesh: None,
             unread: None,
             about: None,
@@ -136,6 +150,42 @@ impl Entry {
             roles_by_hand: None,
             batch: None,
         }
+    }
+
+    /// Sets the motion, and its facts.
+    pub(crate) fn set_motion(&mut self, motion: Arc<Motion>) {
+        self.facts = Some(Arc::new(ClipFacts::of(&motion, self.mesh.is_some())));
+        self.motion = Some(motion);
+    }
+
+    /// Returns the entry with a motion.
+    pub(crate) fn with_motion(mut self, motion: Arc<Motion>) -> Self {
+        self.set_motion(motion);
+        self
+    }
+
+    /// Drops the motion and the mesh; the facts stay.
+    pub(crate) fn drop_motion(&mut self) {
+        (self.motion, self.mesh) = (None, None);
+    }
+
+    /// Returns whether its motion can be had: it is here, or it was, and is read again when it is
+    /// needed.
+    #[must_use]
+    pub fn is_known(&self) -> bool {
+        self.facts.is_some() && self.unread.is_none()
+    }
+
+    /// Returns whether it is a motion of several frames. A skeleton or a character alone is not.
+    #[must_use]
+    pub fn moves(&self) -> bool {
+        self.facts.as_ref().is_some_and(|facts| facts.moves())
+    }
+
+    /// Returns whether its file has a mesh on its skeleton.
+    #[must_use]
+    pub fn has_mesh(&self) -> bool {
+        self.facts.as_ref().is_some_and(|facts| facts.has_mesh)
     }
 
     /// Returns the clips that it arrived with; `None` for a clip that is in no file.
@@ -178,7 +228,7 @@ impl Entry {
     pub fn awaits_skeleton(&self) -> bool {
         let motion_alone =
             |file: &SourceFile| file.kind == FileKind::Amc && file.companion.is_none();
-        self.motion.is_none() && matches!(&self.origin, Origin::File(file) if motion_alone(file))
+        self.facts.is_none() && matches!(&self.origin, Origin::File(file) if motion_alone(file))
     }
 
     /// Returns the character of the file: its mesh on the clip's skeleton. `None` without a mesh,
@@ -204,6 +254,8 @@ impl Entry {
 #[derive(Clone, Debug, Default)]
 pub struct Library {
     entries: Vec<Arc<Entry>>,
+    /// The indices of the entries in the order of their ids.
+    by_id: Vec<u32>,
     /// The corrected body parts of rigs, also of those that no present clip has.
     bone_maps: Arc<BoneMaps>,
 }
@@ -251,7 +303,19 @@ impl Library {
     /// Returns the clip of exactly that id.
     #[must_use]
     pub fn get(&self, id: &str) -> Option<&Arc<Entry>> {
-        self.entries.iter().find(|entry| entry.id == id)
+        self.entries.get(self.index_of(id)?)
+    }
+
+    /// Returns the index of the clip of exactly that id.
+    fn index_of(&self, id: &str) -> Option<usize> {
+        let place = self.place_of(id).ok()?;
+        self.by_id.get(place).map(|&index| index as usize)
+    }
+
+    /// Returns the place of an id in the order of ids, or the one where it would be.
+    fn place_of(&self, id: &str) -> Result<usize, usize> {
+        let id_at = |index: &u32| self.entries.get(*index as usize).map(|entry| entry.id.as_str());
+        self.by_id.binary_search_by(|index| id_at(index).cmp(&Some(id)))
     }
 
     /// Returns the corrected body parts, by rig.
@@ -282,17 +346,56 @@ impl Library {
 
     /// Adds or replaces a clip as [`Library::put`] does, shared with another library.
     pub fn put_shared(&mut self, entry: Arc<Entry>) {
-        match self.entries.iter_mut().find(|old| old.id == entry.id) {
-            Some(old) => *old = entry,
-            None => self.entries.push(entry),
+        match self.place_of(&entry.id) {
+            Ok(place) => {
+                let index = self.by_id.get(place).map(|&index| index as usize);
+                if let Some(old) = index.and_then(|index| self.entries.get_mut(index)) {
+                    *old = entry;
+                }
+            }
+            Err(place) => {
+                self.by_id.insert(place, self.entries.len() as u32);
+                self.entries.push(entry);
+            }
         }
     }
 
     /// Removes a clip; returns whether it was there.
     pub fn remove(&mut self, id: &str) -> bool {
-        let before = self.entries.len();
-        self.entries.retain(|entry| entry.id != id);
-        self.entries.len() < before
+        let Ok(place) = self.place_of(id) else {
+            return false;
+        };
+        let removed = self.by_id.remove(place);
+        self.entries.remove(removed as usize);
+        for index in self.by_id.iter_mut().filter(|index| **index > removed) {
+            *index -= 1;
+        }
+        true
+    }
+
+    /// Moves the bytes of the files of clips out. Returns them with their SHA-256, the key that the
+    /// entries have for them now.
+    pub(crate) fn move_bytes_outside(&mut self, ids: &[String]) -> Vec<(String, Arc<[u8]>)> {
+        let mut moved: BTreeMap<String, Arc<[u8]>> = BTreeMap::new();
+        for id in ids {
+            self.change(id, |entry| {
+                let Origin::File(file) = &mut entry.origin else { return };
+                let Content::Here(bytes) = &file.content else { return };
+                moved.insert(file.sha256.clone(), Arc::clone(bytes));
+                file.content = Content::Outside(file.sha256.clone());
+            });
+        }
+        moved.into_iter().collect()
+    }
+
+    /// Replaces entries by newer ones, wherever an old one is, as `newer` has them by the addresses
+    /// of the old ones.
+    pub(crate) fn replace_shared(&mut self, newer: &BTreeMap<*const Entry, Arc<Entry>>) {
+        for slot in &mut self.entries {
+            if let Some(new) = newer.get(&Arc::as_ptr(slot)) {
+                *slot = Arc::clone(new);
+            }
+        }
     }
 
     /// Takes the motions of clips that have none here from another library, where they were read
@@ -301,10 +404,7 @@ impl Library {
         for entry in self.entries.iter_mut().filter(|entry| entry.motion.is_none()) {
             let known = other.get(&entry.id).filter(|known| {
                 let is_read_alike = match (&known.origin, &entry.origin) {
-                    (Origin::File(a), Origin::File(b)) => {
-                        (&a.sha256, a.index, a.options, &a.companion)
-                            == (&b.sha256, b.index, b.options, &b.companion)
-                    }
+                    (Origin::File(a), Origin::File(b)) => a.is_read_like(b),
                     (a, b) => a == b,
                 };
                 known.motion.is_some()
@@ -319,7 +419,7 @@ impl Library {
 
     /// Changes a clip in place, if it is there.
     pub fn change(&mut self, id: &str, change: impl FnOnce(&mut Entry)) -> bool {
-        let Some(slot) = self.entries.iter_mut().find(|entry| entry.id == id) else {
+        let Some(slot) = self.index_of(id).and_then(|index| self.entries.get_mut(index)) else {
             return false;
         };
         change(Arc::make_mut(slot));

@@ -65,6 +65,11 @@ impl FeetReader {
         read
     }
 
+    /// Forgets clips that nothing else holds.
+    pub(super) fn forget_dropped(&mut self) {
+        self.0.retain(|(of, read)| Arc::strong_count(of) > 1 || Arc::strong_count(read) > 1);
+    }
+
     /// Returns what [`read`](Self::read) returns, if it was read before.
     pub(super) fn known<'a>(
         &'a self,

@@ -2,10 +2,12 @@
 //! by their SHA-256.
 
 use super::bone_map::{BoneMap, MAX_RIGS};
+use super::clip_facts::ClipFacts;
 use super::library::{Entry, Origin};
-use super::reading::Companion;
+use super::reading::{About, Companion};
 use segue_formats::{FileKind, ImportOptions};
 use segue_motion::skeleton::Roles;
+use segue_text::Message;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
@@ -78,6 +80,23 @@ pub struct SavedEntry {
     /// without this field have none.
     #[serde(default)]
     pub batch: Option<u32>,
+    /// The facts of a clip of a file, so that it need not be read before it is used; states that
+    /// were stored without this field have none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub known: Option<KnownClip>,
+}
+
+/// What is known of a clip of a file without reading it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct KnownClip {
+    /// The facts of its motion.
+    pub facts: ClipFacts,
+    /// The report on reading the file.
+    #[serde(default)]
+    pub about: Option<About>,
+    /// The oddities of the file, one sentence each.
+    #[serde(default)]
+    pub warnings: Vec<Message>,
 }
 
 /// A file without its bytes.
@@ -121,6 +140,7 @@ impl From<&Entry> for SavedEntry {
             }),
             Origin::Preset | Origin::Sample(_) | Origin::Made => None,
         };
+        let facts = entry.facts.as_ref().filter(|_| file.is_some() && entry.unread.is_none());
         Self {
             id: entry.id.clone(),
             name: entry.name.clone(),
@@ -128,6 +148,11 @@ impl From<&Entry> for SavedEntry {
             roles: entry.roles_by_hand.clone(),
             is_sample: matches!(entry.origin, Origin::Sample(_)),
             batch: entry.batch,
+            known: facts.map(|facts| KnownClip {
+                facts: ClipFacts::clone(facts),
+                about: entry.about.clone(),
+                warnings: entry.warnings.clone(),
+            }),
         }
     }
 }
@@ -152,6 +177,7 @@ mod tests {
             roles: None,
             is_sample: false,
             batch: None,
+            known: None,
         };
         Saved {
             query: query.to_owned(),

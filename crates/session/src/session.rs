@@ -47,6 +47,10 @@ pub struct Session {
     lessons: LessonState,
     notices: Notices,
     revision: u64,
+    /// Whether changes wait for [`Session::release`].
+    is_held: bool,
+    /// Whether there were any.
+    is_stale: bool,
 }
 
 impl Default for Session {
@@ -80,6 +84,8 @@ impl Session {
             lessons: LessonState::default(),
             notices: Notices::default(),
             revision: 0,
+            is_held: false,
+            is_stale: false,
         };
         session.open_link(WELCOME);
         session.refresh();
@@ -395,6 +401,11 @@ impl Session {
     /// Recomputes everything that depends on the document and whose inputs have changed.
     fn refresh(&mut self) {
         self.revision += 1;
+        if self.is_held {
+            self.is_stale = true;
+            return;
+        }
+        self.files.begin_uses();
         self.lessons.request_text(&self.document.params);
         for clip in self.document.compared_clips() {
             self.document.ensure_clip(&clip);
@@ -409,6 +420,24 @@ impl Session {
         self.panes.refresh_driven(&mut self.drive, &mut clips);
         self.panes.show_sources(&mut clips);
         self.extra_characters.refresh(&mut clips);
+        clips.keep_slots_and_character();
+        if self.files.drop_idle_motions(&mut self.document) {
+            self.labs.feet.forget_dropped();
+        }
+    }
+
+    /// Puts off what follows from changes of the library, so that several changes have one
+    /// recomputation: until [`Session::release`].
+    pub fn hold(&mut self) {
+        self.is_held = true;
+    }
+
+    /// Recomputes what depends on the changes since [`Session::hold`].
+    pub fn release(&mut self) {
+        self.is_held = false;
+        if std::mem::take(&mut self.is_stale) {
+            self.refresh();
+        }
     }
 
     /// Does one slice of the work that would take longer than a frame. Returns `true` while there

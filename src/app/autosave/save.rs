@@ -1,16 +1,18 @@
 //! Storage of changed work and of new clips.
 
 use super::{Autosave, ChangeTimes, Fingerprint, MAX_SAVE_INTERVAL_MS, Phase, SAVE_DELAY_MS};
-use crate::platform::{LargeFileStore, NewClip, Storage, StoredFiles, Work};
+use crate::platform::{FileBytes, LargeFileStore, NewClip, Storage, StoredFiles, Work};
 use segue_session::{Origin, SavedEntry, Session, StorageState};
 
 impl Autosave {
     /// Stores clips that have just been read from a file. They do not wait for [`Self::update`].
+    /// `bytes` are those of the file, where they are at hand.
     pub(crate) fn store_clips(
         &mut self,
         session: &Session,
         large_files: &LargeFileStore,
         ids: &[String],
+        bytes: Option<FileBytes>,
     ) {
         let Some(storage) = &self.storage else { return };
         let mut clips = Vec::new();
@@ -18,7 +20,8 @@ impl Autosave {
             let Origin::File(file) = &entry.origin else {
                 continue;
             };
-            let Some(bytes) = large_files.bytes_of(&file.content) else {
+            let own = || large_files.bytes_of(&file.content).filter(|bytes| !bytes.is_stored());
+            let Some(bytes) = bytes.clone().or_else(own) else {
                 continue;
             };
             self.known.insert(entry.id.clone());
@@ -116,17 +119,26 @@ impl Autosave {
         self.known.extend(saved.entries.iter().map(|entry| entry.id.clone()));
         self.stored.clone_from(&now);
         self.seen = now;
-        let work = Work { saved, known: self.known.clone(), files: files_of(session, large_files) };
+        let work = Work {
+            saved,
+            known: self.known.clone(),
+            files: files_of(session, large_files),
+            kept: session.files_of_steps(),
+        };
         Some((storage, work))
     }
 }
 
-/// Returns the bytes of all files in the library, by their SHA-256.
+/// Returns the bytes of all files in the library, by their SHA-256, except those that are only in
+/// the storage.
 fn files_of(session: &Session, large_files: &LargeFileStore) -> StoredFiles {
     let origins = session.library().entries().iter().map(|entry| &entry.origin);
     origins
         .filter_map(|origin| match origin {
-            Origin::File(file) => Some((file.sha256.clone(), large_files.bytes_of(&file.content)?)),
+            Origin::File(file) => {
+                let bytes = large_files.bytes_of(&file.content)?;
+                (!bytes.is_stored()).then(|| (file.sha256.clone(), bytes))
+            }
             Origin::Preset | Origin::Sample(_) | Origin::Made => None,
         })
         .collect()

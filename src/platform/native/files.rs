@@ -3,8 +3,7 @@
 
 use super::LargeFile;
 use crate::platform::motion_files::{
-    MAX_FILE_BYTES, MAX_FILES_OF_FOLDER, endings, is_motion_file, last_part, no_motion_in,
-    too_large, too_many_in,
+    MAX_FILE_BYTES, endings, is_motion_file, last_part, no_motion_in, too_large,
 };
 use crate::platform::{Inbox, Incoming};
 use eframe::egui::DroppedFileHandle;
@@ -70,15 +69,12 @@ fn read_path(path: &Path, inbox: &Inbox) {
         return;
     }
     let say = |reason| inbox.push(Incoming::Failed { reason });
-    match motion_files(path, &name, MAX_FILES_OF_FOLDER) {
+    match motion_files(path, &name) {
         Err(error) => {
             say(msg!("{name} cannot be read: {error}.", name, error = error.to_string()));
         }
-        Ok((files, _)) if files.is_empty() => say(no_motion_in(&name)),
-        Ok((files, more)) => {
-            if more {
-                say(too_many_in(&name));
-            }
+        Ok(files) if files.is_empty() => say(no_motion_in(&name)),
+        Ok(files) => {
             for (path, name) in files {
                 read_file(&path, name, inbox);
             }
@@ -86,13 +82,9 @@ fn read_path(path: &Path, inbox: &Inbox) {
     }
 }
 
-/// Returns the first `max` motion files in and below a folder in the order of their paths, each
-/// with its name in the library, and whether there are more.
-fn motion_files(
-    folder: &Path,
-    name: &str,
-    max: usize,
-) -> std::io::Result<(Vec<(PathBuf, String)>, bool)> {
+/// Returns the motion files in and below a folder in the order of their paths, each with its name
+/// in the library.
+fn motion_files(folder: &Path, name: &str) -> std::io::Result<Vec<(PathBuf, String)>> {
     let mut files = Vec::new();
     // A stack of the paths to visit. Symbolic links are not followed, because they may form a
     // cycle.
@@ -110,13 +102,11 @@ fn motion_files(
             }
             children.sort_by(|x, y| y.1.cmp(&x.1));
             waiting.extend(children);
-        } else if files.len() == max {
-            return Ok((files, true));
         } else {
             files.push((path, name));
         }
     }
-    Ok((files, false))
+    Ok(files)
 }
 
 /// Reads a file into memory.
@@ -201,10 +191,6 @@ mod tests {
             received(&inbox),
             ["takes/a.zip", "takes/b/1.ASF", "takes/b/2.amc", "takes/c.bvh"]
         );
-        let (files, more) = motion_files(&folder.join("takes"), "takes", 3).unwrap();
-        assert_eq!((files.len(), more), (3, true));
-        let (files, more) = motion_files(&folder.join("takes"), "takes", 4).unwrap();
-        assert_eq!((files.len(), more), (4, false));
         read_path(&folder.join("empty"), &inbox);
         read_path(Path::new("/nowhere/walk.bvh"), &inbox);
         let reasons = received(&inbox);

@@ -3,6 +3,7 @@
 use crate::platform::{FileBytes, Inbox, Incoming, ReadEvent};
 use segue_session::Session;
 use segue_session::reading::{ReadTask, read};
+use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -20,6 +21,12 @@ impl LargeFile {
     /// Returns its size, bytes.
     pub(crate) fn len(&self) -> u64 {
         self.0.len() as u64
+    }
+
+    /// Returns `false`: a window has the bytes of its files.
+    #[expect(clippy::unused_self, reason = "a page has files that are only in its storage")]
+    pub(crate) fn is_stored(&self) -> bool {
+        false
     }
 
     /// Returns its bytes.
@@ -77,13 +84,13 @@ impl Reader {
         });
     }
 
-    /// Stops a task, if it is running.
-    pub(crate) fn stop(&mut self, task: u64) {
+    /// Stops those tasks that are running.
+    pub(crate) fn stop(&mut self, tasks: &BTreeSet<u64>) {
         self.running.retain(|(id, stopped)| {
-            if *id == task {
+            if tasks.contains(id) {
                 stopped.store(true, Ordering::Relaxed);
             }
-            *id != task
+            !tasks.contains(id)
         });
     }
 }

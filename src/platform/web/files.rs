@@ -62,7 +62,7 @@ pub(super) async fn read(files: Vec<(String, File)>, inbox: Inbox) {
             inbox.push(Incoming::Failed { reason });
             continue;
         }
-        if file.size() as u64 > LARGE_BYTES {
+        if !is_read_here(&name, file.size() as u64) {
             let file = LargeFile::new(file.into());
             inbox.push(Incoming::Large { name, file });
             continue;
@@ -73,6 +73,14 @@ pub(super) async fn read(files: Vec<(String, File)>, inbox: Inbox) {
             Err(error) => refuse(&name, &js_error_text(&error), &inbox),
         }
     }
+}
+
+/// Returns whether the app itself needs the bytes of a file: those of a bone map, and of a skeleton
+/// that others depend on. The browser holds all others, which workers read.
+fn is_read_here(name: &str, size: u64) -> bool {
+    let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
+    let is_needed = ["json", "asf"].iter().any(|own| ending.eq_ignore_ascii_case(own));
+    is_needed && size <= LARGE_BYTES
 }
 
 /// Hands the bytes of a file to the app.
@@ -107,7 +115,7 @@ pub(crate) fn read_dropped(files: Vec<DroppedFileHandle>, inbox: &Inbox) {
                 inbox.push(Incoming::Failed { reason });
                 continue;
             }
-            match file.web_file().filter(|file| file.size() as u64 > LARGE_BYTES) {
+            match file.web_file().filter(|_| !is_read_here(&name, size as u64)) {
                 Some(file) => {
                     let file = LargeFile::new(file.clone().into());
                     inbox.push(Incoming::Large { name, file });

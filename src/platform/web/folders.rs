@@ -3,9 +3,7 @@
 use super::files::read;
 use super::js_error_text;
 use super::page::{listen_first, window};
-use crate::platform::motion_files::{
-    MAX_FILES_OF_FOLDER, is_motion_file, no_motion_in, too_many_in,
-};
+use crate::platform::motion_files::{is_motion_file, no_motion_in};
 use crate::platform::{Inbox, Incoming};
 use js_sys::{Array, Promise};
 use segue_text::msg;
@@ -54,7 +52,7 @@ async fn read_entry(entry: FileSystemEntry, inbox: &Inbox) {
     let is_folder = entry.is_directory();
     let name = entry.name();
     let files = if is_folder {
-        motion_files(entry, inbox).await
+        motion_files(entry).await
     } else {
         let path = path_of(&entry);
         file_of(entry).await.map(|file| vec![(path, file)])
@@ -70,26 +68,17 @@ async fn read_entry(entry: FileSystemEntry, inbox: &Inbox) {
     }
 }
 
-/// Returns the motion files in and below a folder with their paths, at most
-/// [`MAX_FILES_OF_FOLDER`].
-async fn motion_files(
-    folder: FileSystemEntry,
-    inbox: &Inbox,
-) -> Result<Vec<(String, File)>, JsValue> {
-    let name = folder.name();
+/// Returns the motion files in and below a folder with their paths.
+async fn motion_files(folder: FileSystemEntry) -> Result<Vec<(String, File)>, JsValue> {
     let mut files = Vec::new();
     // A stack of the entries to visit.
     let mut waiting = vec![folder];
     while let Some(entry) = waiting.pop() {
         if entry.is_directory() {
             let mut children = children_of(entry.unchecked_ref()).await?;
-            children.sort_by_key(FileSystemEntry::name);
+            children.sort_by_cached_key(FileSystemEntry::name);
             waiting.extend(children.into_iter().rev());
         } else if is_motion_file(&entry.name()) {
-            if files.len() == MAX_FILES_OF_FOLDER {
-                inbox.push(Incoming::Failed { reason: too_many_in(&name) });
-                break;
-            }
             files.push((path_of(&entry), file_of(entry).await?));
         }
     }

@@ -1,30 +1,60 @@
-//! Reading of files by a worker with a WebAssembly of its own, `src/bin/reader.rs`, which
+//! Reading of files by workers with a WebAssembly of their own, `src/bin/reader.rs`, which
 //! `web/js/reader.js` starts.
 
 use super::js_error_text;
 use super::page::{listen, window};
+use super::storage::stored_place;
+use crate::platform::begun::Begun;
 use crate::platform::{FileBytes, Inbox, Incoming, ReadError, ReadEvent};
 use js_sys::{Array, Function, Object, Reflect, Uint8Array};
 use segue_session::reading::{LARGE_BYTES, ReadTask, Unpacker, WireError};
 use segue_session::{MemoryUse, PageMemory, Session};
 use segue_text::ToMessage as _;
 use std::cell::RefCell;
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 use std::fmt;
 use std::rc::Rc;
 use std::sync::Arc;
 use wasm_bindgen::{JsCast as _, JsValue};
 use web_sys::{Blob, MessageEvent, Worker};
 
-/// A file that is too large to be read between two frames. The browser holds it, so that the app's
-/// memory has no copy of its bytes.
+/// A file that the browser holds, so that the app's memory has no copy of its bytes.
 #[derive(Clone, PartialEq)]
-pub(crate) struct LargeFile(Blob);
+pub(crate) struct LargeFile(Held);
+
+/// The way in which the browser holds a file.
+#[derive(Clone)]
+enum Held {
+    /// By a handle.
+    Blob(Blob),
+    /// As an array.
+    Bytes(Uint8Array),
+    /// In the storage, under this SHA-256.
+    Stored(String),
+}
+
+impl PartialEq for Held {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Blob(one), Self::Blob(other)) => one == other,
+            (Self::Bytes(one), Self::Bytes(other)) => {
+                AsRef::<JsValue>::as_ref(one) == AsRef::<JsValue>::as_ref(other)
+            }
+            (Self::Stored(one), Self::Stored(other)) => one == other,
+            _ => false,
+        }
+    }
+}
 
 impl LargeFile {
-    /// Returns a file that the user chose, or that was stored.
+    /// Returns a file that the user chose.
     pub(crate) fn new(blob: Blob) -> Self {
-        Self(blob)
+        Self(Held::Blob(blob))
+    }
+
+    /// Returns a file in the storage, by its SHA-256.
+    pub(super) fn stored(sha256: &str) -> Self {
+        Self(Held::Stored(sha256.to_owned()))
     }
 
     /// Returns a file of these bytes; `None` when the browser has no room for it.
@@ -35,26 +65,39 @@ impl LargeFile {
     /// Returns a file of these pieces, each a `Uint8Array`; `None` when the browser has no room for
     /// it.
     pub(super) fn of_pieces(pieces: &Array) -> Option<Self> {
-        Blob::new_with_u8_array_sequence(pieces).ok().map(Self)
+        Blob::new_with_u8_array_sequence(pieces).ok().map(Self::new)
     }
 
-    /// Returns its size, bytes.
+    /// Returns its size, bytes; 0 for one in the storage, whose size its clips know.
     pub(crate) fn len(&self) -> u64 {
-        self.0.size() as u64
+        match &self.0 {
+            Held::Blob(blob) => blob.size() as u64,
+            Held::Bytes(bytes) => u64::from(bytes.length()),
+            Held::Stored(_) => 0,
+        }
     }
 
-    /// Returns the browser's handle of it.
-    pub(super) fn blob(&self) -> &Blob {
-        &self.0
+    /// Returns whether it is one in the storage.
+    pub(crate) fn is_stored(&self) -> bool {
+        matches!(self.0, Held::Stored(_))
     }
-}
 
-impl FileBytes {
-    /// Returns the number of bytes.
-    pub(super) fn len(&self) -> u64 {
-        match self {
-            Self::Here(bytes) => bytes.len() as u64,
-            Self::Large(file) => file.len(),
+    /// Returns what the storage is to hold; `None` for a file that it holds already.
+    pub(super) fn value(&self) -> Option<&JsValue> {
+        match &self.0 {
+            Held::Blob(blob) => Some(blob.as_ref()),
+            Held::Bytes(bytes) => Some(bytes.as_ref()),
+            Held::Stored(_) => None,
+        }
+    }
+
+    /// Returns the browser's handle of it; `None` for one in the storage, and where the browser has
+    /// no room for it.
+    fn to_blob(&self) -> Option<Blob> {
+        match &self.0 {
+            Held::Blob(blob) => Some(blob.clone()),
+            Held::Bytes(bytes) => Blob::new_with_u8_array_sequence(&Array::of1(bytes)).ok(),
+            Held::Stored(_) => None,
         }
     }
 }
@@ -112,29 +155,48 @@ pub(crate) fn update_memory(reader: &mut Reader, session: &mut Session) {
     }
 }
 
-/// A reader of files in workers: one for large files, one after the other, and one for small
+/// A reader of files in workers: one for large files, one after the other, and several for small
 /// files.
 pub(crate) struct Reader {
     large: Rc<RefCell<State>>,
     small: Rc<RefCell<State>>,
 }
 
-/// A worker and its queue.
+/// The most workers for small files.
+const MAX_SMALL_WORKERS: usize = 4;
+/// The most tasks that are begun before the first of them is done: their reports wait for it, so
+/// that files join the library in the order in which they were opened.
+const MAX_BEGUN: usize = 16;
+
+/// Workers and their queue.
 struct State {
     inbox: Inbox,
-    worker: Option<Worker>,
+    slots: Vec<Slot>,
     waiting: VecDeque<(ReadTask, FileBytes)>,
-    current: Option<CurrentTask>,
+    begun: Begun<ReadEvent>,
     /// The memory that is left for reports, bytes.
     room: u64,
 }
 
-/// The task that the worker is at.
+/// The place of a worker.
+#[derive(Default)]
+struct Slot {
+    worker: Option<Worker>,
+    current: Option<CurrentTask>,
+}
+
+/// The task that a worker is at.
 struct CurrentTask {
     task: u64,
     size: u64,
     /// The report so far; `None` before its head has arrived.
     unpacker: Option<Unpacker>,
+}
+
+/// Returns the number of workers for small files: one for each processor but the one of the page.
+fn small_workers() -> usize {
+    let processors = window().map_or(1.0, |window| window.navigator().hardware_concurrency());
+    (processors as usize).saturating_sub(1).clamp(1, MAX_SMALL_WORKERS)
 }
 
 impl fmt::Debug for Reader {
@@ -146,96 +208,105 @@ impl fmt::Debug for Reader {
 impl Reader {
     /// Returns a reader that reports to `inbox`.
     pub(crate) fn new(inbox: &Inbox) -> Self {
-        let state = || {
+        let state = |workers: usize| {
             Rc::new(RefCell::new(State {
                 inbox: inbox.clone(),
-                worker: None,
+                slots: (0..workers).map(|_| Slot::default()).collect(),
                 waiting: VecDeque::new(),
-                current: None,
+                begun: Begun::default(),
                 room: u64::MAX,
             }))
         };
-        Self { large: state(), small: state() }
+        Self { large: state(1), small: state(small_workers()) }
     }
 
     /// Queues a file to read.
     pub(crate) fn start(&mut self, task: ReadTask, bytes: FileBytes) {
-        let state = if bytes.len() > LARGE_BYTES { &self.large } else { &self.small };
+        let state = if task.size > LARGE_BYTES { &self.large } else { &self.small };
         state.borrow_mut().waiting.push_back((task, bytes));
         start_next(state);
     }
 
-    /// Stops a task, if it is running or waits.
-    pub(crate) fn stop(&mut self, task: u64) {
+    /// Stops tasks, whether they run or wait.
+    pub(crate) fn stop(&mut self, tasks: &BTreeSet<u64>) {
         for state in [&self.large, &self.small] {
-            state.borrow_mut().remove(task);
+            state.borrow_mut().remove(tasks);
             start_next(state);
         }
     }
 }
 
 impl State {
-    /// Removes a task, and ends the worker that runs it.
-    fn remove(&mut self, task: u64) {
-        self.waiting.retain(|(waiting, _)| waiting.id != task);
-        if self.current.as_ref().is_some_and(|current| current.task == task) {
-            self.current = None;
-            self.end_worker();
+    /// Removes tasks, and ends the workers that run them.
+    fn remove(&mut self, tasks: &BTreeSet<u64>) {
+        self.waiting.retain(|(waiting, _)| !tasks.contains(&waiting.id));
+        let is_stopped = |slot: &&mut Slot| slot.task().is_some_and(|task| tasks.contains(&task));
+        for slot in self.slots.iter_mut().filter(is_stopped) {
+            slot.current = None;
+            slot.end_worker();
+        }
+        self.begun.remove(tasks);
+        self.deliver();
+    }
+
+    /// Reports an event of a task to the app, once the tasks before it are done.
+    fn report(&mut self, task: u64, event: ReadEvent, is_last: bool) {
+        self.begun.add(task, event, is_last);
+        self.deliver();
+    }
+
+    fn deliver(&mut self) {
+        for (task, event) in self.begun.take_ready() {
+            self.inbox.push(Incoming::Reading { task, event });
         }
     }
 
-    fn end_worker(&mut self) {
-        if let Some(worker) = self.worker.take() {
-            worker.terminate();
-        }
-    }
-
-    /// Reports an event of a task to the app.
-    fn report(&self, task: u64, event: ReadEvent) {
-        self.inbox.push(Incoming::Reading { task, event });
-    }
-
-    /// Returns the memory that is reserved for the report under way, bytes.
+    /// Returns the memory that is reserved for the reports under way, bytes.
     fn incoming_bytes(&self) -> u64 {
-        let unpacker = self.current.as_ref().and_then(|current| current.unpacker.as_ref());
-        unpacker.map_or(0, Unpacker::bytes)
+        let current = self.slots.iter().filter_map(|slot| slot.current.as_ref());
+        current.filter_map(|current| current.unpacker.as_ref()).map(Unpacker::bytes).sum()
     }
 
-    /// Ends the current task and the worker, for that reason.
-    fn fail(&mut self, reason: ReadError) {
-        self.abandon(ReadEvent::Done(Err(reason)));
-    }
-
-    /// Ends the current task and the worker, and reports the event.
-    fn abandon(&mut self, event: ReadEvent) {
-        if let Some(current) = self.current.take() {
-            self.report(current.task, event);
+    /// Ends the task of a slot and its worker, and reports the event.
+    fn abandon(&mut self, slot: usize, event: ReadEvent) {
+        let Some(slot) = self.slots.get_mut(slot) else { return };
+        let current = slot.current.take();
+        slot.end_worker();
+        if let Some(current) = current {
+            self.report(current.task, event, true);
         }
-        self.end_worker();
     }
 
-    /// Reports the end of the current task.
-    fn finish(&mut self) {
-        let Some(current) = self.current.take() else {
-            return;
-        };
+    /// Ends the task of a slot and its worker, for that reason.
+    fn fail(&mut self, slot: usize, reason: ReadError) {
+        self.abandon(slot, ReadEvent::Done(Err(reason)));
+    }
+
+    /// Reports the end of the task of a slot. `bytes` are those of its file, if the worker has
+    /// handed them over.
+    fn finish(&mut self, index: usize, bytes: Option<Uint8Array>) {
+        let Some(slot) = self.slots.get_mut(index) else { return };
+        let Some(current) = slot.current.take() else { return };
+        if current.size > MAX_KEPT_BYTES {
+            slot.end_worker();
+        }
         let report = match current.unpacker {
             Some(unpacker) => {
                 unpacker.finish().map_err(|error| ReadError::InvalidReport(error.to_message()))
             }
             None => Err(ReadError::NoReport),
         };
-        self.report(current.task, ReadEvent::Done(report));
-        if current.size > MAX_KEPT_BYTES {
-            self.end_worker();
+        if let Some(bytes) = bytes {
+            self.report(current.task, ReadEvent::Bytes(LargeFile(Held::Bytes(bytes))), false);
         }
+        self.report(current.task, ReadEvent::Done(report), true);
     }
 
-    /// Takes in a message of the worker.
-    fn on_message(&mut self, data: &JsValue) {
+    /// Takes in a message of the worker in a slot.
+    fn on_message(&mut self, index: usize, data: &JsValue) {
         let part =
             |name: &str| Reflect::get(data, &JsValue::from(name)).unwrap_or(JsValue::UNDEFINED);
-        let Some(current) = &mut self.current else {
+        let Some(current) = self.slots.get_mut(index).and_then(|slot| slot.current.as_mut()) else {
             return;
         };
         if part("task").as_f64() != Some(current.task as f64) {
@@ -243,44 +314,74 @@ impl State {
         }
         if let Some(done) = part("progress").as_f64() {
             let task = current.task;
-            self.report(task, ReadEvent::Progress(done as u64));
+            self.inbox.push(Incoming::Reading { task, event: ReadEvent::Progress(done as u64) });
         } else if let Some(head) = part("head").as_string() {
             match Unpacker::new(&head, self.room) {
                 Ok(unpacker) => {
                     self.room = self.room.saturating_sub(unpacker.bytes());
                     current.unpacker = Some(unpacker);
                 }
-                Err(WireError::NoRoom { bytes }) => self.abandon(ReadEvent::NoRoom(bytes as u64)),
-                Err(error) => self.fail(ReadError::InvalidReport(error.to_message())),
+                Err(WireError::NoRoom { bytes }) => {
+                    self.abandon(index, ReadEvent::NoRoom(bytes as u64));
+                }
+                Err(error) => self.fail(index, ReadError::InvalidReport(error.to_message())),
             }
         } else if let (Ok(piece), Some(unpacker)) =
             (part("piece").dyn_into::<Uint8Array>(), &mut current.unpacker)
         {
             unpacker.push(&piece.to_vec());
         } else if let Some(reason) = part("failed").as_string() {
-            self.fail(ReadError::Failed(reason));
+            self.fail(index, ReadError::Failed(reason));
+        } else if part("lost").is_truthy() {
+            self.fail(index, ReadError::Lost);
         } else if part("end").is_truthy() {
-            self.finish();
+            self.finish(index, part("bytes").dyn_into().ok());
         }
     }
 }
 
-/// Posts the next task to the worker, when it is free and a task waits.
-fn start_next(state: &Rc<RefCell<State>>) {
-    let (task, bytes) = {
-        let mut state = state.borrow_mut();
-        if state.current.is_some() {
-            return;
+impl Slot {
+    fn task(&self) -> Option<u64> {
+        self.current.as_ref().map(|current| current.task)
+    }
+
+    fn end_worker(&mut self) {
+        if let Some(worker) = self.worker.take() {
+            worker.terminate();
         }
-        let Some((task, bytes)) = state.waiting.pop_front() else {
-            return;
+    }
+}
+
+/// Posts the next tasks to the workers, as long as one is free and a task waits.
+fn start_next(state: &Rc<RefCell<State>>) {
+    loop {
+        let (slot, task, bytes) = {
+            let mut state = state.borrow_mut();
+            if state.begun.len() >= MAX_BEGUN {
+                return;
+            }
+            // Those that run come first: another one has to be started.
+            let free = |with_worker: bool| {
+                let is_free =
+                    |slot: &Slot| slot.current.is_none() && slot.worker.is_some() == with_worker;
+                state.slots.iter().position(is_free)
+            };
+            let Some(slot) = free(true).or_else(|| free(false)) else {
+                return;
+            };
+            let Some((task, bytes)) = state.waiting.pop_front() else {
+                return;
+            };
+            state.begun.begin(task.id);
+            let current = CurrentTask { task: task.id, size: task.size, unpacker: None };
+            if let Some(slot) = state.slots.get_mut(slot) {
+                slot.current = Some(current);
+            }
+            (slot, task, bytes)
         };
-        state.current = Some(CurrentTask { task: task.id, size: bytes.len(), unpacker: None });
-        (task, bytes)
-    };
-    if let Err(error) = post(state, &task, &bytes) {
-        state.borrow_mut().fail(error);
-        start_next(state);
+        if let Err(error) = post(state, slot, &task, &bytes) {
+            state.borrow_mut().fail(slot, error);
+        }
     }
 }
 
@@ -290,35 +391,51 @@ impl From<JsValue> for ReadError {
     }
 }
 
-/// Posts a task to the worker, which is made where there is none.
-fn post(state: &Rc<RefCell<State>>, task: &ReadTask, bytes: &FileBytes) -> Result<(), ReadError> {
-    let worker = match state.borrow().worker.clone() {
+/// Posts a task to the worker in a slot, which is made where there is none.
+fn post(
+    state: &Rc<RefCell<State>>,
+    slot: usize,
+    task: &ReadTask,
+    bytes: &FileBytes,
+) -> Result<(), ReadError> {
+    let known = state.borrow().slots.get(slot).and_then(|slot| slot.worker.clone());
+    let worker = match known {
         Some(worker) => worker,
-        None => new_worker(state)?,
+        None => new_worker(state, slot)?,
     };
-    state.borrow_mut().worker = Some(worker.clone());
+    if let Some(slot) = state.borrow_mut().slots.get_mut(slot) {
+        slot.worker = Some(worker.clone());
+    }
     let setup =
         serde_json::to_string(&task.setup).map_err(|error| ReadError::Failed(error.to_string()))?;
     let file = match bytes {
-        FileBytes::Here(bytes) => {
-            LargeFile::of_bytes(&Uint8Array::from(&bytes[..])).ok_or(ReadError::NoRoom)?.0
-        }
-        FileBytes::Large(file) => file.blob().clone(),
+        FileBytes::Here(bytes) => LargeFile::of_bytes(&Uint8Array::from(&bytes[..])),
+        FileBytes::Large(file) => Some(file.clone()),
     };
+    let file = file.ok_or(ReadError::NoRoom)?;
+    // A file of the user's may have changed or be gone by now, while the storage still has it.
+    let stored = match (&file.0, &task.setup.sha256) {
+        (Held::Stored(sha256), _) | (_, Some(sha256)) => stored_place(sha256)?,
+        _ => JsValue::UNDEFINED,
+    };
+    // A small new file is stored as bytes, which the worker has at hand.
+    let is_new = task.setup.sha256.is_none() && task.setup.convert.is_none();
     let message = Object::new();
     for (key, value) in [
         ("task", JsValue::from(task.id as f64)),
         ("name", JsValue::from(&task.name)),
         ("setup", JsValue::from(setup)),
-        ("file", JsValue::from(file)),
+        ("file", file.to_blob().map_or(JsValue::UNDEFINED, JsValue::from)),
+        ("stored", stored),
+        ("returnsBytes", JsValue::from(is_new && task.size <= LARGE_BYTES)),
     ] {
         Reflect::set(&message, &JsValue::from(key), &value)?;
     }
     Ok(worker.post_message(&message)?)
 }
 
-/// Makes a worker that reports to `state`.
-fn new_worker(state: &Rc<RefCell<State>>) -> Result<Worker, ReadError> {
+/// Makes a worker that reports to a slot of `state`.
+fn new_worker(state: &Rc<RefCell<State>>, slot: usize) -> Result<Worker, ReadError> {
     let make = NEW_WORKER.with(|make| make.borrow().clone()).ok_or(ReadError::NoWorkers)?;
     let worker: Worker = make.call0(&JsValue::NULL)?.dyn_into()?;
     let weak = Rc::downgrade(state);
@@ -326,7 +443,7 @@ fn new_worker(state: &Rc<RefCell<State>>) -> Result<Worker, ReadError> {
         let (Some(state), Some(event)) = (weak.upgrade(), event.dyn_ref::<MessageEvent>()) else {
             return;
         };
-        state.borrow_mut().on_message(&event.data());
+        state.borrow_mut().on_message(slot, &event.data());
         start_next(&state);
     });
     let weak = Rc::downgrade(state);
@@ -335,7 +452,7 @@ fn new_worker(state: &Rc<RefCell<State>>) -> Result<Worker, ReadError> {
         let Some(state) = weak.upgrade() else { return };
         let message =
             Reflect::get(&event, &"message".into()).ok().and_then(|text| text.as_string());
-        state.borrow_mut().fail(message.map_or(ReadError::NotStarted, ReadError::Failed));
+        state.borrow_mut().fail(slot, message.map_or(ReadError::NotStarted, ReadError::Failed));
         start_next(&state);
     });
     Ok(worker)

@@ -16,22 +16,23 @@ use idb::{
     Database, DatabaseEvent as _, Error, Factory, ObjectStoreParams, Transaction, TransactionMode,
     TransactionResult,
 };
-use js_sys::{Date, Math, Uint8Array};
-use segue_session::{SavedEntry, StorageState};
+use js_sys::{Date, Math, Object, Reflect, Uint8Array};
+use segue_session::{Saved, SavedEntry, StorageState};
 use segue_text::{Message, msg};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
-use std::sync::Arc;
+use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::{Closure, wasm_bindgen};
-use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::spawn_local;
-use web_sys::{Blob, MessageEvent};
+use web_sys::MessageEvent;
 
 const DATABASE: &str = "segue";
 const VERSION: u32 = 1;
 const WORK: &str = "work";
 const FILES: &str = "files";
+/// The most clips that one transaction writes.
+const MAX_WRITTEN_AT_ONCE: usize = 32;
 
 #[wasm_bindgen]
 extern "C" {
@@ -78,6 +79,9 @@ struct State {
     channel: Option<BroadcastChannel>,
     /// The random name of this window.
     window: String,
+    /// The record of all work as this window wrote it last, with its text: while it is the stored
+    /// one, it need not be read.
+    written: Option<(String, Saved)>,
 }
 
 /// The reason why something was not written.
@@ -139,17 +143,15 @@ impl Storage {
         let transaction = database.transaction(&[WORK, FILES], TransactionMode::ReadOnly)?;
         let (works, files) = (transaction.object_store(WORK)?, transaction.object_store(FILES)?);
         let (work_keys, texts) = (works.get_all_keys(None, None)?, works.get_all(None, None)?);
-        let (keys, values) = (files.get_all_keys(None, None)?, files.get_all(None, None)?);
+        // Files are read when they are needed.
+        let keys = files.get_all_keys(None, None)?;
         // All requests are sent at once; the answers come in this order.
-        let (work_keys, texts) = (work_keys.await?, texts.await?);
-        let (keys, values) = (keys.await?, values.await?);
+        let (work_keys, texts, keys) = (work_keys.await?, texts.await?, keys_of(keys.await?));
         let texts: Vec<(String, String)> = (work_keys.iter().zip(&texts))
             .filter_map(|(key, text)| Some((key.as_string()?, text.as_string()?)))
             .collect();
         let records = Records::read(texts.iter().map(|(key, text)| (key.as_str(), text.as_str())));
-        let files: StoredFiles = (keys.iter().zip(values))
-            .filter_map(|(key, value)| Some((key.as_string()?, file_bytes(value)?)))
-            .collect();
+        let files: StoredFiles = keys.into_iter().map(stored_file).collect();
         let problem = records.problem.map(|problem| {
             msg!(
                 "The list of your work in this browser's storage cannot be read ({problem}). It is kept, and no file is deleted: your clips are here, what you set and corrected is not.",
@@ -220,8 +222,9 @@ impl Storage {
         };
         let this = self.clone();
         spawn_local(async move {
-            match read_files(&database, &entries).await {
-                Ok(files) => {
+            match held_files(&database).await {
+                Ok(held) => {
+                    let files: StoredFiles = held.into_iter().map(stored_file).collect();
                     let has_file = |entry: &SavedEntry| {
                         entry.file.as_ref().is_none_or(|file| files.contains_key(&file.sha256))
                     };
@@ -274,7 +277,9 @@ impl Storage {
         loop {
             let (database, clips, work) = {
                 let mut state = self.state.borrow_mut();
-                let clips = Rc::new(std::mem::take(&mut state.queue));
+                // A few at a time: what is written at once is copied at once.
+                let due = state.queue.len().min(MAX_WRITTEN_AT_ONCE);
+                let clips = Rc::new(state.queue.drain(..due).collect::<Vec<_>>());
                 state.in_flight = Rc::clone(&clips);
                 let work = if clips.is_empty() { state.next.take() } else { None };
                 let database =
@@ -338,8 +343,7 @@ impl Storage {
 
     /// Writes the missing clips and the record of all work.
     async fn write(&self, database: &Database, work: &Work) -> Result<(), Failure> {
-        let asked = database.transaction(&[FILES], TransactionMode::ReadOnly)?;
-        let held = keys_of(asked.object_store(FILES)?.get_all_keys(None, None)?.await?);
+        let held = held_files(database).await?;
         let missing = {
             let mut state = self.state.borrow_mut();
             state.refused.retain(|sha256, _| work.files.contains_key(sha256));
@@ -368,6 +372,10 @@ impl Storage {
             (works.get(JsValue::from(LATEST))?, works.get_all_keys(None, None)?);
         let held = files.get_all_keys(None, None)?;
         let latest = latest.await?.and_then(|text| text.as_string());
+        let written = self.state.borrow_mut().written.take();
+        let known = written.filter(|(text, _)| Some(text) == latest.as_ref());
+        let known = known.map(|(_, saved)| saved);
+        let latest = latest.filter(|_| known.is_none());
         let (work_keys, held) = (keys_of(work_keys.await?), keys_of(held.await?));
         let mut texts: Vec<(&str, String)> =
             latest.map(|text| (LATEST, text)).into_iter().collect();
@@ -381,7 +389,8 @@ impl Storage {
                 texts.push((key, text));
             }
         }
-        let records = Records::read(texts.iter().map(|(key, text)| (*key, text.as_str())));
+        let texts_by_key = texts.iter().map(|(key, text)| (*key, text.as_str()));
+        let records = Records::read_over(known, texts_by_key);
         let mut some_are_unread = work_keys.iter().any(|key| is_unread_key(key));
         if let (Some(problem), Some((_, text))) = (&records.problem, texts.first()) {
             log::warn!("the stored work cannot be read and is kept: {problem}");
@@ -390,7 +399,8 @@ impl Storage {
         }
         let there = records.all();
         let all = work.over(&there, |sha256| held.contains(sha256));
-        works.put(&JsValue::from(text_of(&all)?), Some(&JsValue::from(LATEST)))?;
+        let text = text_of(&all)?;
+        works.put(&JsValue::from(&text), Some(&JsValue::from(LATEST)))?;
         let clip_records: BTreeMap<String, &SavedEntry> =
             (all.entries.iter().filter(|entry| entry.file.is_some()))
                 .map(|entry| (clip_key(&entry.id), entry))
@@ -406,7 +416,9 @@ impl Storage {
         // A damaged record may need any file, except those that the readable records name as well.
         let (needed, named) = (all.files(), there.files());
         let is_free = |key: &&String| {
-            !needed.contains(key.as_str()) && (!some_are_unread || named.contains(key.as_str()))
+            !needed.contains(key.as_str())
+                && !work.kept.contains(key.as_str())
+                && (!some_are_unread || named.contains(key.as_str()))
         };
         let mut freed = false;
         for key in held.iter().filter(is_free) {
@@ -414,6 +426,7 @@ impl Storage {
             freed = true;
         }
         committed((transaction.commit()?, watched)).await?;
+        self.state.borrow_mut().written = Some((text, all));
         Ok(freed)
     }
 
@@ -496,11 +509,13 @@ fn begin_put(
     let mut written = BTreeSet::new();
     for clip in clips {
         if written.insert(clip.sha256.as_str()) {
-            let value: JsValue = match &clip.bytes {
-                FileBytes::Here(bytes) => Uint8Array::from(&bytes[..]).into(),
-                FileBytes::Large(file) => file.blob().into(),
+            let value: Option<JsValue> = match &clip.bytes {
+                FileBytes::Here(bytes) => Some(Uint8Array::from(&bytes[..]).into()),
+                FileBytes::Large(file) => file.value().cloned(),
             };
-            files.put(&value, Some(&JsValue::from(&clip.sha256)))?;
+            if let Some(value) = value {
+                files.put(&value, Some(&JsValue::from(&clip.sha256)))?;
+            }
         }
         let key = clip_key(&clip.entry.id);
         works.put(&JsValue::from(clip_record_text(&clip.entry)?), Some(&JsValue::from(key)))?;
@@ -531,19 +546,11 @@ async fn put(database: &Database, clips: &[NewClip]) -> Result<(), Failure> {
     committed(begin_put(database, clips, None)?).await
 }
 
-/// Reads the files of clips.
-async fn read_files(database: &Database, entries: &[SavedEntry]) -> Result<StoredFiles, Error> {
+/// Returns the SHA-256 of the files in the storage.
+async fn held_files(database: &Database) -> Result<BTreeSet<String>, Error> {
     let transaction = database.transaction(&[FILES], TransactionMode::ReadOnly)?;
-    let store = transaction.object_store(FILES)?;
-    let keys: BTreeSet<&str> =
-        entries.iter().filter_map(|entry| Some(entry.file.as_ref()?.sha256.as_str())).collect();
-    let mut files = StoredFiles::new();
-    for key in keys {
-        if let Some(bytes) = store.get(JsValue::from(key))?.await?.and_then(file_bytes) {
-            files.insert(key.to_owned(), bytes);
-        }
-    }
-    Ok(files)
+    let held = transaction.object_store(FILES)?.get_all_keys(None, None)?;
+    Ok(keys_of(held.await?))
 }
 
 /// Returns the name of a DOM exception; `None` for other errors.
@@ -551,12 +558,19 @@ fn exception_name(error: &Error) -> Option<String> {
     if let Error::DomException(exception) = error { Some(exception.name()) } else { None }
 }
 
-/// Returns a stored file: a small one as its bytes, a large one as the browser's handle.
-fn file_bytes(value: JsValue) -> Option<FileBytes> {
-    match value.dyn_into::<Uint8Array>() {
-        Ok(bytes) => Some(FileBytes::Here(Arc::from(bytes.to_vec()))),
-        Err(value) => Some(FileBytes::Large(LargeFile::new(value.dyn_into::<Blob>().ok()?))),
+/// Returns a file in the storage with its key.
+fn stored_file(sha256: String) -> (String, FileBytes) {
+    let file = LargeFile::stored(&sha256);
+    (sha256, FileBytes::Large(file))
+}
+
+/// Returns where workers find a file in the storage: `{ database, store, key }`.
+pub(super) fn stored_place(sha256: &str) -> Result<JsValue, JsValue> {
+    let place = Object::new();
+    for (name, value) in [("database", DATABASE), ("store", FILES), ("key", sha256)] {
+        Reflect::set(&place, &JsValue::from(name), &JsValue::from(value))?;
     }
+    Ok(place.into())
 }
 
 /// Opens the database, and creates its stores on the first visit.

@@ -75,6 +75,8 @@ pub(crate) struct ClipRowResponse {
     pub(crate) event: Option<ClipRowEvent>,
     /// The row, which a mouse can drag; give it a payload with `dnd_set_drag_payload`.
     pub(crate) response: Response,
+    /// Whether the row or a part of it has the focus.
+    pub(crate) has_focus: bool,
 }
 
 /// The widths of the parts of a row, points.
@@ -169,13 +171,13 @@ pub(crate) fn clip_row_ui(row: ClipRow<'_>, ui: &mut Ui) -> ClipRowResponse {
     signs_ui(&row, id, pos2(signs_right, name_at.y), ui);
     let event = pressed.or(event);
     if !hovered || ui.ctx().any_popup_open() {
-        return ClipRowResponse { event, response };
+        return ClipRowResponse { event, response, has_focus };
     }
     let more = say(row.more, ui);
     let dot = if more.is_empty() { "" } else { " · " };
     let hint = format!("{name}\n{detail}{dot}{more}");
     let response = response.on_hover_text(say(Text::Data(&hint), ui));
-    ClipRowResponse { event, response }
+    ClipRowResponse { event, response, has_focus }
 }
 
 /// The kinds of widgets in a row, which their ids contain.

@@ -9,61 +9,150 @@ use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+/// What the order of the list depends on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct ArrangedFor {
+    /// The session's revision.
+    pub(super) revision: u64,
+    /// The tag of the language, in which the names of built-in clips are.
+    pub(super) language: &'static str,
+    pub(super) order: ClipOrder,
+    pub(super) search: String,
+}
+
+/// The arranged list.
+#[derive(Clone, Debug)]
+pub(in crate::ui) struct Arranged {
+    pub(super) key: ArrangedFor,
+    pub(super) sections: Vec<Section>,
+}
+
+/// A row of the list.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Row<'a> {
+    /// The head of a section.
+    Head(&'a Section),
+    /// A clip.
+    Clip(&'a Entry),
+}
+
+impl<'a> Row<'a> {
+    /// Returns the clip; `None` for a head.
+    pub(super) fn clip(&self) -> Option<&'a Entry> {
+        if let Self::Clip(entry) = self { Some(entry) } else { None }
+    }
+
+    /// Returns whether its facts are known.
+    pub(super) fn is_known(&self) -> bool {
+        self.clip().is_some_and(Entry::is_known)
+    }
+}
+
+/// The heights of rows as they were drawn last, points: those that are out of sight take as much
+/// room.
+#[derive(Clone, Debug)]
+pub(in crate::ui) struct RowHeights {
+    /// That of a clip.
+    pub(super) clip: f32,
+    /// That of a head.
+    head: f32,
+    /// Those of clips that have another one, by their ids: with their details, or with more to say.
+    others: BTreeMap<String, f32>,
+}
+
+impl Default for RowHeights {
+    fn default() -> Self {
+        Self { clip: 44.0, head: 28.0, others: BTreeMap::new() }
+    }
+}
+
+impl RowHeights {
+    /// Returns the height of a row.
+    pub(super) fn of(&self, row: &Row<'_>) -> f32 {
+        match row {
+            Row::Head(_) => self.head,
+            Row::Clip(_) if self.others.is_empty() => self.clip,
+            Row::Clip(entry) => self.others.get(&entry.id).copied().unwrap_or(self.clip),
+        }
+    }
+
+    /// Records the height of a row that was drawn; `is_plain` says that it has no details, and no
+    /// sentence in place of the facts.
+    pub(super) fn note(&mut self, row: &Row<'_>, is_plain: bool, height: f32) {
+        match row {
+            Row::Head(_) => self.head = height,
+            Row::Clip(entry) if is_plain => {
+                self.clip = height;
+                self.others.remove(&entry.id);
+            }
+            Row::Clip(entry) => {
+                self.others.insert(entry.id.clone(), height);
+            }
+        }
+    }
+}
+
 /// Neighbours in the list.
 #[derive(Clone, Debug)]
-pub(super) struct Section<'a> {
+pub(super) struct Section {
     /// The key under which it is folded, and its name; `None` for clips in no group.
     pub(super) head: Option<(String, Message)>,
     /// Whether the name of the group says how many files it has.
     pub(super) is_counted: bool,
-    /// Its clips.
-    pub(super) entries: Vec<&'a Entry>,
+    /// The indices of its clips in the library.
+    pub(super) entries: Vec<usize>,
 }
 
 /// Returns the sections of the list: the user's clips alone, then their groups, then the built-in
 /// clips. `search` is what names have to contain; `name_of` returns the name on screen.
-pub(super) fn arrange<'a>(
-    entries: &'a [Arc<Entry>],
+pub(super) fn arrange(
+    entries: &[Arc<Entry>],
     order: ClipOrder,
     search: &str,
     name_of: impl Fn(&Entry) -> String,
-) -> Vec<Section<'a>> {
+) -> Vec<Section> {
     let is_built_in = |entry: &Entry| matches!(entry.origin, Origin::Preset);
     let words: Vec<String> = search.split_whitespace().map(str::to_lowercase).collect();
-    let mut shown: Vec<(&'a Entry, String)> =
-        entries.iter().map(|entry| (&**entry, name_of(entry).to_lowercase())).collect();
-    shown.retain(|(_, name)| words.iter().all(|word| name.contains(word)));
-    let secs = |entry: &Entry| {
-        entry.motion.as_ref().map_or(f64::INFINITY, |motion| motion.clip().duration_secs())
-    };
+    let mut shown: Vec<(usize, &Entry, String)> = (entries.iter().enumerate())
+        .map(|(index, entry)| (index, &**entry, name_of(entry).to_lowercase()))
+        .collect();
+    shown.retain(|(.., name)| words.iter().all(|word| name.contains(word)));
+    let secs =
+        |entry: &Entry| entry.facts.as_ref().map_or(f64::INFINITY, |facts| facts.duration_secs());
+    let speed = |entry: &Entry| entry.facts.as_ref().map_or(f32::INFINITY, |facts| facts.speed_mps);
     match order {
         ClipOrder::Added => {}
-        ClipOrder::Name => sort_by(&mut shown, |(_, a), (_, b)| by_name(a, b)),
-        ClipOrder::Length => sort_by(&mut shown, |(a, _), (b, _)| secs(a).total_cmp(&secs(b))),
+        ClipOrder::Name => sort_by(&mut shown, |(.., a), (.., b)| by_name(a, b)),
+        ClipOrder::Length => {
+            sort_by(&mut shown, |(_, a, _), (_, b, _)| secs(a).total_cmp(&secs(b)))
+        }
+        ClipOrder::Speed => {
+            sort_by(&mut shown, |(_, a, _), (_, b, _)| speed(a).total_cmp(&speed(b)))
+        }
     }
     let groups = groups_of(entries);
     let mut alone = Section { head: None, is_counted: false, entries: Vec::new() };
     let mut built_in = alone.clone();
-    let mut grouped: Vec<Section<'a>> = Vec::new();
-    for (entry, _) in shown {
+    let mut grouped: Vec<Section> = Vec::new();
+    // The places of the groups among them.
+    let mut places: BTreeMap<ClipGroup, usize> = BTreeMap::new();
+    for (index, entry, _) in shown {
         if is_built_in(entry) {
-            built_in.entries.push(entry);
+            built_in.entries.push(index);
             continue;
         }
-        let Some((key, title)) = entry.group().and_then(|group| groups.get(&group)) else {
-            alone.entries.push(entry);
+        let group = entry.group().and_then(|group| Some((groups.get(&group)?.clone(), group)));
+        let Some((head, group)) = group else {
+            alone.entries.push(index);
             continue;
         };
-        let is_same = |section: &&mut Section<'_>| {
-            section.head.as_ref().is_some_and(|(known, _)| known == key)
-        };
-        match grouped.iter_mut().find(is_same) {
-            Some(section) => section.entries.push(entry),
-            None => grouped.push(Section {
-                head: Some((key.clone(), title.clone())),
-                is_counted: matches!(entry.group(), Some(ClipGroup::Batch(_))),
-                entries: vec![entry],
-            }),
+        let is_counted = matches!(group, ClipGroup::Batch(_));
+        let place = *places.entry(group).or_insert_with(|| {
+            grouped.push(Section { head: Some(head), is_counted, entries: Vec::new() });
+            grouped.len() - 1
+        });
+        if let Some(section) = grouped.get_mut(place) {
+            section.entries.push(index);
         }
     }
     // Among clips of the user's the built-in ones are a group as well.
@@ -155,7 +244,8 @@ mod tests {
             arrange(session.library().entries(), order, search, |entry| entry.name.clone());
         let own = sections.into_iter().map(|section| {
             let head = section.head.map_or_else(String::new, |(_, title)| title.to_string());
-            (head, section.entries.iter().map(|entry| entry.name.clone()).collect())
+            let name = |index: &usize| session.library().entries()[*index].name.clone();
+            (head, section.entries.iter().map(name).collect())
         });
         own.collect()
     }
@@ -195,6 +285,21 @@ mod tests {
     }
 
     #[test]
+    fn clips_are_ordered_by_speed() {
+        let mut session = Session::new();
+        session.make_all();
+        let entries = session.library().entries();
+        let sections = arrange(entries, ClipOrder::Speed, "", |entry| entry.name.clone());
+        let speeds: Vec<f32> = sections[0]
+            .entries
+            .iter()
+            .map(|&index| entries[index].facts.as_ref().expect("it was made").speed_mps)
+            .collect();
+        assert!(speeds.len() > 3 && speeds.is_sorted(), "{speeds:?}");
+        assert!(speeds[0] < 0.5 && speeds[speeds.len() - 1] > 2.0, "{speeds:?}");
+    }
+
+    #[test]
     fn clips_are_ordered_by_length() {
         let mut session = Session::new();
         session.make_all();
@@ -203,7 +308,7 @@ mod tests {
         let secs: Vec<f64> = sections[0]
             .entries
             .iter()
-            .map(|entry| entry.motion.as_ref().expect("it was made").clip().duration_secs())
+            .map(|&index| entries[index].facts.as_ref().expect("it was made").duration_secs())
             .collect();
         assert!(secs.len() > 3 && secs.is_sorted(), "{secs:?}");
     }

@@ -7,7 +7,7 @@ use crate::ui::state::{Layout, UiState};
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Id, RichText, Ui};
-use segue_session::{Command, FileCommand, Origin, Session, Slot};
+use segue_session::{Command, FileCommand, JobKind, Origin, Session, Slot};
 use segue_text::msg;
 
 /// The share of the memory in use from which on it is shown.
@@ -42,15 +42,20 @@ pub(super) fn files_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
         }
     }
     for job in session.jobs() {
-        let (Some(task), Some(size)) = (job.task, job.size) else {
+        let Some(size) = job.size else {
             continue;
         };
         let megabytes = size as f64 / 1e6;
         let detail =
             msg!("{done:.0} of {all:.0} MB", done = job.progress * megabytes, all = megabytes);
-        let name = Text::Data(job.kind.name());
+        let many = match job.kind {
+            JobKind::ReadingFiles { done, all } => Some(text::files_read(done, all)),
+            _ => None,
+        };
+        let name = many.as_ref().map_or(Text::Data(job.kind.name()), Text::from);
         if kit::progress_row_ui(name, Some(job.progress as f32), &detail, ui) {
-            out.commands.push(Command::File(FileCommand::StopReading(task)));
+            let stop = job.task.map_or(FileCommand::StopReadingNew, FileCommand::StopReading);
+            out.commands.push(Command::File(stop));
         }
     }
     if let Some((come, asked)) = session.samples_progress() {

@@ -71,6 +71,11 @@ pub(super) fn entry_ui(
         actions: &ACTIONS.map(|(icon, words, _)| (icon, words)),
     };
     let row = kit::clip_row_ui(row, ui);
+    if row.has_focus {
+        state.library.focused = Some(entry.id.clone());
+    } else if state.library.focused.as_ref() == Some(&entry.id) {
+        state.library.focused = None;
+    }
     row.response.dnd_set_drag_payload(ClipDrag { id: entry.id.clone() });
     match row.event {
         Some(ClipRowEvent::Chosen) => {
@@ -232,7 +237,7 @@ fn menu_ui(
                 compare_clips(session.params().text(Key::A), &entry.id, out);
             }
         }
-        if entry.mesh.is_some() && session.params().text(Key::Character) != entry.id {
+        if entry.has_mesh() && session.params().text(Key::Character) != entry.id {
             let item = MenuItem { text: text::USE_AS_CHARACTER.into(), ..MenuItem::default() };
             if line_ui(item, ui) {
                 out.set_once(Key::Character, Value::Text(entry.id.clone()));

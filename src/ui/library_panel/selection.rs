@@ -23,6 +23,7 @@ pub(super) fn selection_ui(session: &Session, state: &mut UiState, out: &mut Out
     let ids: Vec<String> = sections
         .iter()
         .flat_map(|section| &section.entries)
+        .filter_map(|&index| session.library().entries().get(index))
         .filter(|entry| state.library.picked.contains(&entry.id))
         .map(|entry| entry.id.clone())
         .collect();

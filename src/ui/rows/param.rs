@@ -114,7 +114,7 @@ fn joint_ui(key: Key, help: Text<'_>, session: &Session, out: &mut Out, ui: &mut
 /// Draws a choice of the characters of files and of the body around the bones; nothing where no
 /// file has a character.
 fn character_ui(key: Key, help: Text<'_>, session: &Session, out: &mut Out, ui: &mut Ui) {
-    let brought = session.library().entries().iter().filter(|entry| entry.mesh.is_some());
+    let brought = session.library().entries().iter().filter(|entry| entry.has_mesh());
     let brought: Vec<(&str, Message)> =
         brought.map(|entry| (entry.id.as_str(), entry.title())).collect();
     let options: Vec<(&str, Text<'_>)> = std::iter::once(("", text::MADE_BODY.into()))
@@ -124,7 +124,7 @@ fn character_ui(key: Key, help: Text<'_>, session: &Session, out: &mut Out, ui: 
         return;
     }
     let chosen =
-        session.library().find(session.params().text(key)).filter(|entry| entry.mesh.is_some());
+        session.library().find(session.params().text(key)).filter(|entry| entry.has_mesh());
     let chosen = chosen.map_or("", |entry| entry.id.as_str());
     let label = Word::new(key.param().label).into();
     if let Some(id) = kit::helped_choice_row_ui(label, help, chosen, &options, ui) {

@@ -1,6 +1,8 @@
 //! The state of the library between frames.
 
+use crate::ui::library_panel::{Arranged, RowHeights};
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// The order of the clips in the list.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -12,6 +14,8 @@ pub(crate) enum ClipOrder {
     Name,
     /// By length, the shortest first.
     Length,
+    /// By mean speed over the ground, the slowest first.
+    Speed,
 }
 
 /// The state of the library: what is searched, folded and selected.
@@ -31,6 +35,12 @@ pub(crate) struct LibraryState {
     pub(crate) is_shown: bool,
     /// Whether the list was shown in the last frame.
     pub(crate) was_shown: bool,
+    /// The list as it was arranged last.
+    pub(crate) arranged: Option<Arc<Arranged>>,
+    /// The heights of its rows.
+    pub(crate) heights: RowHeights,
+    /// The id of the clip whose row has the focus.
+    pub(crate) focused: Option<String>,
 }
 
 /// The keys that are held during a click.

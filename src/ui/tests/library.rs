@@ -500,3 +500,35 @@ fn figure_is_cast_from_the_menu_of_its_row() {
     harness.run();
     assert_eq!(harness.state().session.params().text(Key::Character), id);
 }
+
+/// Returns the number of rows of small files that are drawn.
+fn drawn(harness: &Harness<'_, Page>) -> usize {
+    let rows = harness.get_all_by_role(Role::Button).filter(|row| {
+        row.accesskit_node().label().is_some_and(|label| label.ends_with("0.2 s · 3 frames"))
+    });
+    rows.count()
+}
+
+#[test]
+fn long_list_lays_out_only_the_rows_in_sight() {
+    let mut page = page("lab=view&a=walk&play=off");
+    let names: Vec<String> = (0..300).map(|index| format!("takes/{index:03}.bvh")).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    open(&names, &mut page);
+    let mut harness = harness(DESK, DARK, page);
+    harness.run();
+    let first = drawn(&harness);
+    assert!((5..60).contains(&first), "{first} rows");
+    // One that arrives at the end of the group is scrolled into sight.
+    harness.state_mut().session.load("takes/new.bvh", small_file(999)).unwrap();
+    harness.run_steps(40);
+    let row = row_of("new", &harness);
+    assert!(row.top() > 0.0 && row.bottom() < 900.0, "{row:?}");
+    assert!(clip_row("003", &harness).is_none(), "those before it are out of sight");
+    assert!(drawn(&harness) < 60);
+    // A search looks into all of them.
+    harness.state_mut().state.library.search = "150".to_owned();
+    harness.run_steps(4);
+    assert_eq!(drawn(&harness), 1);
+    row_of("150", &harness);
+}

@@ -11,6 +11,7 @@ pub(crate) const SORT: Word = Word::new("Sort");
 pub(crate) const ORDER_ADDED: Word = Word::new("Order added");
 pub(crate) const ORDER_NAME: Word = Word::new("Name");
 pub(crate) const ORDER_LENGTH: Word = Word::new("Length");
+pub(crate) const ORDER_SPEED: Word = Word::new("Speed");
 pub(crate) const NO_SUCH_CLIP: Word = Word::new("No clip has this name.");
 pub(crate) const BUILT_IN: Word = Word::new("Built-in clips");
 pub(crate) const SWAP_CLIPS: Word = Word::new("Swap A and B");
@@ -42,24 +43,20 @@ pub(crate) fn compare_here(clip: Message) -> Message {
 
 /// Returns the line below the name of a clip: `3.9 s · 468 frames`.
 pub(crate) fn facts(entry: &Entry) -> Message {
-    match &entry.motion {
-        Some(motion) => {
-            let clip = motion.clip();
-            msg!(
-                "{secs:.1} s · {frames, plural, one {# frame} other {# frames}}",
-                secs = clip.duration_secs(),
-                frames = clip.frames()
-            )
-        }
+    match entry.facts.as_ref().filter(|_| entry.is_known()) {
+        Some(facts) => msg!(
+            "{secs:.1} s · {frames, plural, one {# frame} other {# frames}}",
+            secs = facts.duration_secs(),
+            frames = facts.frames
+        ),
         None => super::status(entry).into(),
     }
 }
 
 /// Returns the size of a clip's skeleton; empty while it is not known.
 pub(crate) fn joints_of(entry: &Entry) -> Message {
-    entry.motion.as_ref().map_or_else(Message::default, |motion| {
-        let joints = motion.clip().skeleton().len();
-        msg!("{joints, plural, one {# joint} other {# joints}}", joints)
+    entry.facts.as_ref().map_or_else(Message::default, |facts| {
+        msg!("{joints, plural, one {# joint} other {# joints}}", joints = facts.joints)
     })
 }
 

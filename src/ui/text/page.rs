@@ -183,7 +183,13 @@ pub(crate) fn under_way(job: &Job) -> Message {
         JobKind::Driving => msg!("Simulating {percent:.0} %", percent),
         JobKind::BuildingDatabase => msg!("Building the database {percent:.0} %", percent),
         JobKind::Reading(file) => msg!("{file} {percent:.0} %", file = file.clone(), percent),
+        JobKind::ReadingFiles { done, all } => files_read(*done, *all),
     }
+}
+
+/// Returns how many of the files that are to join the library were read.
+pub(crate) fn files_read(done: usize, all: usize) -> Message {
+    msg!("Reading files: {done} of {all}", done, all)
 }
 
 pub(crate) const CLOSE: Word = Word::new("Close");
@@ -197,7 +203,7 @@ pub(crate) const UNREAD: Word = Word::new("not read: drop the file again");
 /// The status of a motion whose file of the skeleton is missing.
 pub(crate) const AWAITS_SKELETON: Word = Word::new("needs its skeleton: drop the .asf file");
 
-/// Returns the reason why a clip cannot be played; empty where it can.
+/// Returns the reason why a clip cannot be played now; empty where it can.
 pub(crate) fn status(entry: &Entry) -> Word {
     match (&entry.motion, &entry.origin) {
         (Some(_), _) | (None, Origin::Preset | Origin::Made) => Word::default(),

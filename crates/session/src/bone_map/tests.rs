@@ -192,6 +192,7 @@ fn correction_survives_a_reload_for_files_that_are_new_then() {
         } else {
             session.restore(&saved, content, None);
         }
+        read_clip(&mut session, &first);
         session
     };
     for mut session in [restored(false), restored(true)] {
@@ -206,6 +207,7 @@ fn correction_survives_a_reload_for_files_that_are_new_then() {
     let mut session = Session::new();
     let old = serde_json::from_value(old).unwrap();
     session.restore(&old, |_| Some(Content::Here(Arc::clone(&bytes))), None);
+    read_clip(&mut session, &first);
     assert_eq!(head(&session, &first), Some(1));
 }
 

@@ -94,10 +94,8 @@ impl Document {
             }
             let other = self.params.text(if slot == Slot::A { Key::B } else { Key::A }).to_owned();
             let entries = self.library.entries();
-            let next = entries
-                .iter()
-                .find(|e| e.id != other && e.motion.is_some())
-                .or_else(|| entries.first());
+            let next =
+                entries.iter().find(|e| e.id != other && e.is_known()).or_else(|| entries.first());
             let next = next.map(|e| e.id.clone()).unwrap_or_default();
             self.set_unchecked(key, Value::Text(next));
             forget_places(&mut self.params, slot, &[]);

@@ -2,7 +2,7 @@
 
 use crate::library::{Entry, Library, Origin};
 use crate::params::{Key, Mark, PARAMS, Params};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// A state of the document.
@@ -20,6 +20,8 @@ pub(super) struct History {
     /// The parameter that the last step changed, while its slider is held: further changes of it
     /// join that step.
     open: Option<Key>,
+    /// The selection of files whose arrival was the last step: further files of it join that step.
+    batch: Option<u32>,
 }
 
 /// A lesson's worth of steps. A state is small: clips are shared.
@@ -33,11 +35,26 @@ impl History {
             return;
         }
         self.open = key;
+        self.batch = None;
         self.future.clear();
         if self.past.len() >= MAX_STEPS {
             self.past.remove(0);
         }
         self.past.push(State { params: params.clone(), library: library.clone() });
+    }
+
+    /// Records the state before a file arrives. The files of one selection that arrive one after the
+    /// other are one step.
+    pub(super) fn before_arrival(
+        &mut self,
+        params: &Params,
+        library: &Library,
+        batch: Option<u32>,
+    ) {
+        if batch.is_none() || self.batch != batch {
+            self.before_change(params, library, None);
+            self.batch = batch;
+        }
     }
 
     /// Ends a gesture: the next change is a step of its own.
@@ -56,6 +73,13 @@ impl History {
             {
                 state.library.put_shared(entry);
             }
+        }
+    }
+
+    /// Replaces entries in all states by newer ones, by the addresses of the old ones.
+    pub(super) fn replace_in_all(&mut self, newer: &BTreeMap<*const Entry, Arc<Entry>>) {
+        for state in self.past.iter_mut().chain(&mut self.future) {
+            state.library.replace_shared(newer);
         }
     }
 
@@ -82,10 +106,28 @@ impl History {
                 .map(|entry| entry.id.clone())
                 .collect();
             for id in &ids {
-                any |= state.library.change(id, |entry| (entry.motion, entry.mesh) = (None, None));
+                any |= state.library.change(id, Entry::drop_motion);
             }
         }
         any
+    }
+
+    /// Returns the SHA-256 of the files in all states.
+    pub(super) fn files(&self) -> BTreeSet<String> {
+        let mut files = BTreeSet::new();
+        let mut before: &[Arc<Entry>] = &[];
+        for state in self.past.iter().chain(&self.future) {
+            let entries = state.library.entries();
+            for (index, entry) in entries.iter().enumerate() {
+                // Most entries are those of the state before.
+                let is_known = before.get(index).is_some_and(|known| Arc::ptr_eq(known, entry));
+                if let (false, Some(sha256)) = (is_known, entry.sha256()) {
+                    files.insert(sha256.to_owned());
+                }
+            }
+            before = entries;
+        }
+        files
     }
 
     pub(super) fn can_undo(&self) -> bool {
@@ -98,11 +140,13 @@ impl History {
 
     /// Swaps the present for the state before the last step; returns whether there was one.
     pub(super) fn undo(&mut self, params: &mut Params, library: &mut Library) -> bool {
+        self.batch = None;
         Self::swap(&mut self.past, &mut self.future, &mut self.open, params, library)
     }
 
     /// Swaps the present for the state that was taken back last; returns whether there was one.
     pub(super) fn redo(&mut self, params: &mut Params, library: &mut Library) -> bool {
+        self.batch = None;
         Self::swap(&mut self.future, &mut self.past, &mut self.open, params, library)
     }
 

@@ -25,9 +25,9 @@ impl Document {
             return;
         }
         let is_viewed = arrival.is_by_hand()
-            && self.is_first_of_group(id)
             && lab_of(self.params.lab()).shows_clip()
-            && self.slot(Slot::A).is_some();
+            && self.slot(Slot::A).is_some()
+            && self.is_first_of_group(id);
         let free = [Slot::A, Slot::B]
             .into_iter()
             .find(|slot| (is_viewed && *slot == Slot::A) || self.is_free(*slot, arrival));
@@ -41,11 +41,9 @@ impl Document {
         let Some(group) = self.library.get(id).and_then(|entry| entry.group()) else {
             return true;
         };
-        let moves =
-            |entry: &Entry| entry.motion.as_ref().is_some_and(|motion| motion.clip().frames() > 1);
         let mut entries = self.library.entries().iter();
         !entries
-            .any(|other| other.id != id && moves(other) && other.group().as_ref() == Some(&group))
+            .any(|other| other.id != id && other.moves() && other.group().as_ref() == Some(&group))
     }
 
     /// Offers slots to clips that arrived together, in turn: in View that of the clip on the stage;

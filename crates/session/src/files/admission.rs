@@ -13,6 +13,7 @@ use crate::notice::{AddedClips, Level, Notices, in_the_library};
 use crate::outside;
 use crate::params::{Key, Value};
 use crate::reading::{Content, ReadFile, ReadReport, ReadSetup};
+use crate::saved::SavedEntry;
 use segue_formats::{ImportError, ImportOptions};
 use segue_motion::clip::Motion;
 use segue_text::{Message, ToMessage, msg};
@@ -38,7 +39,7 @@ impl FileIntake {
             notify_unread(notices, &error);
             return Err(error);
         }
-        document.remember(None);
+        document.remember_arrival(arrival.batch());
         let mut loaded = LoadedFile::default();
         let (mut names, mut t_poses, mut failures) = (Vec::new(), 0, Vec::new());
         let brings_skeleton = |file: &ReadFile| {
@@ -162,12 +163,10 @@ impl FileIntake {
         }
         // A skeleton alone plays nothing, nor does a character without a motion of its own. A
         // motion that waits for a skeleton may take its slot when it can be read.
-        let plays = document.library.get(&id).is_some_and(|entry| {
-            entry
-                .motion
-                .as_ref()
-                .is_some_and(|motion| motion.clip().frames() > usize::from(entry.mesh.is_some()))
-        });
+        let plays = document.library.get(&id).filter(|entry| entry.is_known());
+        let plays = plays
+            .and_then(|entry| entry.facts.as_ref())
+            .is_some_and(|facts| facts.frames > usize::from(facts.has_mesh));
         // A file that the link fetches again after a reload has the slot that it was given then, or
         // none.
         if plays && (known.is_none() || arrival.is_by_hand()) {
@@ -186,7 +185,16 @@ impl FileIntake {
         let (Origin::File(had), Origin::File(has)) = (&known.origin, &entry.origin) else {
             return;
         };
-        if known.motion.is_some() && (has.companion.is_none() || has.companion == had.companion) {
+        if known.is_known() && (has.companion.is_none() || has.companion == had.companion) {
+            // Its motion is at hand now, if it was read as the library has it.
+            if known.motion.is_none() && had.is_read_like(has) && known.roles_by_hand.is_none() {
+                let maps = Arc::clone(document.library.bone_maps());
+                document.library.change(&known.id, |known| {
+                    (known.motion, known.mesh, known.facts) =
+                        (entry.motion, entry.mesh, entry.facts);
+                    adopt(&maps, known);
+                });
+            }
             return;
         }
         let is_read_as_said = had.options == has.options && known.roles_by_hand.is_none();
@@ -242,7 +250,12 @@ pub(super) fn refill(
         loaded.warnings.extend(warnings);
         for new in entries {
             let maps = Arc::clone(document.library.bone_maps());
-            document.library.change(&new.id, |entry| {
+            let id = new.id.clone();
+            let stored_as = |document: &Document| {
+                document.library.get(&id).map(|entry| SavedEntry::from(&**entry))
+            };
+            let before = stored_as(document);
+            document.library.change(&id, |entry| {
                 let (Origin::File(file), Origin::File(new_file)) = (&mut entry.origin, new.origin)
                 else {
                     return;
@@ -252,8 +265,7 @@ pub(super) fn refill(
                 }
                 file.companion = new_file.companion;
                 // A motion whose skeleton was not found keeps waiting.
-                entry.motion = new.motion;
-                entry.mesh = new.mesh;
+                (entry.motion, entry.mesh, entry.facts) = (new.motion, new.mesh, new.facts);
                 entry.about = new.about;
                 entry.warnings = new.warnings;
                 // Roles may have been set since the file was sent off.
@@ -261,14 +273,15 @@ pub(super) fn refill(
                     && motion.roles() != roles
                 {
                     let corrected = Motion::clone(motion).with_corrected_roles(roles);
-                    entry.motion = Some(Arc::new(corrected));
+                    entry.set_motion(Arc::new(corrected));
                 }
                 adopt(&maps, entry);
             });
-            loaded.ids.push(new.id);
+            // A motion that is only in memory again is no change.
+            document.library_revision += u64::from(before != stored_as(document));
+            loaded.ids.push(id);
         }
     }
-    document.library_revision += 1;
     Ok(loaded)
 }
 
@@ -307,8 +320,8 @@ fn file_entries(
     }
     let entries = read.clips.into_iter().enumerate().map(|(index, clip)| {
         let source = SourceFile { index, ..source.clone() };
-        Entry {
-            motion: Some(Arc::new(clip.motion)),
+        let entry = Entry {
+            name: outside::clip_name(clip.motion.clip().name()),
             mesh: clip.mesh,
             about: Some(clip.about),
             warnings: warnings.clone(),
@@ -317,16 +330,10 @@ fn file_entries(
                 String::new(),
                 Origin::File(source),
             )
-        }
+        };
+        entry.with_motion(Arc::new(clip.motion))
     });
-    let named = entries.map(|mut entry| {
-        entry.name = entry
-            .motion
-            .as_ref()
-            .map_or_else(String::new, |motion| outside::clip_name(motion.clip().name()));
-        entry
-    });
-    let mut named: Vec<Entry> = named.collect();
+    let mut named: Vec<Entry> = entries.collect();
     let figure = named.iter().find_map(Entry::character);
     if figure.is_some_and(|character| !character.has_limbs()) {
         let warning = Message::word(

@@ -1,6 +1,6 @@
 //! Tests of files that are read outside the session, and of changes meanwhile.
 
-use super::fixtures::{BVH, count_notices, person, stored, zip};
+use super::fixtures::{BVH, count_notices, older, person, stored, zip};
 use crate::fixtures::*;
 use std::io::Write as _;
 
@@ -90,14 +90,16 @@ fn clips_that_were_read_stay_read_after_undo() {
     let unread =
         |session: &Session| files(session).iter().filter(|(.., frames)| *frames == 0).count();
     let (mut before, mut late) = (Session::with_external_reader(), Session::with_external_reader());
-    before.restore(&session.saved(), stored(&session), None);
+    // Nothing is known of clips that an earlier version has stored.
+    let saved = older(&session.saved());
+    before.restore(&saved, stored(&session), None);
     // Something changes while they are read, or before they arrive.
     let change = |session: &mut Session| {
         session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(9.0))])).unwrap();
     };
     change(&mut before);
     change(&mut late);
-    late.restore_late(&session.saved(), stored(&session));
+    late.restore_late(&saved, stored(&session));
     for mut session in [before, late] {
         assert_eq!(unread(&session), 2);
         serve(&mut session);

@@ -1,6 +1,7 @@
 //! Files of the tests, and what storage and the notices have of them.
 
 use crate::fixtures::*;
+use crate::saved::Saved;
 
 /// Returns the bytes of a session's files by their SHA-256, as storage has them.
 pub(super) fn stored(session: &Session) -> impl Fn(&str) -> Option<Content> + Copy + '_ {
@@ -10,6 +11,15 @@ pub(super) fn stored(session: &Session) -> impl Fn(&str) -> Option<Content> + Co
             _ => None,
         })
     }
+}
+
+/// Returns stored work as earlier versions have stored it: without the facts of clips.
+pub(super) fn older(saved: &Saved) -> Saved {
+    let mut json = serde_json::to_value(saved).unwrap();
+    for entry in json["entries"].as_array_mut().unwrap() {
+        entry.as_object_mut().unwrap().remove("known");
+    }
+    serde_json::from_value(json).unwrap()
 }
 
 /// Returns the number of notices of a level.

@@ -1,6 +1,8 @@
 //! The files that are being added to the library.
 
+use super::idle::MotionUses;
 use super::setup::setup_for_new;
+use super::tasks::Arrivals;
 use crate::bone_map::is_bone_map;
 use crate::command::{CommandError, FileCommand, Request};
 use crate::document::Document;
@@ -12,6 +14,7 @@ use crate::reading::{Content, LARGE_BYTES, ReadFunction, ReadSetup, ReadTask};
 use crate::samples::Sample;
 use segue_formats::ImportError;
 use segue_text::{Message, msg};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// The greatest number of addresses of files in a link.
@@ -88,7 +91,8 @@ struct Batch {
 pub(crate) struct FileIntake {
     /// The function that reads small files at once; `None` where all files are read elsewhere.
     pub(super) reads: Option<ReadFunction>,
-    pub(super) reading: Vec<Reading>,
+    /// By the numbers of their tasks.
+    pub(super) reading: BTreeMap<u64, Reading>,
     /// The number of tasks so far.
     tasks: u64,
     pub(super) requests: Vec<Request>,
@@ -97,21 +101,25 @@ pub(crate) struct FileIntake {
     memory: Option<Memory>,
     /// The selection whose files are arriving.
     batch: Option<Batch>,
-    /// The library revision at which motions outside the library were dropped last.
+    /// The library revision at which motions were dropped last because memory was scarce.
     dropped_at: Option<u64>,
+    pub(super) uses: MotionUses,
+    pub(super) arrivals: Arrivals,
 }
 
 impl FileIntake {
     pub(crate) fn new(reads: Option<ReadFunction>) -> Self {
         Self {
             reads,
-            reading: Vec::new(),
+            reading: BTreeMap::new(),
             tasks: 0,
             requests: Vec::new(),
             samples: AwaitedSamples::default(),
             memory: None,
             batch: None,
             dropped_at: None,
+            uses: MotionUses::default(),
+            arrivals: Arrivals::default(),
         }
     }
 
@@ -138,6 +146,8 @@ impl FileIntake {
             FileCommand::Reimport(id, options) => self.reimport(document, &id, &options)?,
             FileCommand::Correct(notice) => self.correct(document, notices, notice),
             FileCommand::StopReading(task) => self.stop_reading(document, task),
+            FileCommand::StopReadingNew => self.stop_reading_new(document),
+            FileCommand::Read(id) => self.read_if_dropped(document, &id)?,
         }
         Ok(())
     }
@@ -199,7 +209,7 @@ impl FileIntake {
     /// no selection.
     pub(crate) fn open_together(&mut self, library: &Library, count: usize) {
         let known = library.entries().iter().filter_map(|entry| entry.batch);
-        let read = self.reading.iter().filter_map(Reading::batch);
+        let read = self.reading.values().filter_map(Reading::batch);
         let number = known.chain(read).max().map_or(1, |last| last.saturating_add(1));
         self.batch = (count > 1).then_some(Batch { number, left: count });
     }
@@ -227,16 +237,18 @@ impl FileIntake {
     }
 
     /// Records the size of the page's memory. Once more than half of it is in use, drops the
-    /// motions that only steps of undo contain: they are read again when a step restores them.
-    /// Returns whether there were any.
+    /// motions that nothing uses, and those that only steps of undo contain: they are read again
+    /// when they are needed. Returns whether there were any.
     pub(crate) fn note_memory(&mut self, page: PageMemory, document: &mut Document) -> bool {
         let memory = Memory::follow(self.memory, page, library_bytes(&document.library));
         self.memory = Some(memory);
         // Once for every change, because there may be many steps with many clips.
         let revision = document.library_revision;
-        memory.is_scarce()
-            && self.dropped_at.replace(revision) != Some(revision)
-            && document.drop_motions_of_steps()
+        if !memory.is_scarce() || self.dropped_at.replace(revision) == Some(revision) {
+            return false;
+        }
+        let any_idle = self.uses.max_idle_bytes < u64::MAX && self.drop_idle_beyond(document, 0);
+        document.drop_motions_of_steps() || any_idle
     }
 
     /// Returns the memory in use; `None` if it is unlimited.
@@ -284,12 +296,17 @@ impl FileIntake {
 
     pub(super) fn request(&mut self, task: ReadTask, purpose: Purpose) {
         self.requests.push(Request::Read(task.clone()));
-        self.reading.push(Reading { task, done: 0, purpose });
+        let reading = Reading { task, done: 0, purpose };
+        if reading.is_new() {
+            let is_first = !self.is_reading_new();
+            self.arrivals.add(&reading, is_first);
+        }
+        self.reading.insert(reading.task.id, reading);
     }
 
     /// Returns the name and the size of the file that a task reads, bytes.
     pub(super) fn file_of_task(&self, task: u64) -> Option<(&str, u64)> {
-        let reading = self.reading.iter().find(|reading| reading.task.id == task)?;
+        let reading = self.reading.get(&task)?;
         Some((&reading.task.name, reading.task.size))
     }
 }

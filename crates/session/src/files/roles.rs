@@ -50,8 +50,9 @@ impl FileIntake {
         // An empty map, so that another window's older one does not come back.
         document.library.put_bone_map(BoneMap { rig: rig.clone(), ..BoneMap::default() });
         for entry in before.entries() {
-            let is_of_rig = |motion: &Arc<Motion>| rig_of(motion.clip().skeleton()) == rig;
-            if entry.roles_by_hand.is_some() && entry.motion.as_ref().is_some_and(is_of_rig) {
+            if entry.roles_by_hand.is_some()
+                && entry.facts.as_ref().is_some_and(|facts| facts.rig == rig)
+            {
                 self.find_roles(document, entry);
             }
         }
@@ -161,7 +162,7 @@ impl FileIntake {
                 }
                 _ => {
                     let corrected = Motion::clone(motion).with_corrected_roles(&roles);
-                    document.library.change(id, |entry| entry.motion = Some(Arc::new(corrected)));
+                    document.library.change(id, |entry| entry.set_motion(Arc::new(corrected)));
                 }
             }
         }
@@ -172,6 +173,8 @@ impl FileIntake {
     fn find_roles(&mut self, document: &mut Document, entry: &Entry) {
         document.library.change(&entry.id, |entry| entry.roles_by_hand = None);
         match &entry.origin {
+            // They are found when it is read again.
+            Origin::File(file) if entry.motion.is_none() && !self.is_read_again(file) => {}
             // The file may state roles, or take too long.
             Origin::File(file)
                 if file.is_large()
@@ -194,7 +197,9 @@ impl FileIntake {
                     let roles = Roles::detect(motion.clip().skeleton());
                     Arc::new(Motion::clone(motion).with_corrected_roles(&roles))
                 });
-                document.library.change(&entry.id, |entry| entry.motion = found);
+                if let Some(found) = found {
+                    document.library.change(&entry.id, |entry| entry.set_motion(found));
+                }
             }
         }
     }

@@ -158,7 +158,7 @@ impl FileIntake {
                     Some(roles) => clip.motion.with_corrected_roles(roles),
                     None => clip.motion,
                 };
-                entry.motion = Some(Arc::new(motion));
+                entry.set_motion(Arc::new(motion));
                 entry.unread = None;
                 entry.about = Some(clip.about);
                 entry.warnings = clips.warnings;

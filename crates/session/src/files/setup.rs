@@ -44,7 +44,8 @@ fn roles_by_hand(library: &Library, file: &SourceFile) -> BTreeMap<usize, Roles>
 }
 
 /// Returns the known skeleton files: those in the library, and those that its motions were read
-/// with. A body model is its own companion, in a small form.
+/// with. A skeleton file is its own companion, a body model in a small form; earlier versions have
+/// stored ASF files without one.
 pub(super) fn companions(library: &Library) -> Vec<Companion> {
     let mut all: Vec<Companion> = Vec::new();
     for entry in library.entries() {

@@ -65,7 +65,7 @@ fn notify_misfit(library: &Library, notices: &mut Notices, id: &str) {
 
 /// Offers a slot to a clip that waited for its skeleton, if it has a motion by now.
 pub(super) fn offer_moving(document: &mut Document, id: &str, arrival: Arrival) {
-    if document.library.find(id).is_some_and(|entry| entry.motion.is_some()) {
+    if document.library.find(id).is_some_and(|entry| entry.is_known()) {
         document.offer(id, arrival);
     }
 }

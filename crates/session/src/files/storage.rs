@@ -6,16 +6,17 @@ use crate::document::Document;
 use crate::labs::{recipe_name, recipe_params};
 use crate::library::{Entry, Library, Origin, SourceFile};
 use crate::notice::{Level, Notices};
+use crate::outside;
 use crate::reading::{Content, LARGE_BYTES};
-use crate::saved::{SavedEntry, SavedFile};
+use crate::saved::{KnownClip, SavedEntry, SavedFile};
 use segue_formats::ImportOptions;
 use segue_text::msg;
 use std::sync::Arc;
 
 impl FileIntake {
-    /// Reads the files of the library that have no motion yet, and requests the bundled takes.
-    /// Names those that can no longer be read together with those that are already `lost`, and
-    /// removes their clips.
+    /// Reads the files of the library of which nothing is known yet, and requests the bundled
+    /// takes. The motions of the others are read when they are needed. Names those that can no
+    /// longer be read together with those that are already `lost`, and removes their clips.
     pub(crate) fn read_stored(
         &mut self,
         document: &mut Document,
@@ -31,7 +32,7 @@ impl FileIntake {
             // A motion that waits for a skeleton was reported when it was read.
             let waits = |entry: &Entry| entry.awaits_skeleton() && !entry.warnings.is_empty();
             let read_by_now = |entry: &Arc<Entry>| {
-                entry.motion.is_some() || entry.unread.is_some() || waits(entry)
+                entry.facts.is_some() || entry.unread.is_some() || waits(entry)
             };
             if document.library.get(&entry.id).is_none_or(read_by_now) {
                 continue;
@@ -77,7 +78,17 @@ pub(crate) fn stored_entries(
                     lost.push(file.name.clone());
                     continue;
                 };
-                Entry::new(&stored.id, stored.name.clone(), Origin::File(file.with(content)))
+                let entry =
+                    Entry::new(&stored.id, stored.name.clone(), Origin::File(file.with(content)));
+                match &stored.known {
+                    Some(KnownClip { facts, about, warnings }) => Entry {
+                        facts: Some(Arc::new(facts.clone())),
+                        about: about.clone(),
+                        warnings: warnings.clone(),
+                        ..entry
+                    },
+                    None => entry,
+                }
             }
             // Its motion was made with other roles.
             (Some(here), None) => Entry { motion: None, ..here },
@@ -105,7 +116,7 @@ pub(crate) fn stored_entries(
 /// Returns whether nothing of a clip was set by hand.
 pub(crate) fn is_as_it_came(entry: &Entry) -> bool {
     let own_name = match &entry.origin {
-        Origin::File(_) => entry.motion.as_ref().map(|motion| motion.clip().name().to_owned()),
+        Origin::File(_) => entry.facts.as_ref().map(|facts| outside::clip_name(&facts.name)),
         Origin::Made => recipe_params(&entry.id).map(|params| recipe_name(&params).to_string()),
         Origin::Preset | Origin::Sample(_) => {
             built_in_entries().find(|known| known.id == entry.id).map(|known| known.name)
@@ -122,7 +133,9 @@ impl SavedFile {
     fn with(&self, content: Content) -> SourceFile {
         let size = match &content {
             Content::Here(bytes) => bytes.len() as u64,
-            Content::Outside(_) => self.size.max(LARGE_BYTES + 1),
+            // Older states have no size, and only large files outside the document.
+            Content::Outside(_) if self.size == 0 => LARGE_BYTES + 1,
+            Content::Outside(_) => self.size,
         };
         SourceFile {
             name: self.name.clone(),

@@ -42,6 +42,9 @@ fn roles_corrected_by_hand_survive_a_reload_for_every_kind_of_clip() {
     let mut again = reloaded(&restored, &bytes);
     again.load_sample(sample, &packed).unwrap();
     settle(&mut again);
+    for session in [&mut restored, &mut again] {
+        read_clip(session, &file);
+    }
     for id in ids {
         for session in [&restored, &again] {
             let motion = session.library().get(id).unwrap().motion.clone().unwrap();

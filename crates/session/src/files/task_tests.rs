@@ -115,7 +115,8 @@ fn large_file_is_read_elsewhere_and_joins_the_library() {
         (Some(task), "long.bvh", Some(LARGE_BYTES + 1))
     );
     assert!((job.progress - 0.5).abs() < 1e-3);
-    let report = read("long.bvh", &bytes, &asked_for.setup, &mut |_| true).unwrap();
+    let mut report = read("long.bvh", &bytes, &asked_for.setup, &mut |_| true).unwrap();
+    report.files[0].size = LARGE_BYTES + 1;
     let sha256 = report.files[0].sha256.clone();
     let loaded = session.finish_reading(task, Ok(report.clone())).unwrap().unwrap();
     assert_eq!(session.slot(Slot::A).unwrap().id, loaded.ids[0]);

@@ -16,14 +16,23 @@ use segue_text::{Message, ToMessage, msg};
 /// Work that takes longer than a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Job {
-    /// The number by which it can be stopped; `None` if it ends soon by itself.
+    /// The number by which it can be stopped; `None` for a computation, and for many files at once
+    /// ([`StopReadingNew`](crate::FileCommand::StopReadingNew)).
     pub task: Option<u64>,
     /// Its kind.
     pub kind: JobKind,
     /// The progress, 0 to 1.
     pub progress: f64,
-    /// The size of the file, bytes.
+    /// The size of the file or files, bytes; `None` for a computation.
     pub size: Option<u64>,
+}
+
+impl Job {
+    /// Returns whether it is a computation, and reads no files.
+    #[must_use]
+    pub fn is_computed(&self) -> bool {
+        self.size.is_none()
+    }
 }
 
 impl FileIntake {
@@ -41,7 +50,7 @@ impl FileIntake {
                 && reading.task.name == file.name
                 && reading.task.content == file.content
         };
-        if !self.reading.iter().any(same) {
+        if !self.reading.values().any(same) {
             mark_unread(&mut document.library, &file.sha256, None);
             self.begin(&file.name, file.content, file.size, setup, Purpose::Again(arrival));
         }
@@ -50,19 +59,19 @@ impl FileIntake {
     /// Returns whether a file of the library is being read again.
     pub(crate) fn is_read_again(&self, file: &SourceFile) -> bool {
         let sha256 = Some(file.sha256.as_str());
-        self.reading.iter().any(|reading| reading.task.setup.sha256.as_deref() == sha256)
+        self.reading.values().any(|reading| reading.task.setup.sha256.as_deref() == sha256)
     }
 
     /// Records the number of bytes of a task's file that were read.
     pub(crate) fn progress_reading(&mut self, task: u64, done: u64) {
-        if let Some(reading) = self.reading.iter_mut().find(|reading| reading.task.id == task) {
+        if let Some(reading) = self.reading.get_mut(&task) {
             reading.done = done;
         }
     }
 
     /// Returns the key of the file that a task reads, if its bytes are outside the document.
     pub(crate) fn reading_key(&self, task: u64) -> Option<&str> {
-        let reading = self.reading.iter().find(|reading| reading.task.id == task)?;
+        let reading = self.reading.get(&task)?;
         match &reading.task.content {
             Content::Outside(key) => Some(key),
             Content::Here(_) => None,
@@ -125,6 +134,7 @@ impl FileIntake {
                     && lacks_skeleton(&document.library, &report, &task.setup) =>
             {
                 let setup = setup_for_new(&document.library);
+                self.arrivals.take_back(&task);
                 self.request(ReadTask { content, setup, ..task }, purpose);
                 return None;
             }
@@ -135,6 +145,9 @@ impl FileIntake {
                 self.take_sample(document, notices, sample, report).map(|()| LoadedFile::default())
             }
         };
+        for id in loaded.iter().flat_map(|loaded| &loaded.ids) {
+            self.note_use(id);
+        }
         Some(loaded.map_err(|error| error.to_message()))
     }
 
@@ -166,28 +179,33 @@ impl FileIntake {
     }
 
     fn end_task(&mut self, task: u64) -> Option<Reading> {
-        let at = self.reading.iter().position(|reading| reading.task.id == task)?;
-        Some(self.reading.remove(at))
+        self.reading.remove(&task)
     }
 
     /// Returns whether a task is in progress.
     pub(crate) fn is_reading(&self, task: u64) -> bool {
-        self.reading.iter().any(|reading| reading.task.id == task)
+        self.reading.contains_key(&task)
     }
 
     /// Returns whether files are being read that are not in the library yet.
     pub(crate) fn is_reading_new(&self) -> bool {
-        self.reading.iter().any(Reading::is_new)
+        self.reading.values().any(Reading::is_new)
     }
 
     /// Returns whether a task reads a file that is not in the library yet.
     pub(crate) fn brings_clips(&self, task: u64) -> bool {
-        self.reading.iter().any(|reading| reading.task.id == task && reading.is_new())
+        self.reading.get(&task).is_some_and(Reading::is_new)
     }
 
     /// Returns whether a file is being read that takes only a moment, and so has no progress bar.
     pub(crate) fn is_reading_small(&self) -> bool {
-        self.reading.iter().any(Reading::is_small)
+        let together = self.are_read_together();
+        self.reading.values().any(|reading| reading.is_small() && !(together && reading.is_new()))
+    }
+
+    /// Returns whether so many files are to join the library that they are one job.
+    fn are_read_together(&self) -> bool {
+        self.arrivals.files >= MIN_TOGETHER && self.is_reading_new()
     }
 
     /// Returns whether any file is being read.
@@ -198,10 +216,9 @@ impl FileIntake {
     /// Stops a task.
     pub(crate) fn stop_reading(&mut self, document: &mut Document, task: u64) {
         let forget = self.reading_key(task).map(str::to_owned);
-        let Some(at) = self.reading.iter().position(|reading| reading.task.id == task) else {
+        let Some(Reading { task, purpose, .. }) = self.reading.remove(&task) else {
             return;
         };
-        let Reading { task, purpose, .. } = self.reading.remove(at);
         let again = matches!(purpose, Purpose::Again(_));
         if again {
             let text = msg!("Reading {name} was stopped: drop the file again.", name = task.name);
@@ -215,15 +232,78 @@ impl FileIntake {
             .push(Request::StopReading { task: task.id, forget: forget.filter(|_| !again) });
     }
 
-    /// Returns the large files that are being read.
+    /// Returns the task that reads a file of that name.
+    pub(crate) fn task_of(&self, name: &str) -> Option<u64> {
+        let mut tasks = self.reading.values().map(|reading| &reading.task);
+        tasks.find(|task| task.name == name).map(|task| task.id)
+    }
+
+    /// Stops all tasks whose files are to join the library.
+    pub(crate) fn stop_reading_new(&mut self, document: &mut Document) {
+        let new = self.reading.iter().filter(|(_, reading)| reading.is_new());
+        for task in new.map(|(task, _)| *task).collect::<Vec<_>>() {
+            self.stop_reading(document, task);
+        }
+    }
+
+    /// Returns the large files that are being read; many files that are to join the library are one
+    /// job.
     pub(crate) fn jobs(&self) -> impl Iterator<Item = Job> + '_ {
-        let files = self.reading.iter().filter(|reading| !reading.is_small());
-        files.map(|Reading { task, done, .. }| Job {
+        let together = self.are_read_together();
+        let files = (self.reading.values())
+            .filter(move |reading| if together { !reading.is_new() } else { true })
+            .filter(|reading| !reading.is_small());
+        let alone = files.map(|Reading { task, done, .. }| Job {
             task: Some(task.id),
             kind: JobKind::Reading(task.name.clone()),
             progress: *done as f64 / task.size.max(1) as f64,
             size: Some(task.size),
-        })
+        });
+        together.then(|| self.arrivals_job()).into_iter().chain(alone)
+    }
+
+    /// Returns the job of the files that are to join the library.
+    fn arrivals_job(&self) -> Job {
+        let Arrivals { files, bytes } = self.arrivals;
+        let (mut waiting, mut left) = (0, 0_u64);
+        for reading in self.reading.values().filter(|reading| reading.is_new()) {
+            waiting += 1;
+            left = left.saturating_add(reading.task.size.saturating_sub(reading.done));
+        }
+        Job {
+            task: None,
+            kind: JobKind::ReadingFiles { done: files.saturating_sub(waiting), all: files },
+            progress: 1.0 - left as f64 / bytes.max(1) as f64,
+            size: Some(bytes),
+        }
+    }
+}
+
+/// The number of files to join the library from which on they are one job.
+const MIN_TOGETHER: usize = 5;
+
+/// The files that were to join the library since none was being read.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Arrivals {
+    files: usize,
+    /// The number of their bytes.
+    bytes: u64,
+}
+
+impl Arrivals {
+    /// Adds a file, which may be the first since none was being read.
+    pub(super) fn add(&mut self, reading: &Reading, is_first: bool) {
+        if is_first {
+            *self = Self::default();
+        }
+        self.files += 1;
+        self.bytes = self.bytes.saturating_add(reading.task.size);
+    }
+
+    /// Takes back a file that is read once more.
+    fn take_back(&mut self, task: &ReadTask) {
+        self.files = self.files.saturating_sub(1);
+        self.bytes = self.bytes.saturating_sub(task.size);
     }
 }
 

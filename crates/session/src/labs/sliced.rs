@@ -23,6 +23,13 @@ pub enum JobKind {
     Driving,
     /// The reading of a file with this name.
     Reading(String),
+    /// The reading of many files.
+    ReadingFiles {
+        /// The number of those that were read.
+        done: usize,
+        /// The number of all of them.
+        all: usize,
+    },
 }
 
 impl JobKind {
@@ -39,6 +46,7 @@ impl JobKind {
             Self::BuildingDatabase => "building the database",
             Self::Driving => "driving",
             Self::Reading(file) => file,
+            Self::ReadingFiles { .. } => "files",
         }
     }
 }

@@ -381,10 +381,15 @@ impl SingleFile<'_> {
                     numpy::model_clip(&model, &setup.options).map(Some)
                 })
             }
-            _ => match import_with_progress(name, bytes, &setup.options, progress) {
-                Ok(None) => return None,
-                other => other,
-            },
+            _ => {
+                if kind == FileKind::Asf {
+                    companion = Some(Box::new(Companion::new(name, bytes)));
+                }
+                match import_with_progress(name, bytes, &setup.options, progress) {
+                    Ok(None) => return None,
+                    other => other,
+                }
+            }
         };
         Some(ReadFile {
             name: name.to_owned(),

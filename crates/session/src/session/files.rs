@@ -3,9 +3,8 @@
 use super::Session;
 use crate::convert::ConvertOptions;
 use crate::files::{LoadedFile, setup_for_new};
-use crate::library::Arrival;
+use crate::library::{Arrival, Origin};
 use crate::memory::{MemoryUse, PageMemory};
-use crate::motion::FeetReader;
 use crate::reading::{Content, ReadReport, ReadSetup, ReadTask};
 use crate::samples::{SETS, SINGLES, Sample, SampleSet};
 use segue_formats::ImportError;
@@ -108,6 +107,35 @@ impl Session {
         finished
     }
 
+    /// Returns whether the file of a clip is being read again.
+    #[must_use]
+    pub fn is_reading_clip(&self, reference: &str) -> bool {
+        let entry = self.document.library.find(reference);
+        entry.is_some_and(|entry| match &entry.origin {
+            Origin::File(file) => self.files.is_read_again(file),
+            _ => false,
+        })
+    }
+
+    /// Returns the task that reads a file of that name; `None` if none does.
+    #[must_use]
+    pub fn task_of(&self, name: &str) -> Option<u64> {
+        self.files.task_of(name)
+    }
+
+    /// Moves the bytes of the files of these clips out of the document: it refers to them by their
+    /// SHA-256 from now on, by which the app has to keep what is returned.
+    pub fn move_bytes_outside(&mut self, ids: &[String]) -> Vec<(String, Arc<[u8]>)> {
+        self.document.library.move_bytes_outside(ids)
+    }
+
+    /// Sets the most memory of motions that nothing uses, bytes. Beyond it, the least recently used
+    /// are dropped, and read again from their files when they are needed. Without a limit, all
+    /// stay.
+    pub fn limit_idle_motions(&mut self, bytes: u64) {
+        self.files.limit_idle_motions(bytes);
+    }
+
     /// Returns whether a task is in progress.
     #[must_use]
     pub fn is_reading(&self, task: u64) -> bool {
@@ -187,10 +215,11 @@ impl Session {
     }
 
     /// Records the size of the page's memory. Once more than half of it is in use, drops the
-    /// motions that only steps of undo contain: they are read again when a step restores them.
+    /// motions that nothing uses, and those that only steps of undo contain: they are read again
+    /// when they are needed.
     pub fn note_memory(&mut self, page: PageMemory) {
         if self.files.note_memory(page, &mut self.document) {
-            self.labs.feet = FeetReader::default();
+            self.labs.feet.forget_dropped();
         }
     }
 

@@ -24,8 +24,8 @@ impl Session {
         }
         let is_whole = !outcome.awaits_feet() && !self.is_driven();
         let fps = [Slot::A, Slot::B].map(|slot| {
-            let motion = self.document.slot(slot).and_then(|entry| entry.motion.as_ref());
-            motion.map_or(1.0, |motion| motion.clip().fps())
+            let facts = self.document.slot(slot).and_then(|entry| entry.facts.as_ref());
+            facts.map_or(1.0, |facts| facts.fps)
         });
         let known = CommandError::NotPossible("this clip is in the library already");
         if lab_of(params.lab()).is_clip_as_it_is(&params) {
@@ -39,9 +39,11 @@ impl Session {
         }
         let name = recipe_name(&readable_recipe(&id)?);
         let said = msg!("Saved to the library: {name}. Choose it as A or B.");
-        self.document.add(Entry {
-            motion: is_whole.then(|| Arc::clone(&outcome.motion)),
-            ..Entry::new(id, name, Origin::Made)
+        let entry = Entry::new(id, name, Origin::Made);
+        self.document.add(if is_whole {
+            entry.with_motion(Arc::clone(&outcome.motion))
+        } else {
+            entry
         });
         self.say(Level::Info, said);
         Ok(())
@@ -71,8 +73,7 @@ impl Session {
             return Err(CommandError::NotPossible("this clip is in the library already"));
         }
         let said = msg!("Added to the library: {name}.", name = name.clone());
-        let motion = Some(Arc::clone(&outcome.motion));
-        let entry = Entry { motion, ..Entry::new(&*id, name, Origin::Made) };
+        let entry = Entry::new(&*id, name, Origin::Made).with_motion(Arc::clone(&outcome.motion));
         self.document.add_to_slot(entry, slot);
         if !is_known {
             self.say(Level::Info, said);

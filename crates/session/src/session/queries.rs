@@ -2,7 +2,6 @@
 
 use super::Session;
 use crate::Selected;
-use crate::bone_map::rig_of;
 use crate::clip_info::ClipInfo;
 use crate::contact_edits::{ContactClip, corrections_of, with_named_edits};
 use crate::labs::lab::Beside;
@@ -70,21 +69,16 @@ impl Session {
     }
 
     /// Returns the number of clips with the rig of a clip, which corrections of its body parts
-    /// apply to; clips that are not read yet do not count.
+    /// apply to; clips that were never read do not count.
     #[must_use]
     pub fn clips_of_rig(&self, id: &str) -> usize {
         let library = &self.document.library;
-        let skeleton = |entry: &Entry| Some(Arc::clone(entry.motion.as_ref()?.clip().skeleton()));
-        let Some(own) = library.get(id).and_then(|entry| skeleton(entry)) else {
+        let Some(own) = library.get(id).and_then(|entry| entry.facts.as_ref()) else {
             return 0;
         };
-        let rig = rig_of(&own);
-        let is_of_rig = |entry: &Arc<Entry>| {
-            skeleton(entry).is_some_and(|other| {
-                Arc::ptr_eq(&own, &other) || (own.len() == other.len() && rig_of(&other) == rig)
-            })
-        };
-        library.entries().iter().filter(|entry| is_of_rig(entry)).count()
+        let is_of_rig =
+            |entry: &&Arc<Entry>| entry.facts.as_ref().is_some_and(|facts| facts.rig == own.rig);
+        library.entries().iter().filter(is_of_rig).count()
     }
 
     /// Returns the query string that shows this state to somebody else, without `?`: the size of
@@ -225,8 +219,8 @@ impl Session {
             Key::EnterB => transition.map(|t| t.enter_b_secs),
             Key::MixFrameA => self.frame_in(Slot::A, transition?.leave_a_secs),
             Key::MixFrameB => self.frame_in(Slot::B, transition?.enter_b_secs),
-            Key::EditTo => Some(self.slot(Slot::A)?.motion.as_ref()?.clip().duration_secs()),
-            Key::Resample => Some(self.slot(Slot::A)?.motion.as_ref()?.clip().fps()),
+            Key::EditTo => Some(self.slot(Slot::A)?.facts.as_ref()?.duration_secs()),
+            Key::Resample => Some(self.slot(Slot::A)?.facts.as_ref()?.fps),
             Key::GaitSpeed => {
                 Some(f64::from(synth::Params::new(synth_action(&self.document.params)).speed_mps))
             }
@@ -247,8 +241,7 @@ impl Session {
 
     /// Returns the frame of a slot's clip at a time, at its own rate.
     fn frame_in(&self, slot: Slot, secs: f64) -> Option<f64> {
-        let motion = self.slot(slot)?.motion.as_ref()?;
-        Some((secs * motion.clip().fps()).round())
+        Some((secs * self.slot(slot)?.facts.as_ref()?.fps).round())
     }
 
     /// Returns whether the open lab shows a clip with a change: its feet are locked, it is moved,

@@ -12,6 +12,7 @@ use crate::missing::look_for_clips;
 use crate::params::{Key, Params};
 use crate::reading::Content;
 use crate::saved::{Saved, SavedEntry};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 impl Session {
@@ -29,6 +30,13 @@ impl Session {
                 .collect(),
             bone_maps: self.document.library.bone_maps().values().cloned().collect(),
         }
+    }
+
+    /// Returns the SHA-256 of the files that undo and redo may restore: they have to stay in storage
+    /// until the session ends.
+    #[must_use]
+    pub fn files_of_steps(&self) -> BTreeSet<String> {
+        self.document.files_of_steps()
     }
 
     /// Restores stored work; `content_of` returns a file's bytes by its SHA-256. A notice names the

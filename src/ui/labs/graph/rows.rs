@@ -104,9 +104,8 @@ fn clip_rows_ui(title: &Message, ids: &[String], session: &Session, out: &mut Ou
         for id in ids {
             let entry = session.library().find(id);
             let name = entry.map_or_else(|| Message::data(&**id), |entry| entry.title());
-            let secs = entry
-                .and_then(|entry| entry.motion.as_ref())
-                .map(|motion| motion.clip().duration_secs());
+            let secs =
+                entry.and_then(|entry| entry.facts.as_ref()).map(|facts| facts.duration_secs());
             ui.push_id(id, |ui| {
                 ui.horizontal(|ui| {
                     ui.label(
