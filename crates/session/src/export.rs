@@ -1,6 +1,6 @@
 //! A motion as the bytes of a file.
 
-use super::labs::{Outcome, PlacedClip};
+use super::labs::{CharacterMotion, Outcome, PlacedClip};
 use super::motion::{curve_kind, joint_of};
 use super::params::{Key, Params};
 use segue_formats::bvh::{self, RotationOrder};
@@ -11,8 +11,9 @@ use segue_formats::gltf::{
 };
 use segue_formats::numpy::write_npz;
 use segue_formats::robot_csv::{RobotCsvError, write_robot_csv};
-use segue_motion::clip::{Clip, CurveKind, Interpolation, Motion, UpAxis, joint_curve, resample};
-use segue_motion::skin::{Character, Drive};
+use segue_motion::clip::{CurveKind, Interpolation, Motion, UpAxis, joint_curve, resample};
+use segue_motion::skin::Character;
+use std::sync::Arc;
 
 /// A file format in which motions are saved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -193,19 +194,17 @@ pub fn export(
         ExportFormat::Glb => {
             let how = GlbOptions { fps: options.fps, smooth: true };
             let character = character.filter(|_| options.body == ExportBody::Character);
-            match character.and_then(|character| Some((retargeted(motion, character)?, character)))
-            {
-                Some((clip, character)) => write_character_glb(&clip, &character.mesh, &how),
+            let on_character = character.and_then(|character| {
+                let moved = CharacterMotion::new(&Arc::new(motion.clone()), character)?;
+                Some((moved, &character.mesh))
+            });
+            match on_character {
+                Some((moved, mesh)) => write_character_glb(moved.clip(), mesh, &how),
                 None => write_glb(motion.clip(), &how),
             }
             .map_err(ExportError::from)
         }
     }
-}
-
-/// Returns the motion on the character's skeleton; `None` if it moves no joint of the character.
-fn retargeted(motion: &Motion, character: &Character) -> Option<Clip> {
-    Drive::new(motion.clip(), motion.roles(), character)?.clip(motion.clip()).ok()
 }
 
 /// Returns the plotted curves of a clip: the chosen quantities of the chosen joint. Empty if the

@@ -22,6 +22,7 @@ use crate::missing::{dismiss_found, look_for_clips};
 use crate::notice::{Level, Notices};
 use crate::pane::{NoResult, Pane, PaneResult};
 use crate::panes::{Panes, is_driven_by_user};
+use crate::params::choices::Look;
 use crate::params::{Compare, Key, Params, Value};
 use crate::playback::{self, PlaybackState, Span, Timeline};
 use crate::reading::{ReadFunction, read};
@@ -408,6 +409,30 @@ impl Session {
         self.panes.refresh_driven(&mut self.drive, &mut clips);
         self.panes.show_sources(&mut clips);
         self.extra_characters.refresh(&mut clips);
+        self.request_on_character();
+    }
+
+    /// Requests what the stage shows on the skeleton of the character, except for characters that
+    /// the user drives.
+    fn request_on_character(&mut self) {
+        let is_shown = self.document.params.choice::<Look>() != Look::Limbs;
+        let character = self.character().filter(|_| is_shown);
+        let characters = &mut self.labs.characters;
+        characters.set_character(character);
+        if !is_driven_by_user(&self.document.params) {
+            for pane in &self.panes.list {
+                let Some(outcome) = &pane.outcome else { continue };
+                characters.request(&outcome.motion, pane.result().is_ok());
+                for source in &outcome.sources {
+                    characters.request(&source.motion, pane.result().is_ok());
+                }
+            }
+        }
+        for beside in &self.extra_characters.list {
+            if let Ok(motion) = &beside.motion {
+                characters.request(motion, true);
+            }
+        }
     }
 
     /// Does one slice of the work that would take longer than a frame. Returns `true` while there

@@ -2,6 +2,7 @@
 
 use super::{Detail, param_row_ui};
 use crate::ui::kit;
+use crate::ui::language::Word;
 use crate::ui::out::Out;
 use crate::ui::text;
 use crate::ui::theme::palette_of;
@@ -36,11 +37,32 @@ pub(crate) fn retarget_rows_ui(
             kit::note_ui(&reason, palette_of(ui).muted, ui);
         }
     }
-    kit::folded_ui(text::RETARGET_ERRORS, ui, |ui| {
+    let named: Vec<_> = reports.iter().map(|(name, errors)| (name.as_ref(), *errors)).collect();
+    folded_errors_ui(text::RETARGET_ERRORS, &named, ui);
+}
+
+/// Draws the errors of the results on the skeleton of the chosen character, each under the value
+/// of its pane where values are compared. Nothing without a character, or for one of the same rig.
+pub(crate) fn character_errors_ui(session: &Session, ui: &mut Ui) {
+    let on_character = session.panes().iter().filter_map(|pane| {
+        let moved = session.on_character(&pane.outcome.as_ref()?.motion)?;
+        Some((session.variant_name(pane), moved.errors()?))
+    });
+    let on_character: Vec<_> = on_character.collect();
+    if !on_character.is_empty() {
+        let named: Vec<_> =
+            on_character.iter().map(|(name, errors)| (name.as_ref(), *errors)).collect();
+        folded_errors_ui(text::CHARACTER_ERRORS, &named, ui);
+    }
+}
+
+/// Draws errors behind a title that unfolds them, each under its name.
+fn folded_errors_ui(title: Word, of: &[(Option<&Message>, &RetargetErrors)], ui: &mut Ui) {
+    kit::folded_ui(title, ui, |ui| {
         kit::note_ui(text::ABOUT_RETARGET_ERRORS, palette_of(ui).muted, ui);
-        for (index, (name, errors)) in reports.iter().enumerate() {
+        for (index, (name, errors)) in of.iter().enumerate() {
             if let Some(name) = name {
-                kit::note_ui(name, palette_of(ui).text, ui);
+                kit::note_ui(*name, palette_of(ui).text, ui);
             }
             ui.push_id(index, |ui| errors_ui(errors, ui));
         }

@@ -5,6 +5,8 @@ use segue_text::{Message, msg};
 
 /// The list of what retargeting could not keep.
 pub(crate) const RETARGET_ERRORS: Word = Word::new("Errors of retargeting");
+/// The list of what retargeting to the chosen figure could not keep.
+pub(crate) const CHARACTER_ERRORS: Word = Word::new("Errors on the figure");
 /// What the numbers of the list are.
 pub(crate) const ABOUT_RETARGET_ERRORS: Word = Word::new(
     "How far feet and hands are from where the clip has them, at the body's scale, how far planted feet slide in a stance, and how deep feet sink in; beside it, the same with the directions of the bones alone.",

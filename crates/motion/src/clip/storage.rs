@@ -374,7 +374,7 @@ impl Clip {
     }
 
     /// Returns the clip with its root raised in every frame, metres.
-    pub(super) fn raised(mut self, by: f32) -> Self {
+    pub(crate) fn raised(mut self, by: f32) -> Self {
         for root in &mut self.root_translations {
             root.y += by;
         }
