@@ -373,6 +373,16 @@ impl Clip {
         scaled
     }
 
+    /// Returns the clip with the joints above the carrier that an equal skeleton has
+    /// ([`Skeleton::folded_chain`]); a clip on another skeleton stays as it is.
+    #[must_use]
+    pub fn with_chain_of(mut self, skeleton: &Arc<Skeleton>) -> Self {
+        if self.skeleton == *skeleton {
+            self.skeleton = Arc::clone(skeleton);
+        }
+        self
+    }
+
     /// Returns the clip with its root raised in every frame, metres.
     pub(crate) fn raised(mut self, by: f32) -> Self {
         for root in &mut self.root_translations {

@@ -1,6 +1,7 @@
 //! Tests of conversions of many files.
 
 use super::*;
+use crate::export::ExportRoot;
 use crate::reading::{Companion, Parcel, ReadSetup, Unpacker, read};
 use segue_formats::archive::{ArchiveLimits, unpack};
 use segue_formats::bvh::{WriteOptions, write};
@@ -243,4 +244,40 @@ fn files_of_long_or_equal_names_are_numbered() {
     paths.sort();
     paths.dedup();
     assert_eq!(paths.len(), 6);
+}
+
+#[test]
+fn root_motion_is_where_the_options_want_it() {
+    let walk = Motion::analyze(made(Action::Walk));
+    let far = |clip: &Clip| {
+        let at = |frame: usize| clip.root_translations()[frame];
+        (at(0) - at(clip.frames() - 1)).length()
+    };
+    for format in [ExportFormat::Bvh, ExportFormat::Fbx, ExportFormat::Glb, ExportFormat::Npz] {
+        let exported = |root: ExportRoot| {
+            let how = ExportOptions { format, root, ..ExportOptions::default() };
+            let bytes = export(&walk, None, &[], &how).unwrap();
+            read_back(&format!("x.{}", format.ending()), &bytes)
+        };
+        let [as_it_is, rooted, still] =
+            [ExportRoot::AsIs, ExportRoot::Ground, ExportRoot::InPlace].map(exported);
+        assert!(as_it_is.unfolded().is_none());
+        let file = rooted.unfolded().expect("joints above the hips");
+        assert_eq!(file.skeleton().joints()[0].name, "root", "{format:?}");
+        assert!(file.root_translations().iter().all(|root| root.y.abs() < 1e-4));
+        assert!((far(&file) - far(walk.clip())).abs() < 0.1);
+        // Reading folds the bone again, and the body is where it was.
+        for frame in (0..walk.clip().frames()).step_by(11) {
+            let own = walk.clip().world_pose(frame).positions;
+            let back = rooted.world_pose(frame).positions;
+            assert!(own.iter().zip(&back).all(|(own, back)| own.distance(*back) < 2e-4));
+        }
+        assert!(far(&still) < 0.2 && far(walk.clip()) > 1.0, "{format:?}");
+    }
+    // A table of a format without such a bone is as it is.
+    let how = ExportOptions { format: ExportFormat::Csv, ..ExportOptions::default() };
+    let ground = ExportOptions { root: ExportRoot::Ground, ..how };
+    assert_eq!(export(&walk, None, &[], &how), export(&walk, None, &[], &ground));
+    let in_place = ExportOptions { root: ExportRoot::InPlace, ..how };
+    assert_ne!(export(&walk, None, &[], &how), export(&walk, None, &[], &in_place));
 }
