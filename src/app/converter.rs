@@ -4,7 +4,9 @@
 use super::Segue;
 use crate::platform::{self, FileBytes, ReadEvent, Reader};
 use crate::ui::{ConvertAction, ConvertShown};
-use segue_session::convert::{Conversion, ConversionRow, ConvertOptions, TargetRig};
+use segue_session::convert::{
+    Conversion, ConversionRow, ConvertOptions, ConvertedFile, TargetRig,
+};
 use segue_session::export::ExportOptions;
 use segue_session::reading::{Companion, Content, ReadSetup, ReadTask};
 use segue_session::{Level, Session, Slot};
@@ -14,9 +16,6 @@ use std::sync::Arc;
 
 /// The number of the first task of a conversion; those of the session are lower.
 const FIRST_TASK: u64 = 1 << 40;
-/// The name of the archive.
-const ARCHIVE: &str = "converted.zip";
-
 /// A file or clip that is to be converted.
 #[derive(Debug)]
 enum Item {
@@ -109,8 +108,8 @@ impl Converter {
     }
 
     /// Begins with the next file when the one before is done. Returns whether there is more to do
-    /// at once, and the archive after the last file.
-    fn advance(&mut self, session: &Session, reader: &mut Reader) -> (bool, Option<Vec<u8>>) {
+    /// at once, and what is to be saved after the last file.
+    fn advance(&mut self, session: &Session, reader: &mut Reader) -> (bool, Option<ConvertedFile>) {
         let Some(run) = &mut self.run else {
             return (false, None);
         };
@@ -149,8 +148,8 @@ impl Converter {
         (true, None)
     }
 
-    /// Stops, and returns the archive of what is done.
-    fn stop(&mut self, reader: &mut Reader) -> Option<Vec<u8>> {
+    /// Stops, and returns what is done.
+    fn stop(&mut self, reader: &mut Reader) -> Option<ConvertedFile> {
         let run = self.run.as_mut()?;
         if let Some(current) = run.current.take() {
             reader.stop(current.task);
@@ -163,10 +162,11 @@ impl Converter {
         self.end()
     }
 
-    fn end(&mut self) -> Option<Vec<u8>> {
-        let run = self.run.take()?;
+    fn end(&mut self) -> Option<ConvertedFile> {
+        let mut run = self.run.take()?;
+        run.conversion.write_one_file();
         self.rows = Arc::new(run.conversion.rows().to_vec());
-        Some(run.conversion.finish())
+        Some(run.conversion.into_file())
     }
 
     /// Returns the skeleton files among those that wait, and leaves them out where there are
@@ -207,10 +207,12 @@ impl Segue {
                     self.converter.add(Item::Clip { id: id.clone() });
                 }
             }
-            ConvertAction::Start { how, onto_a } => self.start_conversion(how, *onto_a),
+            ConvertAction::Start { how, onto_a, in_one_file } => {
+                self.start_conversion(how, *onto_a, *in_one_file);
+            }
             ConvertAction::Stop => {
-                let archive = self.converter.stop(&mut self.reader);
-                self.save_archive(archive);
+                let made = self.converter.stop(&mut self.reader);
+                self.save_converted(made);
             }
             ConvertAction::Clear => {
                 self.converter.waiting.clear();
@@ -219,7 +221,7 @@ impl Segue {
         }
     }
 
-    fn start_conversion(&mut self, how: &ExportOptions, onto_a: bool) {
+    fn start_conversion(&mut self, how: &ExportOptions, onto_a: bool, in_one_file: bool) {
         if self.converter.run.is_some() || self.converter.waiting.is_empty() {
             return;
         }
@@ -236,22 +238,29 @@ impl Segue {
         let mut setup = self.session.setup_for_conversion(&options);
         setup.companions.extend(self.converter.take_skeletons());
         let all = self.converter.waiting.len();
-        let conversion = Conversion::new(options);
+        let conversion = if in_one_file {
+            // Motions come back, for the body that they share.
+            setup.convert = None;
+            let character = self.session.character().filter(|_| !onto_a);
+            Conversion::in_one_file(options, character.as_ref())
+        } else {
+            Conversion::new(options)
+        };
         self.converter.run = Some(Run { conversion, setup, all, current: None });
         self.converter.rows = Arc::default();
     }
 
-    /// Begins with the next file when the one before is done, and saves the archive after the last.
+    /// Begins with the next file when the one before is done, and saves the result after the last.
     /// Returns whether there is more to do at once.
     pub(super) fn advance_conversion(&mut self) -> bool {
-        let (more, archive) = self.converter.advance(&self.session, &mut self.reader);
-        self.save_archive(archive);
+        let (more, made) = self.converter.advance(&self.session, &mut self.reader);
+        self.save_converted(made);
         more
     }
 
-    fn save_archive(&self, archive: Option<Vec<u8>>) {
-        if let Some(bytes) = archive {
-            platform::download(ARCHIVE, "application/zip", &bytes, &self.inbox);
+    fn save_converted(&self, made: Option<ConvertedFile>) {
+        if let Some(ConvertedFile { name, mime, bytes }) = made {
+            platform::download(&name, mime, &bytes, &self.inbox);
         }
     }
 }
@@ -278,15 +287,16 @@ mod tests {
 
     fn start(segue: &mut Segue) {
         let how = ExportOptions { format: ExportFormat::Npz, ..ExportOptions::default() };
-        segue.run_conversion(&ConvertAction::Start { how, onto_a: false });
+        let (onto_a, in_one_file) = (false, false);
+        segue.run_conversion(&ConvertAction::Start { how, onto_a, in_one_file });
     }
 
-    /// Returns the archive of the conversion under way.
-    fn archive(segue: &mut Segue) -> Vec<u8> {
+    /// Returns what the conversion under way leaves to be saved.
+    fn converted(segue: &mut Segue) -> ConvertedFile {
         loop {
-            let (_, archive) = segue.converter.advance(&segue.session, &mut segue.reader);
-            if let Some(bytes) = archive {
-                return bytes;
+            let (_, made) = segue.converter.advance(&segue.session, &mut segue.reader);
+            if let Some(made) = made {
+                return made;
             }
             for incoming in segue.inbox.take() {
                 segue.receive(incoming);
@@ -307,8 +317,9 @@ mod tests {
         assert_eq!(segue.converter.shown().waiting, 5);
         start(&mut segue);
         assert_eq!(segue.converter.shown().progress, Some((0.0, 0, 5)));
-        let bytes = archive(&mut segue);
-        assert!(bytes.starts_with(b"PK"));
+        let made = converted(&mut segue);
+        assert!(made.bytes.starts_with(b"PK"));
+        assert_eq!((made.name.as_str(), made.mime), ("converted.zip", "application/zip"));
         let shown = segue.converter.shown();
         assert_eq!((shown.waiting, shown.progress), (0, None));
         let outputs: Vec<Option<&str>> =
@@ -320,6 +331,27 @@ mod tests {
         segue.panels.convert.is_open = false;
         segue.receive(Incoming::File { name: "one.bvh".into(), bytes: Arc::from(BVH) });
         assert_eq!(segue.session.library().entries().len(), before + 1);
+    }
+
+    #[test]
+    fn files_and_clips_in_one_file_share_a_body() {
+        let mut segue = app();
+        for (name, bytes) in [("one.bvh", BVH), ("two.bvh", &BVH[..80])] {
+            segue.converter.add_file(name.to_owned(), FileBytes::Here(Arc::from(bytes)));
+        }
+        segue.run_conversion(&ConvertAction::AddClips(vec!["walk".into(), "run".into()]));
+        let how = ExportOptions { format: ExportFormat::Fbx, ..ExportOptions::default() };
+        let (onto_a, in_one_file) = (true, true);
+        segue.run_conversion(&ConvertAction::Start { how, onto_a, in_one_file });
+        let made = converted(&mut segue);
+        assert_eq!(made.name, "clips.fbx");
+        assert!(made.bytes.starts_with(b"Kaydara FBX Binary"));
+        let rows = segue.converter.shown().rows;
+        let outputs: Vec<Option<&str>> =
+            rows.iter().map(|row| row.output.as_deref().ok()).collect();
+        let file = Some("clips.fbx");
+        // One joint is no body that A's can have the motion of; a file that is cut cannot be read.
+        assert_eq!(outputs, [file, None, file, file]);
     }
 
     #[test]
@@ -336,7 +368,7 @@ mod tests {
             assert_eq!(archive, None);
         }
         let archive = segue.converter.stop(&mut segue.reader);
-        assert!(archive.is_some_and(|bytes| bytes.starts_with(b"PK")));
+        assert!(archive.is_some_and(|made| made.bytes.starts_with(b"PK")));
         let rows = segue.converter.shown().rows;
         assert!(rows[0].output.is_ok() && rows.len() == 4);
         assert!(rows[1..].iter().all(|row| row.output.is_err()));

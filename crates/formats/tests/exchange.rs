@@ -13,7 +13,7 @@ use glam::{DMat4, DVec3};
 use segue_formats::bvh::{RotationOrder, WriteOptions, write};
 use segue_formats::csv::{CsvInputs, CsvOptions, write_csv};
 use segue_formats::fbx::{FbxOptions, write_fbx};
-use segue_formats::gltf::{GlbOptions, write_character_glb, write_glb};
+use segue_formats::gltf::{GlbOptions, write_character_glb, write_clips_glb, write_glb};
 use segue_formats::numpy::write_npz;
 use segue_formats::{ImportOptions, import};
 use segue_motion::clip::{Clip, Motion, UpAxis};
@@ -202,4 +202,19 @@ fn exported_files_are_left_for_other_readers() {
     save("csv", write_csv(&inputs, &CsvOptions::default()).as_bytes());
     writeln!(list, "character {}", unit(&clip, &WriteOptions::default())).unwrap();
     fs::write(folder.join("cases.txt"), list).unwrap();
+    // Two clips in one file, with a root bone on the ground.
+    let clips = [Action::Walk, Action::Run].map(|action| {
+        synthesize(&Params::new(action)).unwrap().clip.with_ground_root()
+    });
+    let mut list = String::new();
+    for clip in &clips {
+        let inputs = CsvInputs { clip, contacts: None, columns: &[] };
+        let table = write_csv(&inputs, &CsvOptions::default());
+        fs::write(folder.join(format!("together {}.csv", clip.name())), table).unwrap();
+        writeln!(list, "{}", clip.name()).unwrap();
+    }
+    let [walk, run] = &clips;
+    let bytes = write_clips_glb(&[walk, run], None, &GlbOptions::default()).unwrap();
+    fs::write(folder.join("together.glb"), bytes).unwrap();
+    fs::write(folder.join("together.txt"), list).unwrap();
 }

@@ -1,5 +1,9 @@
 //! A motion as the bytes of a file.
 
+mod together;
+
+pub use together::Together;
+
 use super::labs::{CharacterMotion, Outcome, PlacedClip};
 use super::motion::{curve_kind, joint_of};
 use super::params::{Key, Params};
@@ -69,6 +73,12 @@ impl ExportFormat {
     #[must_use]
     pub const fn has_root_bones(self) -> bool {
         matches!(self, Self::Bvh | Self::Fbx | Self::Glb | Self::Npz)
+    }
+
+    /// Returns whether a file can hold several clips ([`Together`]).
+    #[must_use]
+    pub const fn holds_several(self) -> bool {
+        matches!(self, Self::Fbx | Self::Glb)
     }
 
     /// Returns the format of a name.

@@ -247,6 +247,84 @@ fn files_of_long_or_equal_names_are_numbered() {
 }
 
 #[test]
+fn files_of_many_rigs_become_animations_of_one_file() {
+    for format in [ExportFormat::Glb, ExportFormat::Fbx] {
+        let mut conversion = Conversion::in_one_file(options(format), None);
+        for (name, bytes) in mixed() {
+            let report = read(&name, &bytes, &ReadSetup::default(), &mut |_| true).unwrap();
+            conversion.add_report(&name, Ok(report));
+        }
+        let walk = Motion::analyze(made(Action::Walk));
+        conversion.add_clip("Walk", &walk, None);
+        conversion.write_one_file();
+        let rows = conversion.rows().to_vec();
+        assert_eq!(rows.len(), 22);
+        let good: Vec<&ConversionRow> = rows.iter().filter(|row| row.output.is_ok()).collect();
+        assert!(good.iter().all(|row| row.output == Ok(format!("clips.{}", format.ending()))));
+        // Points without a body cannot be put on one.
+        let failed: Vec<&str> = (rows.iter().filter(|row| row.output.is_err()))
+            .map(|row| row.source.as_str())
+            .collect();
+        assert_eq!(
+            failed,
+            ["points.c3d", "broken/cut.bvh", "broken/cut.fbx", "broken/notes.txt"]
+        );
+        let robot = rows.iter().find(|row| row.source == "robot.csv").unwrap();
+        assert!(robot.odd.iter().any(|note| note.to_string().contains("body of the file")));
+        let made = conversion.into_file();
+        assert_eq!(made.name, format!("clips.{}", format.ending()));
+        let back = import(&made.name, &made.bytes, &ImportOptions::default()).unwrap().clips;
+        assert_eq!(back.len(), good.len());
+        let mut names: Vec<&str> = back.iter().map(|own| own.clip.name()).collect();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), good.len(), "each animation has a name of its own");
+        for (own, row) in back.iter().zip(&good) {
+            let (_, frames, ..) = row.clip.as_ref().unwrap();
+            assert_eq!(own.clip.frames(), *frames, "{}", row.source);
+            assert_eq!(own.clip.skeleton().len(), walk.clip().skeleton().len());
+        }
+        // What was on this body already is as it was.
+        let (own, back) = (walk.clip(), &back.last().unwrap().clip);
+        for frame in (0..own.frames()).step_by(9) {
+            let [own, back] = [own, back].map(|clip| clip.world_pose(frame).positions);
+            assert!(own.iter().zip(&back).all(|(own, back)| own.distance(*back) < 1e-4));
+        }
+    }
+}
+
+#[test]
+fn one_file_of_all_clips_has_the_chosen_body() {
+    let (walk, run) = (made(Action::Walk), made(Action::Run));
+    let skeleton = segue_motion::skeleton::fixtures::mixamo();
+    let roles = Roles::detect(&skeleton);
+    let mesh = Arc::new(SkinnedMesh::around(&skeleton, &roles, 1.0));
+    let vertices = mesh.positions.len();
+    let character = Character { skeleton: skeleton.clone(), roles, mesh };
+    let mut conversion =
+        Conversion::in_one_file(options(ExportFormat::Glb), Some(&character));
+    for clip in [&walk, &run] {
+        conversion.add_clip(clip.name(), &Motion::analyze(clip.clone()), None);
+    }
+    let mut made = conversion.into_file();
+    let author = made.bytes.windows(6).position(|w| w == b"Segue ").unwrap();
+    made.bytes[author..author + 5].copy_from_slice(b"Other");
+    let back = import(&made.name, &made.bytes, &ImportOptions::default()).unwrap().clips;
+    assert_eq!(back.len(), 2);
+    for own in &back {
+        assert_eq!(own.clip.skeleton().joints()[0].name, skeleton.joints()[0].name);
+        assert_eq!(own.mesh.as_ref().map(|mesh| mesh.positions.len()), Some(vertices));
+    }
+    // A format for one clip says so, in the line of each.
+    let mut conversion = Conversion::in_one_file(options(ExportFormat::Bvh), None);
+    conversion.add_clip("Walk", &Motion::analyze(walk), None);
+    conversion.write_one_file();
+    let reason = conversion.rows()[0].output.clone().unwrap_err().to_string();
+    assert!(reason.contains("choose FBX or GLB"), "{reason}");
+    assert_eq!(conversion.into_file().name, ARCHIVE);
+}
+
+#[test]
 fn root_motion_is_where_the_options_want_it() {
     let walk = Motion::analyze(made(Action::Walk));
     let far = |clip: &Clip| {
