@@ -64,7 +64,8 @@ pub(crate) fn pair_ui(session: &Session, out: &mut Out, ui: &mut Ui) -> f64 {
             let names = msg!("{names}", names = retargeted.unmatched.clone());
             line.on_hover_text(say(&names, ui));
         }
-        retarget_rows_ui(&[(None, &**retargeted)], session, out, ui);
+        let errors: Vec<_> = retargeted.errors.iter().map(|errors| (None, errors)).collect();
+        retarget_rows_ui(&errors, session, out, ui);
     }
     let rate = |slot| Some(session.slot(slot)?.motion.as_ref()?.clip().fps());
     if let (Some(a), Some(b)) = (rate(Slot::A), rate(Slot::B))

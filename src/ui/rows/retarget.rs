@@ -8,20 +8,17 @@ use crate::ui::text;
 use crate::ui::theme::palette_of;
 use eframe::egui::Ui;
 use segue_motion::retarget::{Compared, LimbReach, RetargetErrors, SkatingValues};
-use segue_session::{Key, RetargetReport, Session, format_number};
+use segue_session::{Key, Session, format_number};
 use segue_text::{Message, msg};
 
 /// Draws the rows of the weights, and the errors of the clips that were retargeted, each under its
-/// name where there are several. Nothing for clips of one rig.
+/// name where there are several. Nothing without any: clips of one rig have none.
 pub(crate) fn retarget_rows_ui(
-    reports: &[(Option<Message>, &RetargetReport)],
+    reports: &[(Option<Message>, &RetargetErrors)],
     session: &Session,
     out: &mut Out,
     ui: &mut Ui,
 ) {
-    let reports: Vec<_> = (reports.iter())
-        .filter_map(|(name, report)| Some((name, report.errors.as_ref()?)))
-        .collect();
     if reports.is_empty() {
         return;
     }
