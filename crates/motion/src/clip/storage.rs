@@ -373,6 +373,18 @@ impl Clip {
         scaled
     }
 
+    /// Returns the clip with the same frames at another frame rate: it plays faster or slower.
+    ///
+    /// # Errors
+    /// [`ClipError::FrameRate`] when the rate is not a positive number.
+    pub fn at_rate(mut self, fps: f64) -> Result<Self, ClipError> {
+        if !(fps.is_finite() && fps > 0.0) {
+            return Err(ClipError::FrameRate(fps));
+        }
+        self.fps = fps;
+        Ok(self)
+    }
+
     /// Returns the clip with the joints above the carrier that an equal skeleton has
     /// ([`Skeleton::folded_chain`]); a clip on another skeleton stays as it is.
     #[must_use]
