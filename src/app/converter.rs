@@ -4,11 +4,12 @@
 use super::Segue;
 use crate::platform::{self, FileBytes, ReadEvent, Reader};
 use crate::ui::{ConvertAction, ConvertShown};
+use segue_formats::FileKind;
 use segue_session::convert::{
     Conversion, ConversionRow, ConvertOptions, ConvertedFile, TargetRig,
 };
 use segue_session::export::ExportOptions;
-use segue_session::reading::{Companion, Content, ReadSetup, ReadTask};
+use segue_session::reading::{Companion, Content, ReadReport, ReadSetup, ReadTask};
 use segue_session::{Level, Session, Slot};
 use segue_text::{Message, ToMessage as _, msg};
 use std::collections::VecDeque;
@@ -91,7 +92,17 @@ impl Converter {
         };
         let name = std::mem::take(&mut current.name);
         run.current = None;
-        run.conversion.add_report(&name, report);
+        let has_motions = self.waiting.iter().any(Item::may_need_model);
+        let report = report.map(|mut report| {
+            if has_motions {
+                run.setup.companions.extend(take_models(&mut report));
+            }
+            report
+        });
+        // A body model is not converted where there are motions that need it.
+        if !has_motions || report.as_ref().map_or(true, |report| !report.files.is_empty()) {
+            run.conversion.add_report(&name, report);
+        }
     }
 
     /// Returns what the panel shows.
@@ -190,6 +201,34 @@ impl Converter {
     }
 }
 
+impl Item {
+    /// Returns whether it is a file that may be a motion of a body model.
+    fn may_need_model(&self) -> bool {
+        let is_motion = |name: &str| ["npz", "npy", "pkl"].iter().any(|own| has_ending(name, own));
+        matches!(self, Self::File { name, .. } if is_motion(name))
+    }
+
+    /// Returns whether it has the name of a body model, which is to be read before the motions. The
+    /// content decides when it is read.
+    fn has_name_of_model(&self) -> bool {
+        let Self::File { name, .. } = self else { return false };
+        let name = name.rsplit(['/', '\\']).next().unwrap_or(name).to_lowercase();
+        self.may_need_model() && (name.contains("smpl") || name.contains("model"))
+    }
+}
+
+/// Takes the body models out of a report, to be used for the motions that follow.
+fn take_models(report: &mut ReadReport) -> Vec<Companion> {
+    let mut found = Vec::new();
+    report.files.retain(|file| {
+        let read = file.result.as_ref().ok().filter(|_| file.kind == FileKind::SmplModel);
+        let model = read.and_then(|read| read.companion.as_deref());
+        found.extend(model.cloned());
+        model.is_none()
+    });
+    found
+}
+
 fn has_ending(name: &str, ending: &str) -> bool {
     name.rsplit_once('.').is_some_and(|(_, own)| own.eq_ignore_ascii_case(ending))
 }
@@ -237,6 +276,8 @@ impl Segue {
         let options = ConvertOptions { export: *how, rig };
         let mut setup = self.session.setup_for_conversion(&options);
         setup.companions.extend(self.converter.take_skeletons());
+        // Bodies before the motions that need them, the others in their order.
+        self.converter.waiting.make_contiguous().sort_by_key(|item| !item.has_name_of_model());
         let all = self.converter.waiting.len();
         let conversion = if in_one_file {
             // Motions come back, for the body that they share.
@@ -352,6 +393,33 @@ mod tests {
         let file = Some("clips.fbx");
         // One joint is no body that A's can have the motion of; a file that is cut cannot be read.
         assert_eq!(outputs, [file, None, file, file]);
+    }
+
+    #[test]
+    fn body_model_among_the_files_gives_its_bones_to_their_motions() {
+        const MODEL: &[u8] =
+            include_bytes!("../../crates/formats/tests/cases/numpy/SMPLH_FEMALE.npz");
+        const MOTION: &[u8] = include_bytes!("../../crates/formats/tests/cases/numpy/amass.npz");
+        let motion = ("walk.npz", MOTION);
+        let run = |files: &[(&str, &[u8])]| {
+            let mut segue = app();
+            for (name, bytes) in files {
+                segue.converter.add_file((*name).to_owned(), FileBytes::Here(Arc::from(*bytes)));
+            }
+            start(&mut segue);
+            let made = converted(&mut segue);
+            (made.bytes, segue.converter.shown().rows)
+        };
+        let (_, alone) = run(&[motion]);
+        let (_, both) = run(&[motion, ("bodies/SMPLH_FEMALE.npz", MODEL)]);
+        assert_eq!((alone.len(), both.len()), (1, 1), "the model itself is not converted");
+        let told = |rows: &[ConversionRow]| rows[0].odd.iter().map(ToString::to_string).collect();
+        let (alone, both): (Vec<String>, Vec<String>) = (told(&alone), told(&both));
+        let says = |told: &[String]| told.iter().any(|line| line.contains("SMPLH_FEMALE.npz"));
+        assert!(!says(&alone) && says(&both), "{alone:?} {both:?}");
+        // A model alone is a clip of one pose.
+        let (_, model) = run(&[("SMPLH_FEMALE.npz", MODEL)]);
+        assert!(model[0].output.is_ok());
     }
 
     #[test]
