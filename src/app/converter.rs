@@ -93,14 +93,17 @@ impl Converter {
         let name = std::mem::take(&mut current.name);
         run.current = None;
         let has_motions = self.waiting.iter().any(Item::may_need_model);
+        // A body model is not converted where there are motions that need it.
+        let mut is_model = false;
         let report = report.map(|mut report| {
             if has_motions {
-                run.setup.companions.extend(take_models(&mut report));
+                let models = take_models(&mut report);
+                is_model = !models.is_empty() && report.files.is_empty();
+                run.setup.companions.extend(models);
             }
             report
         });
-        // A body model is not converted where there are motions that need it.
-        if !has_motions || report.as_ref().map_or(true, |report| !report.files.is_empty()) {
+        if !is_model {
             run.conversion.add_report(&name, report);
         }
     }

@@ -47,7 +47,8 @@ pub(super) fn selection_ui(session: &Session, state: &mut UiState, out: &mut Out
         }
         let together =
             ids.len() > 1 && kit::button_ui(Button::new(text::SAVE_TOGETHER), ui).clicked();
-        if together || kit::button_ui(Button::new(text::CONVERT_CLIPS), ui).clicked() {
+        let apart = kit::button_ui(Button::new(text::CONVERT_CLIPS), ui).clicked();
+        if together || apart {
             out.actions.push(Action::Convert(ConvertAction::AddClips(ids.clone())));
             state.convert.is_open = true;
             state.convert.in_one_file = together;

@@ -104,8 +104,7 @@ fn format_row_ui(which: &str, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
 /// Draws the options of the chosen format.
 fn options_ui(export: &mut ExportOptions, ui: &mut Ui) {
     match export.format {
-        ExportFormat::Csv => {}
-        ExportFormat::Vrma | ExportFormat::Npz | ExportFormat::G1Csv => {}
+        ExportFormat::Csv | ExportFormat::Vrma | ExportFormat::Npz | ExportFormat::G1Csv => {}
         ExportFormat::Glb => {
             if let Some(body) = kit::choice_row_ui(text::SAVE_BODY, export.body, &BODIES, ui) {
                 export.body = body;
