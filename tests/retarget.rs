@@ -25,6 +25,9 @@ use std::sync::Arc;
 /// The bar: skating beyond that of the source, per stance, and depth in the ground, centimetres.
 const MAX_MORE_SKATING_CM: f64 = 0.3;
 const MAX_PENETRATION_CM: f64 = 0.5;
+/// How deep the mesh of a character may be below the ground in nineteen of twenty frames, where feet
+/// roll over their heels and tips, centimetres.
+const MAX_SUNKEN_MESH_CM: f32 = 1.0;
 /// The frames of a take that go through files.
 const MAX_FRAMES: usize = 900;
 
@@ -399,6 +402,9 @@ fn characters_of_other_rigs_neither_slide_nor_sink_in() {
             faults.extend(faults_of(errors).map(|fault| format!("{} {name}: {fault}", rig.name)));
             if worst > own + MAX_MORE_SKATING_CM || mean > own_mean + MAX_MORE_SKATING_CM {
                 faults.push(format!("{} {name}: slides {worst:.2} {mean:.2} cm", rig.name));
+            }
+            if deep > MAX_SUNKEN_MESH_CM {
+                faults.push(format!("{} {name}: its soles are {deep:.2} cm deep", rig.name));
             }
             // A file has the same poses.
             let glb = ExportOptions { format: ExportFormat::Glb, ..ExportOptions::default() };

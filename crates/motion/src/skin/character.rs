@@ -20,8 +20,8 @@ const SOLE_VERTICES: usize = 32;
 /// The greatest distance of a clip's lowest foot points from the ground on which it stands, as a
 /// share of the leg's length.
 const MAX_GROUND_DISTANCE: f32 = 0.2;
-/// The percentage of frames in which a foot may be below its ground: outliers in single frames.
-const GROUND_PERCENTILE: f32 = 5.0;
+/// The share of frames in which a foot may be below its ground: outliers in single frames.
+const GROUND_PERCENTILE: f32 = 0.05;
 
 /// A skeleton with a mesh of its own.
 #[derive(Clone, Debug, PartialEq)]
