@@ -10,18 +10,24 @@ mod common;
 mod encodings;
 
 use common::shared_data;
+use segue_formats::gltf::{GlbOptions, write_glb};
 use segue_formats::{ImportOptions, bvh, import, unpack_gzip};
 use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::metrics::foot_slides;
 use segue_motion::retarget::{RetargetErrors, RetargetOptions, TargetBody, retarget_motion};
 use segue_motion::skeleton::{Joint, Role, Roles, Side, Skeleton, fixtures};
+use segue_motion::skin::{SkinnedMesh, linear_blend};
 use segue_motion::synth::{Action, Params, synthesize};
+use segue_session::export::{ExportFormat, ExportOptions, export};
 use segue_session::{Command, Outcome, Session, Slot};
 use std::sync::Arc;
 
 /// The bar: skating beyond that of the source, per stance, and depth in the ground, centimetres.
 const MAX_MORE_SKATING_CM: f64 = 0.3;
 const MAX_PENETRATION_CM: f64 = 0.5;
+/// How deep the mesh of a character may be below the ground in nineteen of twenty frames, where feet
+/// roll over their heels and tips, centimetres.
+const MAX_SUNKEN_MESH_CM: f32 = 1.0;
 /// The frames of a take that go through files.
 const MAX_FRAMES: usize = 900;
 
@@ -326,6 +332,91 @@ fn blends_with_other_bodies_neither_slide_nor_sink_in() {
             }
             if f64::from(depth) > MAX_PENETRATION_CM || limits > 0 || bent > 155.7 {
                 faults.push(format!("{} {name}: {depth:.2} cm, {limits}, {bent:.1}°", rig.name));
+            }
+        }
+    }
+    assert!(faults.is_empty(), "\n{}", faults.join("\n"));
+}
+
+/// Returns a file of another program with a rig and a mesh around its bones.
+fn figure(rig: &Rig) -> Arc<[u8]> {
+    let skeleton = Arc::clone(&rig.skeleton);
+    let clip = Clip::new("figure", skeleton, 30.0, vec![], vec![]).expect("a clip of no frames");
+    let options = GlbOptions { smooth: true, ..GlbOptions::default() };
+    let mut bytes = write_glb(&clip, &options).expect("a file");
+    let author = bytes.windows(6).position(|w| w == b"Segue ").expect("the author");
+    bytes[author..author + 5].copy_from_slice(b"Other");
+    bytes.into()
+}
+
+/// Returns the depth of a mesh below the ground in some frames of a clip: the greatest one, and the
+/// one that nineteen of twenty frames do not exceed, centimetres.
+fn depths_of_mesh(mesh: &SkinnedMesh, clip: &Clip) -> [f32; 2] {
+    let [mut positions, mut normals] = [Vec::new(), Vec::new()];
+    let mut depths: Vec<f32> = (0..clip.frames())
+        .step_by(4)
+        .map(|frame| {
+            let transforms: Vec<_> = mesh.world_from_bind(&clip.world_pose(frame)).collect();
+            linear_blend(mesh, &transforms, &mut positions, &mut normals);
+            -100.0 * positions.iter().map(|p| p.y).fold(f32::INFINITY, f32::min)
+        })
+        .collect();
+    depths.sort_by(f32::total_cmp);
+    [depths[depths.len() - 1], depths[(depths.len() - 1) * 19 / 20]]
+}
+
+/// The same bar, for what users see of their own characters and save: through files, the library
+/// and the cache of the stage.
+#[test]
+fn characters_of_other_rigs_neither_slide_nor_sink_in() {
+    let mut faults = Vec::new();
+    eprintln!("figure, take; slide of the clip, by directions and on the figure, worst; depth");
+    let foreign = ["Mixamo, a child", "SMPL", "Unreal"];
+    for rig in rigs().into_iter().filter(|rig| foreign.contains(&&*rig.name)) {
+        for (name, take) in takes() {
+            // Larger files are read elsewhere.
+            let part = take.clip().crop(0..take.clip().frames().min(MAX_FRAMES)).expect("frames");
+            let (mut session, ids) = opened(&[(name, &part)]);
+            session.load("figure.glb", figure(&rig)).expect("a figure");
+            let character = session.character().expect("the figure is shown");
+            let made = result(&mut session, &ids[0], &ids[0], "lab=view");
+            assert!(session.character().is_none(), "a link without a figure shows none");
+            let id = session.library().entries().last().expect("the figure").id.clone();
+            let made = made.and(result(
+                &mut session,
+                &ids[0],
+                &ids[0],
+                &format!("lab=view&character={id}"),
+            ));
+            let motion = Arc::clone(&made.expect("the clip").motion);
+            let moved = session.on_character(&motion).expect("the clip on the figure");
+            let errors = moved.errors().expect("another rig");
+            let shown = Motion::with_roles(moved.clip().clone(), &character.roles);
+            let [own, own_mean] = slides(&motion, motion.contacts());
+            let [worst, mean] = slides(&shown, motion.contacts());
+            let [deepest, deep] = depths_of_mesh(&character.mesh, moved.clip());
+            eprintln!(
+                "{:<16} {name:<10} {own:>6.2} {:>6.2} {worst:>6.2} | joints {:>5.2} mesh {deepest:>5.2} {deep:>5.2}",
+                rig.name, errors.skating.directions.worst_cm, errors.penetration_cm.result
+            );
+            faults.extend(faults_of(errors).map(|fault| format!("{} {name}: {fault}", rig.name)));
+            if worst > own + MAX_MORE_SKATING_CM || mean > own_mean + MAX_MORE_SKATING_CM {
+                faults.push(format!("{} {name}: slides {worst:.2} {mean:.2} cm", rig.name));
+            }
+            if deep > MAX_SUNKEN_MESH_CM {
+                faults.push(format!("{} {name}: its soles are {deep:.2} cm deep", rig.name));
+            }
+            // A file has the same poses.
+            let glb = ExportOptions { format: ExportFormat::Glb, ..ExportOptions::default() };
+            let bytes = export(&motion, Some(&character), &[], &glb).expect("a file");
+            let saved = import("x.glb", &bytes, &ImportOptions::default()).expect("readable");
+            let (saved, ours) = (&saved.clips[0].clip, moved.clip());
+            assert_eq!(saved.frames(), ours.frames());
+            for frame in (0..ours.frames()).step_by(7) {
+                let [saved, ours] = [saved, ours].map(|clip| clip.world_pose(frame).positions);
+                for (saved, ours) in saved.iter().zip(&ours) {
+                    assert!(saved.distance(*ours) < 1e-4, "{} {name} {frame}", rig.name);
+                }
             }
         }
     }

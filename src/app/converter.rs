@@ -4,9 +4,10 @@
 use super::Segue;
 use crate::platform::{self, FileBytes, ReadEvent, Reader};
 use crate::ui::{ConvertAction, ConvertShown};
-use segue_session::convert::{Conversion, ConversionRow, ConvertOptions, TargetRig};
+use segue_formats::FileKind;
+use segue_session::convert::{Conversion, ConversionRow, ConvertOptions, ConvertedFile, TargetRig};
 use segue_session::export::ExportOptions;
-use segue_session::reading::{Companion, Content, ReadSetup, ReadTask};
+use segue_session::reading::{Companion, Content, ReadReport, ReadSetup, ReadTask};
 use segue_session::{Command, FileCommand, Level, Origin, Session, Slot};
 use segue_text::{Message, ToMessage as _, msg};
 use std::collections::VecDeque;
@@ -14,9 +15,6 @@ use std::sync::Arc;
 
 /// The number of the first task of a conversion; those of the session are lower.
 const FIRST_TASK: u64 = 1 << 40;
-/// The name of the archive.
-const ARCHIVE: &str = "converted.zip";
-
 /// A file or clip that is to be converted.
 #[derive(Debug)]
 enum Item {
@@ -94,7 +92,20 @@ impl Converter {
         };
         let name = std::mem::take(&mut current.name);
         run.current = None;
-        run.conversion.add_report(&name, report);
+        let has_motions = self.waiting.iter().any(Item::may_need_model);
+        // A body model is not converted where there are motions that need it.
+        let mut is_model = false;
+        let report = report.map(|mut report| {
+            if has_motions {
+                let models = take_models(&mut report);
+                is_model = !models.is_empty() && report.files.is_empty();
+                run.setup.companions.extend(models);
+            }
+            report
+        });
+        if !is_model {
+            run.conversion.add_report(&name, report);
+        }
     }
 
     /// Returns what the panel shows.
@@ -111,8 +122,8 @@ impl Converter {
     }
 
     /// Begins with the next file when the one before is done. Returns whether there is more to do
-    /// at once, and the archive after the last file.
-    fn advance(&mut self, session: &Session, reader: &mut Reader) -> (bool, Option<Vec<u8>>) {
+    /// at once, and what is to be saved after the last file.
+    fn advance(&mut self, session: &Session, reader: &mut Reader) -> (bool, Option<ConvertedFile>) {
         let Some(run) = &mut self.run else {
             return (false, None);
         };
@@ -160,8 +171,8 @@ impl Converter {
         (entry.motion.is_none() && can_be_read).then(|| entry.id.clone())
     }
 
-    /// Stops, and returns the archive of what is done.
-    fn stop(&mut self, reader: &mut Reader) -> Option<Vec<u8>> {
+    /// Stops, and returns what is done.
+    fn stop(&mut self, reader: &mut Reader) -> Option<ConvertedFile> {
         let run = self.run.as_mut()?;
         if let Some(current) = run.current.take() {
             reader.stop(&[current.task].into());
@@ -174,10 +185,11 @@ impl Converter {
         self.end()
     }
 
-    fn end(&mut self) -> Option<Vec<u8>> {
-        let run = self.run.take()?;
+    fn end(&mut self) -> Option<ConvertedFile> {
+        let mut run = self.run.take()?;
+        run.conversion.write_one_file();
         self.rows = Arc::new(run.conversion.rows().to_vec());
-        Some(run.conversion.finish())
+        Some(run.conversion.into_file())
     }
 
     /// Returns the queued skeleton files, and removes them from the queue if there are motions that
@@ -201,6 +213,34 @@ impl Converter {
     }
 }
 
+impl Item {
+    /// Returns whether it is a file that may be a motion of a body model.
+    fn may_need_model(&self) -> bool {
+        let is_motion = |name: &str| ["npz", "npy", "pkl"].iter().any(|own| has_ending(name, own));
+        matches!(self, Self::File { name, .. } if is_motion(name))
+    }
+
+    /// Returns whether it has the name of a body model, which is to be read before the motions. The
+    /// content decides when it is read.
+    fn has_name_of_model(&self) -> bool {
+        let Self::File { name, .. } = self else { return false };
+        let name = name.rsplit(['/', '\\']).next().unwrap_or(name).to_lowercase();
+        self.may_need_model() && (name.contains("smpl") || name.contains("model"))
+    }
+}
+
+/// Takes the body models out of a report, to be used for the motions that follow.
+fn take_models(report: &mut ReadReport) -> Vec<Companion> {
+    let mut found = Vec::new();
+    report.files.retain(|file| {
+        let read = file.result.as_ref().ok().filter(|_| file.kind == FileKind::SmplModel);
+        let model = read.and_then(|read| read.companion.as_deref());
+        found.extend(model.cloned());
+        model.is_none()
+    });
+    found
+}
+
 fn has_ending(name: &str, ending: &str) -> bool {
     name.rsplit_once('.').is_some_and(|(_, own)| own.eq_ignore_ascii_case(ending))
 }
@@ -218,10 +258,12 @@ impl Segue {
                     self.converter.add(Item::Clip { id: id.clone() });
                 }
             }
-            ConvertAction::Start { how, onto_a } => self.start_conversion(how, *onto_a),
+            ConvertAction::Start { how, onto_a, in_one_file } => {
+                self.start_conversion(how, *onto_a, *in_one_file);
+            }
             ConvertAction::Stop => {
-                let archive = self.converter.stop(&mut self.reader);
-                self.save_archive(archive);
+                let made = self.converter.stop(&mut self.reader);
+                self.save_converted(made);
             }
             ConvertAction::Clear => {
                 self.converter.waiting.clear();
@@ -230,7 +272,7 @@ impl Segue {
         }
     }
 
-    fn start_conversion(&mut self, how: &ExportOptions, onto_a: bool) {
+    fn start_conversion(&mut self, how: &ExportOptions, onto_a: bool, in_one_file: bool) {
         if self.converter.run.is_some() || self.converter.waiting.is_empty() {
             return;
         }
@@ -246,13 +288,22 @@ impl Segue {
         let options = ConvertOptions { export: *how, rig };
         let mut setup = self.session.setup_for_conversion(&options);
         setup.companions.extend(self.converter.take_skeletons());
+        // Bodies before the motions that need them, the others in their order.
+        self.converter.waiting.make_contiguous().sort_by_key(|item| !item.has_name_of_model());
         let all = self.converter.waiting.len();
-        let conversion = Conversion::new(options);
+        let conversion = if in_one_file {
+            // Motions come back, for the body that they share.
+            setup.convert = None;
+            let character = self.session.character().filter(|_| !onto_a);
+            Conversion::in_one_file(options, character.as_ref())
+        } else {
+            Conversion::new(options)
+        };
         self.converter.run = Some(Run { conversion, setup, all, current: None });
         self.converter.rows = Arc::default();
     }
 
-    /// Begins with the next file when the one before is done, and saves the archive after the last.
+    /// Begins with the next file when the one before is done, and saves the result after the last.
     /// Returns whether there is more to do at once.
     pub(super) fn advance_conversion(&mut self) -> bool {
         if let Some(id) = self.converter.awaited_clip(&self.session) {
@@ -263,14 +314,14 @@ impl Segue {
                 return false;
             }
         }
-        let (more, archive) = self.converter.advance(&self.session, &mut self.reader);
-        self.save_archive(archive);
+        let (more, made) = self.converter.advance(&self.session, &mut self.reader);
+        self.save_converted(made);
         more
     }
 
-    fn save_archive(&self, archive: Option<Vec<u8>>) {
-        if let Some(bytes) = archive {
-            platform::download(ARCHIVE, "application/zip", &bytes, &self.inbox);
+    fn save_converted(&self, made: Option<ConvertedFile>) {
+        if let Some(ConvertedFile { name, mime, bytes }) = made {
+            platform::download(&name, mime, &bytes, &self.inbox);
         }
     }
 }
@@ -297,15 +348,16 @@ mod tests {
 
     fn start(segue: &mut Segue) {
         let how = ExportOptions { format: ExportFormat::Npz, ..ExportOptions::default() };
-        segue.run_conversion(&ConvertAction::Start { how, onto_a: false });
+        let (onto_a, in_one_file) = (false, false);
+        segue.run_conversion(&ConvertAction::Start { how, onto_a, in_one_file });
     }
 
-    /// Returns the archive of the conversion under way.
-    fn archive(segue: &mut Segue) -> Vec<u8> {
+    /// Returns what the conversion under way leaves to be saved.
+    fn converted(segue: &mut Segue) -> ConvertedFile {
         loop {
-            let (_, archive) = segue.converter.advance(&segue.session, &mut segue.reader);
-            if let Some(bytes) = archive {
-                return bytes;
+            let (_, made) = segue.converter.advance(&segue.session, &mut segue.reader);
+            if let Some(made) = made {
+                return made;
             }
             for incoming in segue.inbox.take() {
                 segue.receive(incoming);
@@ -326,8 +378,9 @@ mod tests {
         assert_eq!(segue.converter.shown().waiting, 5);
         start(&mut segue);
         assert_eq!(segue.converter.shown().progress, Some((0.0, 0, 5)));
-        let bytes = archive(&mut segue);
-        assert!(bytes.starts_with(b"PK"));
+        let made = converted(&mut segue);
+        assert!(made.bytes.starts_with(b"PK"));
+        assert_eq!((made.name.as_str(), made.mime), ("converted.zip", "application/zip"));
         let shown = segue.converter.shown();
         assert_eq!((shown.waiting, shown.progress), (0, None));
         let outputs: Vec<Option<&str>> =
@@ -339,6 +392,54 @@ mod tests {
         segue.panels.convert.is_open = false;
         segue.receive(Incoming::File { name: "one.bvh".into(), bytes: Arc::from(BVH) });
         assert_eq!(segue.session.library().entries().len(), before + 1);
+    }
+
+    #[test]
+    fn files_and_clips_in_one_file_share_a_body() {
+        let mut segue = app();
+        for (name, bytes) in [("one.bvh", BVH), ("two.bvh", &BVH[..80])] {
+            segue.converter.add_file(name.to_owned(), FileBytes::Here(Arc::from(bytes)));
+        }
+        segue.run_conversion(&ConvertAction::AddClips(vec!["walk".into(), "run".into()]));
+        let how = ExportOptions { format: ExportFormat::Fbx, ..ExportOptions::default() };
+        let (onto_a, in_one_file) = (true, true);
+        segue.run_conversion(&ConvertAction::Start { how, onto_a, in_one_file });
+        let made = converted(&mut segue);
+        assert_eq!(made.name, "clips.fbx");
+        assert!(made.bytes.starts_with(b"Kaydara FBX Binary"));
+        let rows = segue.converter.shown().rows;
+        let outputs: Vec<Option<&str>> =
+            rows.iter().map(|row| row.output.as_deref().ok()).collect();
+        let file = Some("clips.fbx");
+        // One joint is no body that A's can have the motion of; a file that is cut cannot be read.
+        assert_eq!(outputs, [file, None, file, file]);
+    }
+
+    #[test]
+    fn body_model_among_the_files_gives_its_bones_to_their_motions() {
+        const MODEL: &[u8] =
+            include_bytes!("../../crates/formats/tests/cases/numpy/SMPLH_FEMALE.npz");
+        const MOTION: &[u8] = include_bytes!("../../crates/formats/tests/cases/numpy/amass.npz");
+        let motion = ("walk.npz", MOTION);
+        let run = |files: &[(&str, &[u8])]| {
+            let mut segue = app();
+            for (name, bytes) in files {
+                segue.converter.add_file((*name).to_owned(), FileBytes::Here(Arc::from(*bytes)));
+            }
+            start(&mut segue);
+            let made = converted(&mut segue);
+            (made.bytes, segue.converter.shown().rows)
+        };
+        let (_, alone) = run(&[motion]);
+        let (_, both) = run(&[motion, ("bodies/SMPLH_FEMALE.npz", MODEL)]);
+        assert_eq!((alone.len(), both.len()), (1, 1), "the model itself is not converted");
+        let told = |rows: &[ConversionRow]| rows[0].odd.iter().map(ToString::to_string).collect();
+        let (alone, both): (Vec<String>, Vec<String>) = (told(&alone), told(&both));
+        let says = |told: &[String]| told.iter().any(|line| line.contains("SMPLH_FEMALE.npz"));
+        assert!(!says(&alone) && says(&both), "{alone:?} {both:?}");
+        // A model alone is a clip of one pose.
+        let (_, model) = run(&[("SMPLH_FEMALE.npz", MODEL)]);
+        assert!(model[0].output.is_ok());
     }
 
     #[test]
@@ -355,7 +456,7 @@ mod tests {
             assert_eq!(archive, None);
         }
         let archive = segue.converter.stop(&mut segue.reader);
-        assert!(archive.is_some_and(|bytes| bytes.starts_with(b"PK")));
+        assert!(archive.is_some_and(|made| made.bytes.starts_with(b"PK")));
         let rows = segue.converter.shown().rows;
         assert!(rows[0].output.is_ok() && rows.len() == 4);
         assert!(rows[1..].iter().all(|row| row.output.is_err()));

@@ -52,6 +52,17 @@ fn start_ui(session: &Session, state: &mut ConvertState, out: &mut Out, ui: &mut
     {
         state.onto_a = onto_a;
     }
+    let files = [(false, text::FILE_FOR_EACH), (true, text::ONE_FILE)];
+    let holds_several = state.export.format.holds_several();
+    if holds_several
+        && let Some(one) = kit::choice_row_ui(text::CONVERT_FILE, state.in_one_file, &files, ui)
+    {
+        state.in_one_file = one;
+    }
+    let in_one_file = state.in_one_file && holds_several;
+    if in_one_file {
+        kit::note_ui(text::ONE_FILE_HELP, palette_of(ui).muted, ui);
+    }
     ui.add_space(space::S);
     let waiting = state.shown.waiting;
     if waiting > 0 {
@@ -66,7 +77,7 @@ fn start_ui(session: &Session, state: &mut ConvertState, out: &mut Out, ui: &mut
         let convert = Button::new(text::CONVERT).primary();
         if waiting > 0 && kit::button_ui(convert, ui).clicked() {
             let (how, onto_a) = (state.export, state.onto_a);
-            out.actions.push(Action::Convert(ConvertAction::Start { how, onto_a }));
+            out.actions.push(Action::Convert(ConvertAction::Start { how, onto_a, in_one_file }));
         }
         let can_clear = waiting > 0 || !state.shown.rows.is_empty();
         if can_clear && kit::button_ui(Button::new(text::CLEAR_FILES), ui).clicked() {

@@ -14,6 +14,8 @@ pub(crate) enum ConvertAction {
         how: ExportOptions,
         /// Whether motions are put on the body of A.
         onto_a: bool,
+        /// Whether all are saved in one file.
+        in_one_file: bool,
     },
     /// Stop, and save what is done.
     Stop,

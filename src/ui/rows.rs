@@ -11,7 +11,7 @@ pub(crate) use clip_sets::clip_sets_ui;
 pub(crate) use footer::{KeepOffer, footer_ui};
 pub(crate) use param::{Detail, compare_choice_ui, param_row_ui};
 pub(crate) use remedies::{body_parts_asked_for, remedy_buttons_ui};
-pub(crate) use retarget::retarget_rows_ui;
+pub(crate) use retarget::{character_errors_ui, retarget_rows_ui};
 pub(crate) use save::{format_rows_ui, save_rows_ui};
 
 use super::clip_drag::clip_dropped_on;
@@ -64,7 +64,8 @@ pub(crate) fn pair_ui(session: &Session, out: &mut Out, ui: &mut Ui) -> f64 {
             let names = msg!("{names}", names = retargeted.unmatched.clone());
             line.on_hover_text(say(&names, ui));
         }
-        retarget_rows_ui(&[(None, &**retargeted)], session, out, ui);
+        let errors: Vec<_> = retargeted.errors.iter().map(|errors| (None, errors)).collect();
+        retarget_rows_ui(&errors, session, out, ui);
     }
     let rate = |slot| Some(session.slot(slot)?.motion.as_ref()?.clip().fps());
     if let (Some(a), Some(b)) = (rate(Slot::A), rate(Slot::B))

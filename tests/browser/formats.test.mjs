@@ -6,9 +6,11 @@ import { onOneBackend } from "./harness.mjs";
 import { apart } from "./help.mjs";
 
 const SMALL = { viewport: [960, 640] };
-/** Returns a file of the tests of the readers, and what it holds. */
+/** Files of the tests of the readers, and of the fuzzer, with their joints and frames. */
 const CASES = [
   ["c3d/ezc3d.c3d", 6, 7],
+  ["../../../../fuzz/corpus-seeds/fbx/binary.fbx", 3, 2],
+  ["../../../../fuzz/corpus-seeds/fbx/text.fbx", 3, 2],
   ["numpy/amass.npz", 52, 8],
   ["numpy/joints22.npy", 22, null],
   ["robot_csv/named.csv", 30, 12],
@@ -20,7 +22,7 @@ onOneBackend("files of every format open", async ({ open }) => {
   const { segue, load } = await open("lab=view&play=off", SMALL);
   for (const [path, joints, frames] of CASES) {
     const bytes = await readFile(new URL(`../../crates/formats/tests/cases/${path}`, import.meta.url));
-    const [clip] = (await load(path.split("/")[1], bytes)).clips;
+    const [clip] = (await load(path.split("/").at(-1), bytes)).clips;
     assert.equal(clip.joints, joints, path);
     if (frames !== null) assert.equal(clip.frames, frames, path);
     await segue("set", { a: clip.id });

@@ -35,16 +35,17 @@ export function fromBvh(text, metresPerUnit) {
 }
 
 /**
- * Reads a GLB file. Returns joints and frames as for CSV, in the order of its skin, with the names
- * that three.js makes.
+ * Reads an animation of a GLB file by its name, or the only one. Returns joints and frames as for
+ * CSV, in the order of its skin, with the names that three.js makes.
  */
-export async function fromGlb(bytes) {
+export async function fromGlb(bytes, name) {
   const buffer = bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength);
   const { scene, animations } = await new GLTFLoader().parseAsync(buffer, "");
   let skin;
   scene.traverse((object) => { if (object.isSkinnedMesh) skin = object; });
-  if (!skin || animations.length !== 1) throw new Error(`${animations.length} animations, and ${skin ? "a" : "no"} skin`);
-  return { joints: skin.skeleton.bones.map((bone) => bone.name), frames: frames(scene, skin.skeleton.bones, animations[0], 1), skin };
+  const found = animations.filter((animation) => name === undefined || animation.name === name);
+  if (!skin || found.length !== 1) throw new Error(`${found.length} animations, and ${skin ? "a" : "no"} skin`);
+  return { joints: skin.skeleton.bones.map((bone) => bone.name), frames: frames(scene, skin.skeleton.bones, found[0], 1), skin };
 }
 
 /** Returns the messages of Khronos' validator for a GLB file, none where it is valid. */
@@ -105,6 +106,15 @@ async function main(folder) {
       console.log(`${name}.glb: ${complaint}`);
       failed = true;
     }
+  }
+  const together = readFileSync(`${folder}/together.glb`);
+  for (const name of readFileSync(`${folder}/together.txt`, "utf8").trim().split("\n")) {
+    const expected = fromCsv(readFileSync(`${folder}/together ${name}.csv`, "utf8"));
+    tell(`together.glb, ${name}`, farthest(expected, await fromGlb(together, name), byIndex));
+  }
+  for (const complaint of await complaints(together)) {
+    console.log(`together.glb: ${complaint}`);
+    failed = true;
   }
   if (failed) throw new Error("not the same motion, or not valid");
 }

@@ -92,6 +92,7 @@ pub mod numpy;
 mod raw;
 pub mod robot_csv;
 mod t_pose;
+mod takes;
 mod text;
 pub mod trc;
 mod unlikely;

@@ -13,12 +13,13 @@ use glam::{DMat4, DVec3};
 use segue_formats::bvh::{RotationOrder, WriteOptions, write};
 use segue_formats::csv::{CsvInputs, CsvOptions, write_csv};
 use segue_formats::fbx::{FbxOptions, write_fbx};
-use segue_formats::gltf::{GlbOptions, write_character_glb, write_glb};
+use segue_formats::gltf::{GlbOptions, write_character_glb, write_clips_glb, write_glb};
 use segue_formats::numpy::write_npz;
 use segue_formats::{ImportOptions, import};
-use segue_motion::clip::{Clip, UpAxis};
+use segue_motion::clip::{Clip, Motion, UpAxis};
+use segue_motion::retarget::{RetargetOptions, TargetBody, retarget_motion};
 use segue_motion::skeleton::Roles;
-use segue_motion::skin::{Character, Drive, SkinnedMesh};
+use segue_motion::skin::{Character, SkinnedMesh};
 use segue_motion::synth::{Action, Params, humanoid, synthesize};
 use std::fmt::Write as _;
 use std::fs;
@@ -159,8 +160,11 @@ fn character() -> (Clip, SkinnedMesh) {
     let colors = [[0.1, 0.2, 0.8, 1.0], [0.8, 0.3, 0.2, 1.0]];
     mesh.colors = mesh.positions.iter().map(|at| colors[usize::from(at.y > 0.0)]).collect();
     let child = Character { skeleton, roles, mesh: Arc::new(mesh.clone()) };
-    let drive = Drive::new(&walk, &Roles::detect(walk.skeleton()), &child).unwrap();
-    (drive.clip(&walk).unwrap(), mesh)
+    let body = TargetBody::at_rest(&child.skeleton, &child.roles);
+    let options = RetargetOptions::default();
+    let moved = retarget_motion(&Motion::analyze(walk.clone()), &body, &options).unwrap();
+    let roles = Roles::detect(walk.skeleton());
+    (child.standing_as(moved.clip, &walk, &roles), mesh)
 }
 
 /// Writes the files for the readers in other languages: for each case BVH, GLB, NPZ and
@@ -198,4 +202,18 @@ fn exported_files_are_left_for_other_readers() {
     save("csv", write_csv(&inputs, &CsvOptions::default()).as_bytes());
     writeln!(list, "character {}", unit(&clip, &WriteOptions::default())).unwrap();
     fs::write(folder.join("cases.txt"), list).unwrap();
+    // Two clips in one file, with a root bone on the ground.
+    let clips = [Action::Walk, Action::Run]
+        .map(|action| synthesize(&Params::new(action)).unwrap().clip.with_ground_root());
+    let mut list = String::new();
+    for clip in &clips {
+        let inputs = CsvInputs { clip, contacts: None, columns: &[] };
+        let table = write_csv(&inputs, &CsvOptions::default());
+        fs::write(folder.join(format!("together {}.csv", clip.name())), table).unwrap();
+        writeln!(list, "{}", clip.name()).unwrap();
+    }
+    let [walk, run] = &clips;
+    let bytes = write_clips_glb(&[walk, run], None, &GlbOptions::default()).unwrap();
+    fs::write(folder.join("together.glb"), bytes).unwrap();
+    fs::write(folder.join("together.txt"), list).unwrap();
 }

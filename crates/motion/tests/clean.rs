@@ -196,7 +196,7 @@ fn t_pose_and_still_ends_are_cut_off() {
 }
 
 #[test]
-fn wrong_rate_is_told_and_not_mended() {
+fn wrong_rate_is_told_and_its_mend_plays_the_same_frames_at_the_likely_one() {
     for action in [Action::Walk, Action::Run] {
         let motion = made(action, 120.0, 0);
         let slow = motion.clip().clone();
@@ -211,7 +211,10 @@ fn wrong_rate_is_told_and_not_mended() {
         assert_eq!(rate.len(), 1, "{action:?}: {faults:#?}");
         let fps = rate[0].likely_fps().unwrap();
         assert!((90.0..=150.0).contains(&fps), "{action:?}: {fps}");
-        assert_eq!(mended(&slow, &rate).clip(), slow.clip());
+        let mended = mended(&slow, &rate);
+        assert_eq!(mended.clip().fps(), fps);
+        assert_eq!(**mended.clip(), Clip::clone(slow.clip()).at_rate(fps).unwrap());
+        assert!(of_kind(&find_faults(&mended), FaultKind::Rate).is_empty());
     }
 }
 

@@ -1,7 +1,7 @@
 //! Marks on a figure: bones, axes, contacts, the chosen joint and its trail.
 
 use crate::context::{DrawContext, PosedResult};
-use crate::{Body, Color, Colors, Layer, Lens, Pane, pose_at, with_alpha};
+use crate::{Body, Color, Colors, Layer, Lens, Pane, with_alpha};
 use glam::Vec3;
 use segue_motion::clip::Motion;
 use segue_motion::skeleton::{Role, Side, WorldPose};
@@ -14,17 +14,12 @@ const SLIDE_MPS: f32 = 0.08;
 const MARK_RADIUS: f32 = 0.011;
 
 /// Marks the chosen joint of a result. Called after the pane has its camera.
-pub(crate) fn add_joint_mark(
-    shown: &PosedResult<'_>,
-    context: &mut DrawContext<'_>,
-    pane: &mut Pane,
-) {
+pub(crate) fn add_joint_mark(shown: &PosedResult<'_>, context: &DrawContext<'_>, pane: &mut Pane) {
     let motion = &shown.outcome.motion;
     let Some(joint) = joint_of(motion, context.params.text(Key::Joint)) else {
         return;
     };
-    let body = context.bodies.body(motion);
-    if let Some(&at) = body.drawn_pose(&shown.world).positions.get(body.drawn_joint(joint)) {
+    if let Some(&at) = shown.world.positions.get(shown.body.drawn_joint(joint)) {
         add_mark(at, context.colors.result, context.look.edge, pane);
     }
 }
@@ -32,22 +27,22 @@ pub(crate) fn add_joint_mark(
 /// Adds the trajectory of a joint of the figure around the present.
 pub(crate) fn add_joint_trail(
     shown: &PosedResult<'_>,
-    body: &Body,
     joint: usize,
-    color: Color,
+    context: &DrawContext<'_>,
     pane: &mut Pane,
 ) {
     /// Time before and after the present that is shown, seconds.
     const REACH_SECS: f64 = 1.0;
     const STEPS: i32 = 60;
     let motion = &shown.outcome.motion;
-    let joint = body.drawn_joint(joint);
+    let joint = shown.body.drawn_joint(joint);
+    let color = context.colors.result;
     let points = (-STEPS..=STEPS).filter_map(|step| {
         let part = f64::from(step) / f64::from(STEPS);
         let at = shown.now + part * REACH_SECS;
         let inside = (0.0..=motion.clip().duration_secs()).contains(&at);
-        let world = inside.then(|| pose_at(motion, at, &shown.place)).flatten()?;
-        let position = *body.drawn_pose(&world).positions.get(joint)?;
+        let world = inside.then(|| shown.world_at(at, context.session)).flatten()?;
+        let position = *world.positions.get(joint)?;
         Some((position, with_alpha(color, 1.0 - 0.85 * part.abs() as f32)))
     });
     pane.add_path(points, 1.75, Layer::Space);
@@ -74,7 +69,7 @@ fn add_mark(at: Vec3, color: Color, edge: Color, pane: &mut Pane) {
     }
 }
 
-/// Adds the bones of the figure that a pose of `motion` moves.
+/// Adds the bones of the figure of `motion` in its pose.
 pub(crate) fn add_bones(
     body: &Body,
     motion: &Motion,
@@ -83,7 +78,6 @@ pub(crate) fn add_bones(
     pane: &mut Pane,
 ) {
     let (skeleton, _) = body.drawn_rig((motion.clip().skeleton(), motion.roles()));
-    let world = body.drawn_pose(world);
     for (index, joint) in skeleton.joints().iter().enumerate() {
         if let Some(parent) = joint.parent {
             pane.add_line(world.positions[parent], world.positions[index], color, 2.0, Layer::Over);
@@ -112,17 +106,16 @@ pub(crate) fn add_axes(world: &WorldPose, colors: &Colors, pane: &mut Pane) {
 }
 
 /// Adds a ring under each planted foot of the figure, in the colour of an error where it slides.
-pub(crate) fn add_contacts(shown: &PosedResult<'_>, body: &Body, colors: &Colors, pane: &mut Pane) {
-    let (motion, now) = (&shown.outcome.motion, shown.now);
-    let frame = segue_session::frame_at(motion, now);
+pub(crate) fn add_contacts(shown: &PosedResult<'_>, context: &DrawContext<'_>, pane: &mut Pane) {
+    let PosedResult { outcome, now, world, body, .. } = shown;
+    let (motion, colors) = (&outcome.motion, context.colors);
+    let frame = segue_session::frame_at(motion, *now);
     let dt = motion.clip().dt_secs();
     if !Side::BOTH.iter().any(|&side| motion.contacts().planted(side, frame)) {
         return;
     }
     let (_, roles) = body.drawn_rig((motion.clip().skeleton(), motion.roles()));
-    let world = body.drawn_pose(&shown.world);
-    let earlier = pose_at(motion, now - f64::from(dt), &shown.place);
-    let earlier = earlier.as_ref().map(|earlier| body.drawn_pose(earlier));
+    let earlier = shown.world_at(now - f64::from(dt), context.session);
     for side in Side::BOTH {
         if !motion.contacts().planted(side, frame) {
             continue;

@@ -9,7 +9,6 @@ use crate::{Color, Limb};
 use segue_motion::skeleton::{Roles, Skeleton, WorldPose, canonical_stance};
 use segue_motion::skin::shapes::{PlacedShape, Shape, limb_shapes};
 use segue_motion::skin::{Character, Drive, SkinnedMesh};
-use std::borrow::Cow;
 use std::sync::Arc;
 
 /// Makes the second ball a little smaller where two limbs meet in the same ball, so that their
@@ -119,24 +118,21 @@ impl Body {
         }
     }
 
-    /// Returns the pose of the body's own skeleton for a pose of the skeleton that moves it, stored
-    /// in `out`; `None` where both are the same skeleton.
-    pub(crate) fn retargeted_pose<'a>(
-        &self,
-        pose: &WorldPose,
-        out: &'a mut WorldPose,
-    ) -> Option<&'a WorldPose> {
-        self.retargeting.as_ref()?.drive.pose(pose, out);
-        Some(out)
+    /// Returns the pose of the drawn figure for a pose of the skeleton that moves the body, by the
+    /// directions of its bones.
+    #[must_use]
+    pub fn drawn_pose(&self, pose: WorldPose) -> WorldPose {
+        let Some(Retargeting { drive, .. }) = &self.retargeting else {
+            return pose;
+        };
+        let mut own = WorldPose::default();
+        drive.pose(&pose, &mut own);
+        own
     }
 
-    /// Returns the pose of the drawn figure for a pose of the skeleton that moves the body.
-    pub(crate) fn drawn_pose<'a>(&self, pose: &'a WorldPose) -> Cow<'a, WorldPose> {
-        let mut own = WorldPose::default();
-        if self.retargeted_pose(pose, &mut own).is_some() {
-            return Cow::Owned(own);
-        }
-        Cow::Borrowed(pose)
+    /// Returns whether it is the body of a character with this skeleton, in any size.
+    pub(crate) fn is_character_of(&self, skeleton: &Skeleton) -> bool {
+        self.retargeting.as_ref().is_some_and(|own| own.skeleton.len() == skeleton.len())
     }
 
     /// Returns the body with another [`size`](Self::size).

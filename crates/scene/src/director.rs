@@ -94,12 +94,12 @@ impl Director {
             };
             let shown = source.shown_at(now);
             let (shown, followed, rest) = if let Some(shown) = shown {
-                let Some(shown) = PosedResult::new(shown) else {
+                let Some(shown) = PosedResult::new(shown, &mut context) else {
                     continue;
                 };
                 add_contents(index, &shown, &mut context, pane);
                 if let Some(figure) = self.figures.get_mut(index) {
-                    place_joints(&shown, &mut context, figure);
+                    place_joints(&shown, figure);
                 }
                 let followed = cameras::followed_point(&shown, &mut context);
                 let rest = resting_point(shown.outcome, &shown.place);
@@ -116,7 +116,7 @@ impl Director {
                 cameras::aim(rig, &aim, &context, dt_secs, pane);
             }
             if let Some(shown) = shown.filter(|_| options.highlights.joint) {
-                annotations::add_joint_mark(&shown, &mut context, pane);
+                annotations::add_joint_mark(&shown, &context, pane);
             }
         }
         let stage = Arc::make_mut(&mut self.stage);
@@ -162,10 +162,9 @@ impl Director {
 }
 
 /// Adds the places of a result's joints on the drawn figure to `figure`.
-fn place_joints(shown: &PosedResult<'_>, context: &mut DrawContext<'_>, figure: &mut Vec<Vec3>) {
-    let motion = &shown.outcome.motion;
-    let body = context.bodies.body(motion);
-    let world = body.drawn_pose(&shown.world);
+fn place_joints(shown: &PosedResult<'_>, figure: &mut Vec<Vec3>) {
+    let PosedResult { outcome, body, world, .. } = shown;
+    let motion = &outcome.motion;
     let place = |joint: usize| world.positions.get(body.drawn_joint(joint)).copied();
     figure
         .extend((0..motion.clip().skeleton().len()).map(|joint| place(joint).unwrap_or_default()));

@@ -4,7 +4,7 @@ use crate::annotations::add_bones;
 use crate::color::mixed;
 use crate::context::DrawContext;
 use crate::ground_path::{MAX_PATH_POINTS, PATH_HEIGHT_M};
-use crate::{Body, Color, Layer, Pane, pose_at};
+use crate::{Body, Color, Layer, Pane};
 use segue_motion::clip::Motion;
 use segue_motion::math::Planar;
 use segue_motion::skeleton::WorldPose;
@@ -22,10 +22,10 @@ pub(crate) fn add_extra_characters(context: &mut DrawContext<'_>, pane: &mut Pan
             continue;
         };
         let color = colors.others[index % colors.others.len()];
-        let Some(world) = pose_at(motion, session.now_secs(), &Planar::IDENTITY) else {
+        let figure = context.figure(motion, session.now_secs(), &Planar::IDENTITY);
+        let Some((body, world)) = figure else {
             continue;
         };
-        let body = context.bodies.body(motion);
         add_character(motion, &world, &body, (color, COLOR_SHARE), context, pane);
         if context.params.is_on(Key::Trail) {
             let frames = motion.ground_frames();

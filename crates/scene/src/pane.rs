@@ -43,7 +43,7 @@ impl Pane {
         self.rings.clear();
     }
 
-    /// Adds a solid body in a pose, with its full shadow.
+    /// Adds a solid body in a pose of its own skeleton, with its full shadow.
     pub fn add_body(&mut self, body: &Body, pose: &WorldPose, color: Color) {
         self.add_figure(body, pose, color, None, false, 1.0);
     }
@@ -77,8 +77,6 @@ impl Pane {
         ghost: bool,
         shadow: f32,
     ) {
-        let mut own = WorldPose::default();
-        let pose = body.retargeted_pose(pose, &mut own).unwrap_or(pose);
         let start = self.limbs.len();
         match (color_of, body.skin()) {
             (Some(color_of), None) => body.colored_limbs(pose, color_of, &mut self.limbs),

@@ -4,7 +4,7 @@ use glam::Quat;
 use segue_motion::clip::Interpolation;
 use segue_motion::clip::Motion;
 use segue_motion::math::Planar;
-use segue_motion::skeleton::{Role, Side, WorldPose, world_pose};
+use segue_motion::skeleton::{Role, Roles, Side, Skeleton, WorldPose, world_pose};
 
 /// Returns the pose of a motion at a time, in the world; the motion is placed by `world_from_clip`.
 #[must_use]
@@ -17,13 +17,16 @@ pub fn pose_at(motion: &Motion, secs: f64, world_from_clip: &Planar) -> Option<W
     Some(world)
 }
 
-/// Returns the pose with both hands twisted about their forearms, degrees; `None` for 0.
-pub(crate) fn twisted(motion: &Motion, world: &WorldPose, degrees: f64) -> Option<WorldPose> {
-    let (skeleton, mut world) =
-        (motion.clip().skeleton(), (degrees != 0.0).then(|| world.clone())?);
+/// Returns the pose of a rig with both hands twisted about their forearms, degrees; `None` for 0.
+pub(crate) fn twisted(
+    (skeleton, roles): (&Skeleton, &Roles),
+    world: &WorldPose,
+    degrees: f64,
+) -> Option<WorldPose> {
+    let mut world = (degrees != 0.0).then(|| world.clone())?;
     for side in Side::BOTH {
         let (Some(elbow), Some(hand)) =
-            (motion.roles().get(Role::forearm(side)), motion.roles().get(Role::hand(side)))
+            (roles.get(Role::forearm(side)), roles.get(Role::hand(side)))
         else {
             continue;
         };

@@ -13,26 +13,26 @@ const GLASS_ALPHA: f32 = 0.5;
 
 /// Adds a result in its current pose, with everything that the parameters show of it.
 pub(crate) fn add_result(shown: &PosedResult<'_>, context: &mut DrawContext<'_>, pane: &mut Pane) {
-    let PosedResult { outcome, now, .. } = shown;
+    let PosedResult { outcome, now, body, .. } = shown;
     let (params, look, colors) = (context.params, context.look, context.colors);
     let motion = &outcome.motion;
-    let body = context.bodies.body(motion);
-    let twisted = twisted(motion, &shown.world, params.number(Key::Twist));
+    let rig = body.drawn_rig((motion.clip().skeleton(), motion.roles()));
+    let twisted = twisted(rig, &shown.world, params.number(Key::Twist));
     let world = twisted.as_ref().unwrap_or(&shown.world);
     let figure = params.choice::<Look>();
     match (figure, outcome.layer().filter(|_| params.is_on(Key::MaskColors))) {
         (Look::Bones, _) => {}
-        (Look::Both, _) => pane.add_glass(&body, world, with_alpha(look.clay, GLASS_ALPHA)),
-        (_, Some(layer)) => pane.add_colored_body(&body, world, |joint| {
+        (Look::Both, _) => pane.add_glass(body, world, with_alpha(look.clay, GLASS_ALPHA)),
+        (_, Some(layer)) => pane.add_colored_body(body, world, |joint| {
             labs::layers::share_color(layer, joint, look, colors)
         }),
-        (_, None) => pane.add_body(&body, world, look.clay),
+        (_, None) => pane.add_body(body, world, look.clay),
     }
     if matches!(figure, Look::Bones | Look::Both) {
-        add_bones(&body, motion, world, colors.result, pane);
+        add_bones(body, motion, world, colors.result, pane);
     }
     if params.is_on(Key::Axes) {
-        add_axes(&body.drawn_pose(world), colors, pane);
+        add_axes(world, colors, pane);
     }
     if params.is_on(Key::Sources) {
         sources::add_sources(shown, context, pane);
@@ -44,15 +44,15 @@ pub(crate) fn add_result(shown: &PosedResult<'_>, context: &mut DrawContext<'_>,
         add_ground_path(shown, colors, pane);
     }
     if let Some(driven) = outcome.driven() {
-        labs::match_::add_driven(driven, *now, &body, context, pane);
+        labs::match_::add_driven(driven, *now, body, context, pane);
     }
     if params.is_on(Key::JointTrail)
         && let Some(joint) = joint_of(motion, params.text(Key::Joint))
     {
-        add_joint_trail(shown, &body, joint, colors.result, pane);
+        add_joint_trail(shown, joint, context, pane);
     }
     if params.is_on(Key::Contacts) {
-        add_contacts(shown, &body, colors, pane);
+        add_contacts(shown, context, pane);
     }
 }
 

@@ -7,8 +7,10 @@
 //! ```
 //!
 //! Motions stay with the worker, one file at a time: what remains of each is its compressed output.
+//! Where one file is made of all ([`Conversion::in_one_file`]), motions come back instead, and are
+//! put on its body one by one.
 
-use crate::export::{ExportFormat, ExportOptions, export, file_name};
+use crate::export::{ExportFormat, ExportOptions, Together, export, file_name};
 use crate::reading::{ReadFile, ReadReport};
 use segue_formats::csv::cell;
 use segue_formats::{PackedFile, ZipFull, ZipWriter};
@@ -24,6 +26,10 @@ use std::sync::Arc;
 
 /// The name of the table in the archive.
 const TABLE: &str = "conversion.csv";
+/// The stem of the name of one file for all clips.
+const ONE_FILE: &str = "clips";
+/// The name of the archive.
+const ARCHIVE: &str = "converted.zip";
 /// The size from which on an archive takes no further files, bytes: it is held in memory.
 const MAX_ZIP_BYTES: usize = 1 << 30;
 /// The characters of a file's name that are kept.
@@ -151,12 +157,7 @@ pub(crate) fn convert_file(mut file: ReadFile, options: &ConvertOptions) -> Vec<
     };
     let clips = std::mem::take(&mut read.clips);
     if clips.is_empty() {
-        let reason = if read.awaits_skeleton {
-            msg!("it needs its skeleton, an ASF file: convert both together")
-        } else {
-            "it has no motion".into()
-        };
-        file.converted = Some(Err(reason));
+        file.converted = Some(Err(without_motion(read.awaits_skeleton)));
         return vec![file];
     }
     let mut files = Vec::new();
@@ -174,6 +175,15 @@ pub(crate) fn convert_file(mut file: ReadFile, options: &ConvertOptions) -> Vec<
         }
     }
     files
+}
+
+/// Returns the reason why a file that was read has no clips.
+fn without_motion(awaits_skeleton: bool) -> Message {
+    if awaits_skeleton {
+        msg!("it needs its skeleton, an ASF file: convert both together")
+    } else {
+        "it has no motion".into()
+    }
 }
 
 /// A line of the table of a conversion.
@@ -197,6 +207,20 @@ pub struct Conversion {
     /// The paths in the archive in lower case, which some systems do not tell apart.
     paths: BTreeSet<String>,
     rows: Vec<ConversionRow>,
+    /// One file for all clips, in place of one for each.
+    together: Option<Together>,
+    one_file: Option<Vec<u8>>,
+}
+
+/// What a conversion leaves to be saved.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ConvertedFile {
+    /// Its name.
+    pub name: String,
+    /// Its media type.
+    pub mime: &'static str,
+    /// Its bytes.
+    pub bytes: Vec<u8>,
 }
 
 impl Conversion {
@@ -204,6 +228,14 @@ impl Conversion {
     #[must_use]
     pub fn new(options: ConvertOptions) -> Self {
         Self { options, ..Self::default() }
+    }
+
+    /// Begins a conversion that makes one file of all clips, each an animation; see [`Together`].
+    /// Files must be read without [`ReadSetup::convert`](crate::reading::ReadSetup::convert).
+    #[must_use]
+    pub fn in_one_file(options: ConvertOptions, character: Option<&Character>) -> Self {
+        let together = Some(Together::new(options.export, character));
+        Self { together, ..Self::new(options) }
     }
 
     /// Returns its options.
@@ -232,6 +264,17 @@ impl Conversion {
             let mut odd = std::mem::take(&mut notes);
             match (file.result, file.converted) {
                 (Err(error), _) => self.fail(&file.name, error.to_message()),
+                (Ok(read), None) if self.together.is_some() => {
+                    if read.clips.is_empty() {
+                        self.fail(&file.name, without_motion(read.awaits_skeleton));
+                    }
+                    odd.extend(read.warnings);
+                    for clip in read.clips {
+                        let (motion, odd) = (Arc::new(clip.motion), std::mem::take(&mut odd));
+                        let name = motion.clip().name().to_owned();
+                        self.join(&file.name, &name, &motion, clip.mesh.as_ref(), odd);
+                    }
+                }
                 (Ok(_), None) => self.fail(&file.name, msg!("it has no motion")),
                 (Ok(read), Some(converted)) => {
                     odd.extend(read.warnings);
@@ -247,7 +290,50 @@ impl Conversion {
 
     /// Converts a motion of the library and adds it. `mesh` is as in [`convert_motion`].
     pub fn add_clip(&mut self, name: &str, motion: &Motion, mesh: Option<&Arc<SkinnedMesh>>) {
+        if self.together.is_some() {
+            return self.join(name, name, &Arc::new(motion.clone()), mesh, Vec::new());
+        }
         self.add(name, convert_motion(motion, mesh, &self.options), Vec::new());
+    }
+
+    /// Adds a clip to the one file.
+    fn join(
+        &mut self,
+        source: &str,
+        name: &str,
+        motion: &Arc<Motion>,
+        mesh: Option<&Arc<SkinnedMesh>>,
+        mut odd: Vec<Message>,
+    ) {
+        let own = motion.clip();
+        let clip = Some((own.name().to_owned(), own.frames(), own.fps(), own.skeleton().len()));
+        let put_on = self.options.rig.as_ref().map(|rig| rig.put_on(motion)).transpose();
+        let added = put_on.and_then(|put_on| {
+            let mesh = mesh.filter(|_| put_on.is_none());
+            let motion = put_on.map_or_else(|| Arc::clone(motion), Arc::new);
+            self.together.as_mut().map_or(Ok(None), |together| together.add(name, &motion, mesh))
+        });
+        let output = added.map(|note| {
+            odd.extend(note);
+            file_name(ONE_FILE, self.options.export.format.ending())
+        });
+        self.rows.push(ConversionRow { source: source.to_owned(), clip, output, odd });
+    }
+
+    /// Writes the one file of all clips, if there is one and no clip is added any more. Lines of the
+    /// table say where that failed.
+    pub fn write_one_file(&mut self) {
+        let Some(together) = self.together.take().filter(|together| !together.is_empty()) else {
+            return;
+        };
+        match together.write() {
+            Ok(bytes) => self.one_file = Some(bytes),
+            Err(reason) => {
+                for row in self.rows.iter_mut().filter(|row| row.output.is_ok()) {
+                    row.output = Err(reason.clone());
+                }
+            }
+        }
     }
 
     /// Adds a line for a file without result.
@@ -295,9 +381,33 @@ impl Conversion {
             .unwrap_or_default()
     }
 
+    /// Returns what is to be saved: the one file of all clips, or the archive.
+    #[must_use]
+    pub fn into_file(mut self) -> ConvertedFile {
+        self.write_one_file();
+        let format = self.options.export.format;
+        match self.one_file.take() {
+            Some(bytes) => {
+                let name = file_name(ONE_FILE, format.ending());
+                ConvertedFile { name, mime: format.mime(), bytes }
+            }
+            None => {
+                let (name, bytes) = (ARCHIVE.to_owned(), self.finish());
+                ConvertedFile { name, mime: "application/zip", bytes }
+            }
+        }
+    }
+
     /// Returns the archive with its table.
     #[must_use]
     pub fn finish(mut self) -> Vec<u8> {
+        self.write_one_file();
+        if let Some(bytes) = self.one_file.take() {
+            let name = file_name(ONE_FILE, self.options.export.format.ending());
+            if let Err(full) = self.zip.store(&name, &bytes) {
+                self.fail(&name, full.to_message());
+            }
+        }
         let table = self.table();
         // A table that has no room is shown on screen still.
         self.zip.store(TABLE, table.as_bytes()).ok();

@@ -1,6 +1,10 @@
 //! A motion as the bytes of a file.
 
-use super::labs::{Outcome, PlacedClip};
+mod together;
+
+pub use together::Together;
+
+use super::labs::{CharacterMotion, Outcome, PlacedClip};
 use super::motion::{curve_kind, joint_of};
 use super::params::{Key, Params};
 use segue_formats::bvh::{self, RotationOrder};
@@ -12,7 +16,10 @@ use segue_formats::gltf::{
 use segue_formats::numpy::write_npz;
 use segue_formats::robot_csv::{RobotCsvError, write_robot_csv};
 use segue_motion::clip::{Clip, CurveKind, Interpolation, Motion, UpAxis, joint_curve, resample};
-use segue_motion::skin::{Character, Drive};
+use segue_motion::skeleton::Roles;
+use segue_motion::skin::Character;
+use std::borrow::Cow;
+use std::sync::Arc;
 
 /// A file format in which motions are saved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -62,6 +69,18 @@ impl ExportFormat {
         }
     }
 
+    /// Returns whether a file can have a root bone above the body.
+    #[must_use]
+    pub const fn has_root_bones(self) -> bool {
+        matches!(self, Self::Bvh | Self::Fbx | Self::Glb | Self::Npz)
+    }
+
+    /// Returns whether a file can hold several clips ([`Together`]).
+    #[must_use]
+    pub const fn holds_several(self) -> bool {
+        matches!(self, Self::Fbx | Self::Glb)
+    }
+
     /// Returns the format of a name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
@@ -82,7 +101,8 @@ impl ExportFormat {
 }
 
 /// Options of an export. A format uses those that it supports: BVH all but the body, FBX unit, up
-/// axis and frame rate, GLB frame rate and body, CSV none, the others the frame rate.
+/// axis, frame rate and root, GLB frame rate, body and root, CSV the root, the others frame rate
+/// and root.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ExportOptions {
     /// The file format.
@@ -98,6 +118,22 @@ pub struct ExportOptions {
     pub fps: Option<f64>,
     /// The body in the file, if the format has bodies.
     pub body: ExportBody,
+    /// The joint that has the motion over the ground.
+    #[serde(default)]
+    pub root: ExportRoot,
+}
+
+/// The joint of an exported file that has the motion over the ground.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum ExportRoot {
+    /// The one that has it in the clip's source file.
+    #[default]
+    AsIs,
+    /// A root bone on the ground ([`Clip::with_ground_root`]), in formats with a skeleton of their
+    /// own: BVH, FBX, GLB and NPZ. The others are written as they are.
+    Ground,
+    /// None: the body stays over the origin ([`Clip::without_ground_motion`]).
+    InPlace,
 }
 
 /// The body in an exported file.
@@ -162,6 +198,7 @@ pub fn export(
     columns: &[Column],
     options: &ExportOptions,
 ) -> Result<Vec<u8>, ExportError> {
+    let own = || with_root(motion.clip(), motion.roles(), options);
     match options.format {
         ExportFormat::Bvh => {
             let how = bvh::WriteOptions {
@@ -170,42 +207,53 @@ pub fn export(
                 fps: options.fps,
                 up: options.up,
             };
-            Ok(bvh::write(motion.clip(), &how).into_bytes())
+            Ok(bvh::write(&own(), &how).into_bytes())
         }
         ExportFormat::Fbx => {
             let ExportOptions { metres_per_unit, up, fps, .. } = *options;
             let how = FbxOptions { metres_per_unit, up, fps };
-            Ok(write_fbx(&[motion.clip()], &how)?)
+            Ok(write_fbx(&[&own()], &how)?)
         }
         ExportFormat::Csv => {
-            let inputs =
-                CsvInputs { clip: motion.clip(), contacts: Some(motion.contacts()), columns };
+            let inputs = CsvInputs { clip: &own(), contacts: Some(motion.contacts()), columns };
             Ok(write_csv(&inputs, &CsvOptions::default()).into_bytes())
         }
-        ExportFormat::Vrma => Ok(write_vrma(motion.clip(), motion.roles(), options.fps)?),
-        ExportFormat::G1Csv => Ok(write_robot_csv(motion.clip(), options.fps)?.into_bytes()),
+        ExportFormat::Vrma => Ok(write_vrma(&own(), motion.roles(), options.fps)?),
+        ExportFormat::G1Csv => Ok(write_robot_csv(&own(), options.fps)?.into_bytes()),
         ExportFormat::Npz => {
-            let resampled = options
-                .fps
-                .and_then(|fps| resample(motion.clip(), fps, Interpolation::default()).ok());
-            Ok(write_npz(resampled.as_ref().unwrap_or(motion.clip())))
+            let own = own();
+            let resampled =
+                options.fps.and_then(|fps| resample(&own, fps, Interpolation::default()).ok());
+            Ok(write_npz(resampled.as_ref().unwrap_or(&own)))
         }
         ExportFormat::Glb => {
             let how = GlbOptions { fps: options.fps, smooth: true };
             let character = character.filter(|_| options.body == ExportBody::Character);
-            match character.and_then(|character| Some((retargeted(motion, character)?, character)))
-            {
-                Some((clip, character)) => write_character_glb(&clip, &character.mesh, &how),
-                None => write_glb(motion.clip(), &how),
+            let on_character = character.and_then(|character| {
+                let moved = CharacterMotion::new(&Arc::new(motion.clone()), character)?;
+                Some((moved, character))
+            });
+            match on_character {
+                Some((moved, character)) => {
+                    let clip = with_root(moved.clip(), &character.roles, options);
+                    write_character_glb(&clip, &character.mesh, &how)
+                }
+                None => write_glb(&own(), &how),
             }
             .map_err(ExportError::from)
         }
     }
 }
 
-/// Returns the motion on the character's skeleton; `None` if it moves no joint of the character.
-fn retargeted(motion: &Motion, character: &Character) -> Option<Clip> {
-    Drive::new(motion.clip(), motion.roles(), character)?.clip(motion.clip()).ok()
+/// Returns a clip whose motion over the ground is where the options want it.
+fn with_root<'a>(clip: &'a Clip, roles: &Roles, options: &ExportOptions) -> Cow<'a, Clip> {
+    match options.root {
+        ExportRoot::Ground if options.format.has_root_bones() => {
+            Cow::Owned(clip.with_ground_root())
+        }
+        ExportRoot::InPlace => Cow::Owned(clip.without_ground_motion(roles)),
+        _ => Cow::Borrowed(clip),
+    }
 }
 
 /// Returns the plotted curves of a clip: the chosen quantities of the chosen joint. Empty if the

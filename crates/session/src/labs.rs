@@ -15,6 +15,7 @@ mod layers;
 mod loop_;
 mod make;
 mod match_;
+mod on_character;
 mod outcome;
 mod pair;
 mod path;
@@ -47,6 +48,7 @@ pub(super) use make::{has as made_motion_has, preset_motion, range_of, synth_act
 pub(super) use match_::options_of;
 pub use match_::{DriveHistory, DriveMoment, own_words};
 pub(super) use match_::{DrivenPane, LiveDrive, filter_of};
+pub use on_character::CharacterMotion;
 pub use outcome::{
     Cycle, CycleMade, MatchSearch, Outcome, PlacedClip, RetargetReport, Slot, Transition,
 };

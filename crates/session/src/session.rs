@@ -23,6 +23,7 @@ use crate::missing::{dismiss_found, look_for_clips};
 use crate::notice::{Level, Notices};
 use crate::pane::{NoResult, Pane, PaneResult};
 use crate::panes::{Panes, is_driven_by_user};
+use crate::params::choices::Look;
 use crate::params::{Compare, Key, Params, Value};
 use crate::playback::{self, PlaybackState, Span, Timeline};
 use crate::reading::{ReadFunction, read};
@@ -421,6 +422,7 @@ impl Session {
         self.panes.show_sources(&mut clips);
         self.extra_characters.refresh(&mut clips);
         clips.keep_slots_and_character();
+        self.request_on_character();
         if self.files.drop_idle_motions(&mut self.document) {
             self.labs.feet.forget_dropped();
         }
@@ -437,6 +439,29 @@ impl Session {
         self.is_held = false;
         if std::mem::take(&mut self.is_stale) {
             self.refresh();
+        }
+    }
+
+    /// Requests what the stage shows on the skeleton of the character, except for characters that
+    /// the user drives.
+    fn request_on_character(&mut self) {
+        let is_shown = self.document.params.choice::<Look>() != Look::Limbs;
+        let character = self.character().filter(|_| is_shown);
+        let characters = &mut self.labs.characters;
+        characters.set_character(character);
+        if !is_driven_by_user(&self.document.params) {
+            for pane in &self.panes.list {
+                let Some(outcome) = &pane.outcome else { continue };
+                characters.request(&outcome.motion, pane.result().is_ok());
+                for source in &outcome.sources {
+                    characters.request(&source.motion, pane.result().is_ok());
+                }
+            }
+        }
+        for beside in &self.extra_characters.list {
+            if let Ok(motion) = &beside.motion {
+                characters.request(motion, true);
+            }
         }
     }
 

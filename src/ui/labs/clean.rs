@@ -57,8 +57,7 @@ fn clean_ui(session: &Session, _: &mut UiState, out: &mut Out, ui: &mut Ui) {
     ui.add_space(space::S);
     faults_ui(session, out, ui);
     ui.add_space(space::S);
-    let switches = FaultKind::ALL.into_iter().filter_map(CleanFacts::switch_of);
-    for key in switches {
+    for key in FaultKind::ALL.map(CleanFacts::switch_of) {
         row(key, out, ui);
         if key == Key::CleanJitter && session.params().is_on(key) {
             row(Key::CleanCutoff, out, ui);
@@ -84,7 +83,7 @@ fn faults_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     if facts.faults.is_empty() {
         return kit::note_ui(text::NO_FAULTS, muted, ui);
     }
-    if facts.faults.iter().any(|found| !found.is_chosen && found.fault.kind.has_mend()) {
+    if facts.faults.iter().any(|found| !found.is_chosen) {
         let button = Button::new(text::CLEAN_ALL).hint(text::CLEAN_ALL_HINT);
         if kit::button_ui(button, ui).clicked() {
             clean_all(out);
@@ -119,13 +118,10 @@ fn fault_ui(
         text::fault_line(fault, clip.time_of(fault.frames.start), joint_name(found, outcome));
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = space::XS;
-        if fault.kind.has_mend() {
-            let name = text::mend_this(line.clone());
-            let icon = Button::icon_only(Icon::Check, text::MEND_THIS).name(&name);
-            let icon = icon.selected(found.is_chosen);
-            if kit::button_ui(icon, ui).clicked() {
-                toggle(found, session, out);
-            }
+        let name = text::mend_this(line.clone());
+        let icon = Button::icon_only(Icon::Check, text::MEND_THIS).name(&name);
+        if kit::button_ui(icon.selected(found.is_chosen), ui).clicked() {
+            toggle(found, session, out);
         }
         let hint = text::confidence(fault);
         if kit::button_ui(Button::new(&line).quiet().hint(&hint), ui).clicked() {
@@ -147,8 +143,7 @@ fn toggle(found: &FoundFault, session: &Session, out: &mut Out) {
     if found.is_chosen {
         left.push(place);
     } else {
-        values
-            .extend(CleanFacts::switch_of(found.fault.kind).map(|key| (key, Value::Switch(true))));
+        values.push((CleanFacts::switch_of(found.fault.kind), Value::Switch(true)));
         if !found.is_sure {
             let percent = f64::from(found.fault.confidence) * 100.0;
             values.push((Key::CleanSure, Value::Number((percent / 5.0).floor() * 5.0)));
@@ -161,8 +156,8 @@ fn toggle(found: &FoundFault, session: &Session, out: &mut Out) {
 
 /// Switches every mend on.
 fn clean_all(out: &mut Out) {
-    let switches = FaultKind::ALL.into_iter().filter_map(CleanFacts::switch_of);
-    let mut values: Vec<_> = switches.map(|key| (key, Value::Switch(true))).collect();
+    let switches = FaultKind::ALL.map(CleanFacts::switch_of);
+    let mut values: Vec<_> = switches.map(|key| (key, Value::Switch(true))).into();
     values.push((Key::CleanMend, Mending::Mended.into()));
     values.push((Key::CleanSure, Value::Number(0.0)));
     values.push((Key::CleanSkip, List::FaultPlaces(Vec::new()).into()));

@@ -70,7 +70,8 @@ fn body_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     }
     let outcome = session.main_outcome();
     if let Some(retargeted) = outcome.and_then(|outcome| outcome.retargeted.as_ref()) {
-        retarget_rows_ui(&[(None, &**retargeted)], session, out, ui);
+        let errors: Vec<_> = retargeted.errors.iter().map(|errors| (None, errors)).collect();
+        retarget_rows_ui(&errors, session, out, ui);
     }
 }
 

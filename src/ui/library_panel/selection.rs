@@ -8,6 +8,7 @@ use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Align, Layout as Flow, RichText, Ui, UiBuilder, vec2};
+use segue_session::export::ExportFormat;
 use segue_session::{Command, Session};
 
 /// Draws the number of the selected clips, and what can be done with them; nothing without any.
@@ -45,9 +46,16 @@ pub(super) fn selection_ui(session: &Session, state: &mut UiState, out: &mut Out
             out.commands.push(Command::Settle);
             state.library.picked.clear();
         }
-        if kit::button_ui(Button::new(text::CONVERT_CLIPS), ui).clicked() {
+        let together =
+            ids.len() > 1 && kit::button_ui(Button::new(text::SAVE_TOGETHER), ui).clicked();
+        let apart = kit::button_ui(Button::new(text::CONVERT_CLIPS), ui).clicked();
+        if together || apart {
             out.actions.push(Action::Convert(ConvertAction::AddClips(ids.clone())));
             state.convert.is_open = true;
+            state.convert.in_one_file = together;
+            if together && !state.convert.export.format.holds_several() {
+                state.convert.export.format = ExportFormat::Glb;
+            }
             state.library.picked.clear();
         }
         if kit::button_ui(Button::new(text::REMOVE), ui).clicked() {

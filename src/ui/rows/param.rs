@@ -3,6 +3,7 @@
 use crate::ui::kit::{self, Button, Icon, Mark, SliderResponse, SliderRow, Source};
 use crate::ui::language::{Text, Word};
 use crate::ui::out::Out;
+use crate::ui::rows::character_errors_ui;
 use crate::ui::text;
 use crate::ui::theme::palette_of;
 use eframe::egui::Ui;
@@ -130,6 +131,7 @@ fn character_ui(key: Key, help: Text<'_>, session: &Session, out: &mut Out, ui: 
     if let Some(id) = kit::helped_choice_row_ui(label, help, chosen, &options, ui) {
         out.set_once(key, Value::Text(id.to_owned()));
     }
+    character_errors_ui(session, ui);
 }
 
 fn number_ui(

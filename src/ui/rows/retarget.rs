@@ -2,25 +2,23 @@
 
 use super::{Detail, param_row_ui};
 use crate::ui::kit;
+use crate::ui::language::Word;
 use crate::ui::out::Out;
 use crate::ui::text;
 use crate::ui::theme::palette_of;
 use eframe::egui::Ui;
 use segue_motion::retarget::{Compared, LimbReach, RetargetErrors, SkatingValues};
-use segue_session::{Key, RetargetReport, Session, format_number};
+use segue_session::{Key, Session, format_number};
 use segue_text::{Message, msg};
 
 /// Draws the rows of the weights, and the errors of the clips that were retargeted, each under its
-/// name where there are several. Nothing for clips of one rig.
+/// name where there are several. Nothing without any: clips of one rig have none.
 pub(crate) fn retarget_rows_ui(
-    reports: &[(Option<Message>, &RetargetReport)],
+    reports: &[(Option<Message>, &RetargetErrors)],
     session: &Session,
     out: &mut Out,
     ui: &mut Ui,
 ) {
-    let reports: Vec<_> = (reports.iter())
-        .filter_map(|(name, report)| Some((name, report.errors.as_ref()?)))
-        .collect();
     if reports.is_empty() {
         return;
     }
@@ -36,11 +34,32 @@ pub(crate) fn retarget_rows_ui(
             kit::note_ui(&reason, palette_of(ui).muted, ui);
         }
     }
-    kit::folded_ui(text::RETARGET_ERRORS, ui, |ui| {
+    let named: Vec<_> = reports.iter().map(|(name, errors)| (name.as_ref(), *errors)).collect();
+    folded_errors_ui(text::RETARGET_ERRORS, &named, ui);
+}
+
+/// Draws the errors of the results on the skeleton of the chosen character, each under the value
+/// of its pane where values are compared. Nothing without a character, or for one of the same rig.
+pub(crate) fn character_errors_ui(session: &Session, ui: &mut Ui) {
+    let on_character = session.panes().iter().filter_map(|pane| {
+        let moved = session.on_character(&pane.outcome.as_ref()?.motion)?;
+        Some((session.variant_name(pane), moved.errors()?))
+    });
+    let on_character: Vec<_> = on_character.collect();
+    if !on_character.is_empty() {
+        let named: Vec<_> =
+            on_character.iter().map(|(name, errors)| (name.as_ref(), *errors)).collect();
+        folded_errors_ui(text::CHARACTER_ERRORS, &named, ui);
+    }
+}
+
+/// Draws errors behind a title that unfolds them, each under its name.
+fn folded_errors_ui(title: Word, of: &[(Option<&Message>, &RetargetErrors)], ui: &mut Ui) {
+    kit::folded_ui(title, ui, |ui| {
         kit::note_ui(text::ABOUT_RETARGET_ERRORS, palette_of(ui).muted, ui);
-        for (index, (name, errors)) in reports.iter().enumerate() {
+        for (index, (name, errors)) in of.iter().enumerate() {
             if let Some(name) = name {
-                kit::note_ui(name, palette_of(ui).text, ui);
+                kit::note_ui(*name, palette_of(ui).text, ui);
             }
             ui.push_id(index, |ui| errors_ui(errors, ui));
         }

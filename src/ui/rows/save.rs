@@ -9,7 +9,7 @@ use crate::ui::theme::{space, theme_of};
 use eframe::egui::{Align, Layout, Ui, UiBuilder};
 use segue_formats::bvh::RotationOrder;
 use segue_motion::clip::UpAxis;
-use segue_session::export::{ExportBody, ExportFormat, ExportOptions};
+use segue_session::export::{ExportBody, ExportFormat, ExportOptions, ExportRoot};
 
 /// Metres per unit of length of saved files, with the name of the unit.
 const UNITS: [(Option<f64>, Word); 3] =
@@ -32,6 +32,13 @@ const FBX_AXES: [(Option<UpAxis>, Text<'_>); 2] = [AXES[1], AXES[2]];
 const BODIES: [(ExportBody, Word); 2] =
     [(ExportBody::Character, text::BODY_CHARACTER), (ExportBody::Plain, text::BODY_PLAIN)];
 
+/// The joint of a saved file that has the motion over the ground.
+const ROOTS: [(ExportRoot, Word); 3] = [
+    (ExportRoot::AsIs, text::ROOT_AS_IT_IS),
+    (ExportRoot::InPlace, text::ROOT_IN_PLACE),
+    (ExportRoot::Ground, text::ROOT_ON_GROUND),
+];
+
 const ORDERS: [(Option<RotationOrder>, Text<'_>); 7] = [
     (None, Text::Word(text::AS_FILE)),
     (Some(RotationOrder::Zxy), Text::Data("Z X Y")),
@@ -53,9 +60,7 @@ const RATES: [(Option<f64>, Word); 4] = [
 /// `result:1` for the second pane.
 pub(crate) fn save_rows_ui(which: &str, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     format_row_ui(which, state, out, ui);
-    if state.export.format != ExportFormat::Csv {
-        kit::folded_ui(text::SAVE_OPTIONS, ui, |ui| options_ui(&mut state.export, ui));
-    }
+    kit::folded_ui(text::SAVE_OPTIONS, ui, |ui| options_ui(&mut state.export, ui));
 }
 
 /// Draws the row that saves a motion, and its options below it.
@@ -99,8 +104,7 @@ fn format_row_ui(which: &str, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
 /// Draws the options of the chosen format.
 fn options_ui(export: &mut ExportOptions, ui: &mut Ui) {
     match export.format {
-        ExportFormat::Csv => return,
-        ExportFormat::Vrma | ExportFormat::Npz | ExportFormat::G1Csv => {}
+        ExportFormat::Csv | ExportFormat::Vrma | ExportFormat::Npz | ExportFormat::G1Csv => {}
         ExportFormat::Glb => {
             if let Some(body) = kit::choice_row_ui(text::SAVE_BODY, export.body, &BODIES, ui) {
                 export.body = body;
@@ -132,7 +136,20 @@ fn options_ui(export: &mut ExportOptions, ui: &mut Ui) {
             }
         }
     }
-    rate_ui(&mut export.fps, ui);
+    // A format without a skeleton of its own has no place for the root bone, the last choice.
+    let has_root_bones = export.format.has_root_bones();
+    let roots = if has_root_bones { &ROOTS[..] } else { &ROOTS[..2] };
+    let root = if has_root_bones || export.root != ExportRoot::Ground {
+        export.root
+    } else {
+        ExportRoot::AsIs
+    };
+    if let Some(root) = kit::choice_row_ui(text::SAVE_ROOT, root, roots, ui) {
+        export.root = root;
+    }
+    if export.format != ExportFormat::Csv {
+        rate_ui(&mut export.fps, ui);
+    }
 }
 
 fn rate_ui(fps: &mut Option<f64>, ui: &mut Ui) {

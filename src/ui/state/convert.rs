@@ -13,6 +13,8 @@ pub(crate) struct ConvertState {
     pub(crate) export: ExportOptions,
     /// Whether motions are put on the body of A.
     pub(crate) onto_a: bool,
+    /// Whether all are saved in one file, in formats that hold several clips.
+    pub(crate) in_one_file: bool,
     /// The files and the conversion under way.
     pub(crate) shown: ConvertShown,
 }

@@ -38,12 +38,58 @@ fn many_files_are_converted_with_the_chosen_options() {
     press(text::CHOOSE_FILES.english(), &mut harness);
     press(text::CONVERT.english(), &mut harness);
     let actions = &harness.state().out.actions;
-    let [Action::OpenFiles, Action::Convert(ConvertAction::Start { how, onto_a })] =
-        actions.as_slice()
+    let [
+        Action::OpenFiles,
+        Action::Convert(ConvertAction::Start { how, onto_a, in_one_file: false }),
+    ] = actions.as_slice()
     else {
         panic!("{actions:?}")
     };
     assert_eq!((how.format, *onto_a), (ExportFormat::Fbx, true));
+}
+
+#[test]
+fn chosen_clips_are_saved_together_in_a_format_that_holds_several() {
+    let mut page = page("lab=blend&play=off");
+    page.state.library.picked.insert("walk".into());
+    let mut harness = harness(DESK, DARK, page);
+    harness.run();
+    assert!(harness.query_by_label(text::SAVE_TOGETHER.english()).is_none());
+    harness.state_mut().state.library.picked.insert("run".into());
+    harness.run();
+    press(text::SAVE_TOGETHER.english(), &mut harness);
+    let clips = ConvertAction::AddClips(vec!["walk".into(), "run".into()]);
+    assert_eq!(harness.state().out.actions, [Action::Convert(clips)]);
+    harness.state_mut().state.convert.shown.waiting = 2;
+    harness.state_mut().out.actions.clear();
+    harness.run();
+    press(text::CONVERT.english(), &mut harness);
+    let actions = &harness.state().out.actions;
+    let [Action::Convert(ConvertAction::Start { how, in_one_file: true, .. })] = actions.as_slice()
+    else {
+        panic!("{actions:?}")
+    };
+    assert_eq!(how.format, ExportFormat::Glb);
+    // Of a format for one clip each gets a file.
+    press(text::SAVE_AS.english(), &mut harness);
+    press("BVH", &mut harness);
+    harness.state_mut().out.actions.clear();
+    press(text::CONVERT.english(), &mut harness);
+    let actions = &harness.state().out.actions;
+    let start = ConvertAction::Start {
+        how: ExportOptions { format: ExportFormat::Bvh, ..*how_of(actions) },
+        onto_a: false,
+        in_one_file: false,
+    };
+    assert_eq!(actions.as_slice(), [Action::Convert(start)]);
+}
+
+/// Returns the options of the only conversion that is asked for.
+fn how_of(actions: &[Action]) -> &ExportOptions {
+    match actions {
+        [Action::Convert(ConvertAction::Start { how, .. })] => how,
+        other => panic!("{other:?}"),
+    }
 }
 
 #[test]

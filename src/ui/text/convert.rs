@@ -15,6 +15,13 @@ pub(crate) const CLEAR_FILES: Word = Word::new("Clear");
 pub(crate) const CONVERT_BODY: Word = Word::new("Skeleton");
 pub(crate) const BODY_OWN: Word = Word::new("as it is");
 pub(crate) const BODY_OF_A: Word = Word::new("that of A");
+pub(crate) const CONVERT_FILE: Word = Word::new("Files");
+pub(crate) const FILE_FOR_EACH: Word = Word::new("one for each clip");
+pub(crate) const ONE_FILE: Word = Word::new("one for all");
+pub(crate) const ONE_FILE_HELP: Word = Word::new(
+    "Each clip becomes an animation on one skeleton: that of A or of the character if chosen, otherwise that of the first clip. Clips of other skeletons are put on it.",
+);
+pub(crate) const SAVE_TOGETHER: Word = Word::new("Save together…");
 pub(crate) const CONVERTING: Word = Word::new("Converting");
 
 /// Returns how many files wait to be converted.

@@ -5,6 +5,8 @@ use segue_text::{Message, msg};
 
 /// The title of the list of retargeting errors.
 pub(crate) const RETARGET_ERRORS: Word = Word::new("Retargeting errors");
+/// The title of the list of what retargeting to the chosen figure could not keep.
+pub(crate) const CHARACTER_ERRORS: Word = Word::new("Errors on the figure");
 /// The help of the list: the meaning of its numbers.
 pub(crate) const ABOUT_RETARGET_ERRORS: Word = Word::new(
     "How far feet and hands are from their positions in the clip, at the body's scale, how far planted feet slide in a stance, and how deep feet penetrate the ground. Rotations only: the same without moving feet and hands into place.",

@@ -19,6 +19,7 @@ mod scene;
 mod tests;
 
 use crate::bvh::RotationOrder;
+use crate::takes::unique_names;
 use glam::{Quat, Vec3};
 use segue_motion::clip::{Clip, Interpolation, UpAxis, resample};
 use segue_motion::skeleton::Skeleton;
@@ -68,7 +69,8 @@ pub enum FbxWriteError {
     NoClips,
 }
 
-/// Writes clips of one skeleton as an FBX file, each as a take. The file has the rest pose of the
+/// Writes clips of one skeleton as an FBX file, each as a take; where several have one name, those
+/// behind the first are numbered. The file has the rest pose of the
 /// first one; a joint whose distance from its parent differs in another clip is moved there.
 ///
 /// Joints are bones (`LimbNode`) without rotation at rest; ends of bones are bones of their own
@@ -85,7 +87,7 @@ pub fn write_fbx(clips: &[&Clip], options: &FbxOptions) -> Result<Vec<u8>, FbxWr
         return Err(FbxWriteError::NoClips);
     };
     for take in &takes {
-        if !has_same_joints(take.skeleton(), first.skeleton()) {
+        if !take.skeleton().has_joints_of(first.skeleton()) {
             let [clip, first] = [take, first].map(|clip| clip.name().to_owned());
             return Err(FbxWriteError::OtherSkeleton { clip, first });
         }
@@ -108,13 +110,6 @@ fn prepared<'a>(clip: &'a Clip, options: &FbxOptions) -> Cow<'a, Clip> {
     let resampled = options.fps.and_then(|fps| resample(clip, fps, Interpolation::default()).ok());
     let unfolded = resampled.as_ref().unwrap_or(clip).unfolded();
     unfolded.or(resampled).map_or(Cow::Borrowed(clip), Cow::Owned)
-}
-
-fn has_same_joints(a: &Skeleton, b: &Skeleton) -> bool {
-    let joints = |skeleton: &Skeleton| -> Vec<(String, Option<usize>)> {
-        skeleton.joints().iter().map(|joint| (joint.name.clone(), joint.parent)).collect()
-    };
-    joints(a) == joints(b)
 }
 
 /// Returns a bound of the bytes that a take needs.
@@ -203,13 +198,15 @@ impl Scene {
                 models.push(Model { name, parent: Some(index), place: axes.position(end) });
             }
         }
-        let takes = clips.iter().map(|clip| Take::new(clip, skeleton, axes)).collect();
+        let names = unique_names(clips.iter().map(|clip| plain(clip.name())));
+        let takes = clips.iter().zip(names);
+        let takes = takes.map(|(clip, name)| Take::new(name, clip, skeleton, axes)).collect();
         Self { models, takes, axes, fps: clips.first().map_or(30.0, |clip| clip.fps()) }
     }
 }
 
 impl Take {
-    fn new(clip: &Clip, rest: &Skeleton, axes: FileAxes) -> Self {
+    fn new(name: String, clip: &Clip, rest: &Skeleton, axes: FileAxes) -> Self {
         let frames = clip.frames();
         let ticks = |frame: usize| (frame as f64 / clip.fps() * TICKS_PER_SECOND).round() as i64;
         let mut channels = Vec::new();
@@ -251,7 +248,7 @@ impl Take {
                 values.truncate(1);
             }
         }
-        Self { name: plain(clip.name()), times: (0..frames).map(ticks).collect(), channels }
+        Self { name, times: (0..frames).map(ticks).collect(), channels }
     }
 
     /// Returns the time of the last frame.

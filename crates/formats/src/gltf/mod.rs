@@ -35,7 +35,7 @@ mod write;
 
 pub use read::read;
 pub use vrma::{VrmaError, write_vrma};
-pub use write::{GlbError, GlbOptions, write_character_glb, write_glb};
+pub use write::{GlbError, GlbOptions, write_character_glb, write_clips_glb, write_glb};
 
 /// Returns whether the bytes are a `.glb` file, or JSON that may be a `.gltf` file.
 #[must_use]

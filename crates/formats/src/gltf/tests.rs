@@ -16,6 +16,7 @@ use std::sync::Arc;
 mod humanoid;
 mod oddities;
 mod properties;
+mod several;
 mod skin;
 mod texture;
 

@@ -79,7 +79,7 @@ pub fn write_vrma(clip: &Clip, roles: &Roles, fps: Option<f64>) -> Result<Vec<u8
         "nodes": nodes(body.skeleton()),
     });
     if body.frames() > 0 {
-        root["animations"] = json!([animation(&mut file, &body)]);
+        root["animations"] = json!([animation(&mut file, body.name(), &body, body.skeleton())]);
     }
     Ok(file.finish(root)?)
 }

@@ -1,13 +1,13 @@
 //! Writing of GLB files.
 
 use super::bones::Bones;
+use crate::takes::unique_names;
 use glam::{Mat4, Quat, Vec3};
 use segue_motion::clip::{Clip, Interpolation, resample};
 use segue_motion::skeleton::{Joint, Roles, Skeleton};
 use segue_motion::skin::{RigidTransform, SkinnedMesh};
 use serde_json::{Value, json};
 use std::borrow::Cow;
-use std::sync::Arc;
 
 /// The beginning of the generator's name in files that Segue wrote.
 pub(super) const GENERATOR: &str = "Segue ";
@@ -33,7 +33,7 @@ pub struct GlbOptions {
 }
 
 /// The reason why a clip cannot be written as a `.glb` file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error, segue_text::ToMessage)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, segue_text::ToMessage)]
 pub enum GlbError {
     /// The format stores sizes in 32 bits.
     #[error(
@@ -43,6 +43,17 @@ pub enum GlbError {
     /// The format stores joint indices of a skin in 16 bits.
     #[error("{0} joints are more than the 65,536 that a .glb file can hold")]
     TooManyJoints(usize),
+    /// Clips of one file share a skin.
+    #[error("the joints of `{clip}` are not those of `{first}`: save it in a file of its own")]
+    OtherSkeleton {
+        /// The name of the clip that does not fit.
+        clip: String,
+        /// The name of the first clip.
+        first: String,
+    },
+    /// There is nothing to write.
+    #[error("there is no clip to save: choose one")]
+    NoClips,
 }
 
 /// Writes a clip as a `.glb` file: a node for each joint and each end site (`…_end`), a skin over
@@ -57,19 +68,7 @@ pub enum GlbError {
 /// # Errors
 /// [`GlbError`] when the clip is too large for the format.
 pub fn write_glb(clip: &Clip, options: &GlbOptions) -> Result<Vec<u8>, GlbError> {
-    // The body is generated around the joints that carry it, not around those above them in the
-    // file.
-    let skeleton = clip.skeleton();
-    if skeleton.len() > MAX_JOINTS {
-        return Err(GlbError::TooManyJoints(skeleton.len()));
-    }
-    let mesh = if options.smooth {
-        SkinnedMesh::around_clip(clip, &Roles::detect(skeleton), 1.0)
-    } else {
-        let positions = standing_rest(skeleton);
-        Bones::around(skeleton, &positions).into_mesh(&positions)
-    };
-    write_with(clip, mesh, MADE_BODY, options)
+    write_clips_glb(&[clip], None, options)
 }
 
 /// Writes a motion of a character as a `.glb` file, as [`write_glb`] does, with the character's own
@@ -83,29 +82,79 @@ pub fn write_character_glb(
     mesh: &SkinnedMesh,
     options: &GlbOptions,
 ) -> Result<Vec<u8>, GlbError> {
-    write_with(clip, mesh.clone(), CHARACTER, options)
+    write_clips_glb(&[clip], Some(mesh), options)
 }
 
-fn write_with(
-    clip: &Clip,
-    mut mesh: SkinnedMesh,
-    name: &str,
+/// Writes clips of one skeleton as a `.glb` file, as [`write_glb`] does: one skin, and an animation
+/// for each clip that has frames. Where several clips have one name, those behind the first are
+/// numbered. The file has the rest pose of the first one; a joint whose distance from its parent
+/// differs in another clip is moved there. `mesh` is bound to the skeleton of the first clip;
+/// `None` for a body that is generated around its joints.
+///
+/// # Errors
+/// [`GlbError`] when the clips are too large for the format or of different skeletons
+/// ([`Skeleton::has_joints_of`]), or when there are none.
+pub fn write_clips_glb(
+    clips: &[&Clip],
+    mesh: Option<&SkinnedMesh>,
     options: &GlbOptions,
 ) -> Result<Vec<u8>, GlbError> {
-    let resampled = options.fps.and_then(|fps| resample(clip, fps, Interpolation::default()).ok());
-    let clip: Cow<'_, Clip> = resampled.map_or(Cow::Borrowed(clip), Cow::Owned);
-    let body = Arc::clone(clip.skeleton());
-    let clip: Cow<'_, Clip> = clip.unfolded().map_or(clip, Cow::Owned);
-    let skeleton: &Skeleton = clip.skeleton();
+    let first = *clips.first().ok_or(GlbError::NoClips)?;
+    let skeleton = first.skeleton();
     if skeleton.len() > MAX_JOINTS {
         return Err(GlbError::TooManyJoints(skeleton.len()));
     }
+    let (mesh, name) = match mesh {
+        Some(mesh) => (mesh.clone(), CHARACTER),
+        // The body is generated around the joints that carry it, not around those above them in
+        // the file.
+        None if options.smooth => {
+            (SkinnedMesh::around_clip(first, &Roles::detect(skeleton), 1.0), MADE_BODY)
+        }
+        None => {
+            let positions = standing_rest(skeleton);
+            (Bones::around(skeleton, &positions).into_mesh(&positions), MADE_BODY)
+        }
+    };
     let mut file = File::default();
-    let mut nodes = nodes(skeleton);
+    let unfolded = first.unfolded();
+    let rest: &Skeleton = unfolded.as_ref().unwrap_or(first).skeleton();
+    let mut root = scene(&mut file, (skeleton, rest), mesh, name)?;
+    let names = unique_names(clips.iter().map(|clip| clip.name().to_owned()));
+    let mut animations = Vec::new();
+    for (clip, name) in clips.iter().zip(names).filter(|(clip, _)| clip.frames() > 0) {
+        let resampled =
+            options.fps.and_then(|fps| resample(clip, fps, Interpolation::default()).ok());
+        let clip: Cow<'_, Clip> = resampled.map_or(Cow::Borrowed(*clip), Cow::Owned);
+        let clip: Cow<'_, Clip> = clip.unfolded().map_or(clip, Cow::Owned);
+        if !clip.skeleton().has_joints_of(rest) {
+            let [clip, first] = [&clip, first].map(|clip| clip.name().to_owned());
+            return Err(GlbError::OtherSkeleton { clip, first });
+        }
+        animations.push(animation(&mut file, &name, &clip, rest));
+    }
+    if !animations.is_empty() {
+        root["animations"] = Value::Array(animations);
+    }
+    file.finish(root)
+}
+
+/// Returns the document without animations: the nodes of a skeleton and a mesh on a skin. `body` is
+/// the skeleton that the mesh is bound to, and `rest` the same with the joints above it.
+fn scene(
+    file: &mut File,
+    (body, rest): (&Skeleton, &Skeleton),
+    mut mesh: SkinnedMesh,
+    name: &str,
+) -> Result<Value, GlbError> {
+    if rest.len() > MAX_JOINTS {
+        return Err(GlbError::TooManyJoints(rest.len()));
+    }
+    let mut nodes = nodes(rest);
     let body_node = nodes.len();
     nodes.push(json!({ "name": name, "mesh": 0, "skin": 0 }));
     if let Some(above) = body.folded_chain() {
-        let mut bind: Vec<RigidTransform> = (standing_rest(skeleton).iter())
+        let mut bind: Vec<RigidTransform> = (standing_rest(rest).iter())
             .map(|&position| RigidTransform { rotation: Quat::IDENTITY, translation: -position })
             .collect();
         for (&file, own) in above.file_index().iter().zip(&mesh.bind) {
@@ -123,22 +172,18 @@ fn write_with(
     let inverse_bind = file.floats(&inverse_bind, "MAT4", None);
     let (mut primitives, mut materials) = (Vec::new(), Vec::new());
     for (part, color) in parts(&mesh) {
-        primitives.push(primitive(&mut file, &part, skeleton.len(), materials.len()));
+        primitives.push(primitive(file, &part, rest.len(), materials.len()));
         materials.push(material(&color, name, materials.len()));
     }
-    let mut root = json!({
+    Ok(json!({
         "asset": { "version": "2.0", "generator": format!("{GENERATOR}{}", env!("CARGO_PKG_VERSION")) },
         "scene": 0,
         "scenes": [{ "nodes": [0, body_node] }],
         "nodes": nodes,
-        "skins": [{ "joints": (0..skeleton.len()).collect::<Vec<_>>(), "skeleton": 0, "inverseBindMatrices": inverse_bind }],
+        "skins": [{ "joints": (0..rest.len()).collect::<Vec<_>>(), "skeleton": 0, "inverseBindMatrices": inverse_bind }],
         "meshes": [{ "name": name, "primitives": primitives }],
         "materials": materials,
-    });
-    if clip.frames() > 0 {
-        root["animations"] = json!([animation(&mut file, &clip)]);
-    }
-    file.finish(root)
+    }))
 }
 
 /// Returns the positions of the joints at rest, with the root at its offset, metres.
@@ -305,7 +350,9 @@ fn bytes_of(weights: &[f32; 4]) -> [u8; 4] {
     bytes
 }
 
-pub(super) fn animation(file: &mut File, clip: &Clip) -> Value {
+/// Returns the animation of a clip. Joints are moved to where the clip's skeleton has them, if that
+/// is not where `rest`, the skeleton of the file, has them.
+pub(super) fn animation(file: &mut File, name: &str, clip: &Clip, rest: &Skeleton) -> Value {
     let mut times: Vec<f32> = Vec::with_capacity(clip.frames());
     for frame in 0..clip.frames() {
         let time = clip.time_of(frame) as f32;
@@ -330,7 +377,15 @@ pub(super) fn animation(file: &mut File, clip: &Clip) -> Value {
         let values: Vec<f32> = values.iter().flat_map(Vec3::to_array).collect();
         add(joint, "translation", file.floats(&values, "VEC3", None));
     }
-    json!({ "name": clip.name(), "channels": channels, "samplers": samplers })
+    let joints = clip.skeleton().joints().iter().zip(rest.joints()).enumerate().skip(1);
+    for (joint, (own, at)) in joints {
+        let is_moving = clip.translations().iter().any(|track| track.joint == joint);
+        if own.offset != at.offset && !is_moving {
+            let values = own.offset.to_array().repeat(clip.frames());
+            add(joint, "translation", file.floats(&values, "VEC3", None));
+        }
+    }
+    json!({ "name": name, "channels": channels, "samplers": samplers })
 }
 
 /// Returns a quaternion as near to unit length as single precision allows.

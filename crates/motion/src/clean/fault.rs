@@ -24,7 +24,7 @@ pub enum FaultKind {
     Ends,
     /// Planted feet slide.
     Skating,
-    /// The motion plays at a wrong speed. It is reported and never mended.
+    /// The motion plays at a wrong speed.
     Rate,
 }
 
@@ -41,12 +41,6 @@ impl FaultKind {
         Self::Skating,
         Self::Rate,
     ];
-
-    /// Returns whether there is a mend for it.
-    #[must_use]
-    pub const fn has_mend(self) -> bool {
-        !matches!(self, Self::Rate)
-    }
 }
 
 /// How a fault is mended, with the numbers that the mend needs.

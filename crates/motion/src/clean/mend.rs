@@ -107,11 +107,7 @@ impl Mending {
         if !faults.iter().all(fits) {
             return Err(MendError::OtherClip);
         }
-        let mut faults: Vec<Fault> = faults
-            .iter()
-            .filter(|fault| fault.kind.has_mend())
-            .map(|&fault| fault.clone())
-            .collect();
+        let mut faults: Vec<Fault> = faults.iter().map(|&fault| fault.clone()).collect();
         sort_by_key(&mut faults, |fault| (fault.kind, fault.frames.start));
         let stage = if faults.is_empty() {
             Stage::Done(Mended { motion: Arc::clone(source), frames: 0..clip.frames() })
@@ -174,6 +170,8 @@ impl Mending {
                 Some(Form::Drift { velocity_mps, turn_rps }) => {
                     clip = Arc::new(without_drift(&clip, velocity_mps, turn_rps));
                 }
+                // The last one: the others are told in seconds of the take as it is.
+                Some(Form::Rate(fps)) => clip = Arc::new(Clip::clone(&clip).at_rate(fps)?),
                 Some(Form::Outside) if fault.frames.start == 0 => frames.start = fault.frames.end,
                 Some(Form::Outside) => frames.end = frames.end.min(fault.frames.start),
                 _ => {}

@@ -295,7 +295,7 @@ fn placed(parent: Option<(Vec3, Quat)>, (translation, rotation): (Vec3, Quat)) -
 
 /// Returns the ground frames of a character without the sway of its steps: means over
 /// [`SMOOTH_SECS`] to either side, narrower towards the ends.
-fn smoothed(frames: &[Planar], fps: f64) -> Vec<Planar> {
+pub(super) fn smoothed(frames: &[Planar], fps: f64) -> Vec<Planar> {
     let reach = (SMOOTH_SECS * fps).round() as usize;
     // Unwrapped yaws, and prefix sums.
     let mut sums = vec![(0.0, DVec2::ZERO)];

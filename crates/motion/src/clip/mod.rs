@@ -98,6 +98,7 @@ mod edits;
 #[cfg(any(test, feature = "fixtures"))]
 pub mod fixtures;
 mod ground;
+mod ground_root;
 mod in_place;
 mod jolts;
 mod mirror;

@@ -373,8 +373,30 @@ impl Clip {
         scaled
     }
 
+    /// Returns the clip with the same frames at another frame rate: it plays faster or slower.
+    ///
+    /// # Errors
+    /// [`ClipError::FrameRate`] when the rate is not a positive number.
+    pub fn at_rate(mut self, fps: f64) -> Result<Self, ClipError> {
+        if !(fps.is_finite() && fps > 0.0) {
+            return Err(ClipError::FrameRate(fps));
+        }
+        self.fps = fps;
+        Ok(self)
+    }
+
+    /// Returns the clip with the joints above the carrier that an equal skeleton has
+    /// ([`Skeleton::folded_chain`]); a clip on another skeleton stays as it is.
+    #[must_use]
+    pub fn with_chain_of(mut self, skeleton: &Arc<Skeleton>) -> Self {
+        if self.skeleton == *skeleton {
+            self.skeleton = Arc::clone(skeleton);
+        }
+        self
+    }
+
     /// Returns the clip with its root raised in every frame, metres.
-    pub(super) fn raised(mut self, by: f32) -> Self {
+    pub(crate) fn raised(mut self, by: f32) -> Self {
         for root in &mut self.root_translations {
             root.y += by;
         }

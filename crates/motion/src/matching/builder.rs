@@ -15,7 +15,7 @@ use crate::clip::{
 };
 use crate::math::Planar;
 use crate::registration::{Progress, REFERENCE_HEIGHT_M};
-use crate::retarget::{MotionRetargeting, TargetBody};
+use crate::retarget::{MotionRetargeting, RetargetErrors, TargetBody};
 use crate::skeleton::{Roles, Side, Skeleton};
 use crate::transition::repeat_clip;
 use std::ops::ControlFlow;
@@ -48,6 +48,7 @@ pub struct DatabaseBuilder {
     roles: Roles,
     motions: Vec<Arc<DatabaseClip>>,
     skipped: Vec<MatchError>,
+    retargeted: Vec<(String, RetargetErrors)>,
     longest_secs: f64,
     /// The next clip, and its stage.
     next: usize,
@@ -167,6 +168,7 @@ impl DatabaseBuilder {
             roles,
             motions: Vec::new(),
             skipped: Vec::new(),
+            retargeted: Vec::new(),
             longest_secs,
             next: 0,
             stage: Stage::Prepare,
@@ -192,6 +194,7 @@ impl DatabaseBuilder {
             roles: database.roles.clone(),
             motions: database.motions.clone(),
             skipped: database.skipped.clone(),
+            retargeted: database.retargeted.clone(),
             longest_secs: longest,
             next: 0,
             stage: Stage::Gather(GatheredFeatures::new()),
@@ -247,7 +250,13 @@ impl DatabaseBuilder {
                 let next = retargeting.advance(FRAMES_PER_RETARGET);
                 self.stage = match next.map_err(|error| self.not_retargeted(error))? {
                     ControlFlow::Continue(rest) => Stage::Retarget(Box::new(rest)),
-                    ControlFlow::Break(made) => self.measure_next(Arc::new(made.clip))?,
+                    ControlFlow::Break(made) => {
+                        if let Some(from) = self.clips.get(self.next).filter(|_| !made.is_same_rig)
+                        {
+                            self.retargeted.push((from.clip().name().to_owned(), made.report));
+                        }
+                        self.measure_next(Arc::new(made.clip))?
+                    }
                 };
             }
             Stage::Measure(round) => {
@@ -344,6 +353,7 @@ impl DatabaseBuilder {
                         valid: sorting.valid,
                         tags,
                         skipped: self.skipped,
+                        retargeted: self.retargeted,
                     });
                 }
                 _ => {

@@ -8,7 +8,7 @@ use super::tags::{self, TagRange, TagSet};
 use super::{Block, DatabaseBuilder, Features, MatchError, Weights};
 use crate::clip::Motion;
 use crate::math::{Planar, quat, stats};
-use crate::retarget::RetargetOptions;
+use crate::retarget::{RetargetErrors, RetargetOptions};
 use crate::skeleton::{Pose, Roles, Skeleton};
 use std::sync::Arc;
 
@@ -81,6 +81,8 @@ pub struct Database {
     pub(super) tags: Vec<TagSet>,
     pub(super) masks: BoxMasks,
     pub(super) skipped: Vec<MatchError>,
+    /// The clips that were retargeted, with the errors that remain.
+    pub(super) retargeted: Vec<(String, RetargetErrors)>,
     pub(super) pace: Pace,
 }
 
@@ -113,6 +115,13 @@ impl Database {
     pub(super) fn stand_m(&self) -> f32 {
         let heights: Vec<f32> = self.motions.iter().map(|motion| motion.stand_m()).collect();
         stats::percentile(&heights, 0.5).unwrap_or(0.0)
+    }
+
+    /// Returns the names of the clips that were put on the body of the first, with the errors that
+    /// remain; clips of the same rig are left out.
+    #[must_use]
+    pub fn retargeted(&self) -> &[(String, RetargetErrors)] {
+        &self.retargeted
     }
 
     /// Returns the skeleton of all motions: the first clip's.

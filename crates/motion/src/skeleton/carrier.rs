@@ -142,6 +142,32 @@ pub(crate) enum ChainMotion {
     },
 }
 
+impl Skeleton {
+    /// Returns whether another skeleton has the same joints, by their names and parents, also above
+    /// the one that carries the body: clips of both fit into one file.
+    #[must_use]
+    pub fn has_joints_of(&self, other: &Self) -> bool {
+        fn same(a: &[Joint], b: &[Joint]) -> bool {
+            let key = |joint: &Joint| (joint.parent, joint.name.clone());
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| key(a) == key(b))
+        }
+        same(self.joints(), other.joints())
+            && match (self.folded_chain(), other.folded_chain()) {
+                (None, None) => true,
+                (Some(a), Some(b)) => {
+                    let hangs = |above: &FoldedChain| -> Vec<(usize, usize)> {
+                        above.beside.iter().map(|child| (child.joint, child.hangs_on)).collect()
+                    };
+                    a.file_index == b.file_index
+                        && hangs(a) == hangs(b)
+                        && a.chain.len() == b.chain.len()
+                        && a.joints().zip(b.joints()).all(|(a, b)| a.name == b.name)
+                }
+                _ => false,
+            }
+    }
+}
+
 impl FoldedChain {
     /// Returns the joints of the file, with their names, from its root down to the carrier's
     /// parent.

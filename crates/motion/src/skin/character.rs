@@ -1,12 +1,11 @@
 //! Characters from files, moved by clips of other skeletons.
 
 use super::{RigidTransform, SkinnedMesh};
-use crate::clip::{Clip, ClipError, stance_for_rest};
+use crate::clip::{Clip, stance_for_rest};
 use crate::math::sort::sort_by;
 use crate::math::stats;
 use crate::skeleton::{
-    JointMap, Pose, Retargeting, Role, Roles, Side, Skeleton, WorldPose, local_pose,
-    world_pose_into,
+    JointMap, Retargeting, Role, Roles, Side, Skeleton, WorldPose, local_pose, world_pose_into,
 };
 use glam::Vec3;
 use std::sync::Arc;
@@ -20,8 +19,8 @@ const SOLE_VERTICES: usize = 32;
 /// The greatest distance of a clip's lowest foot points from the ground on which it stands, as a
 /// share of the leg's length.
 const MAX_GROUND_DISTANCE: f32 = 0.2;
-/// The percentage of frames in which a foot may be below its ground: outliers in single frames.
-const GROUND_PERCENTILE: f32 = 5.0;
+/// The share of frames in which a foot may be below its ground: outliers in single frames.
+const GROUND_PERCENTILE: f32 = 0.05;
 
 /// A skeleton with a mesh of its own.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,6 +53,22 @@ impl Character {
         let is_mapped = |joint: &usize| map.source_of(*joint).is_some();
         let limbs = self.limbs().filter(|limb| limb.iter().all(is_mapped)).count();
         limbs >= MIN_LIMBS || 2 * map.count() >= self.skeleton.len().max(2)
+    }
+
+    /// Returns a motion of this character raised so that the soles of its mesh are on the ground
+    /// on which the feet of `source` are, the motion that it was retargeted from. Some frames are
+    /// read. A motion of the character's own skeleton stays where it is.
+    #[must_use]
+    pub fn standing_as(&self, made: Clip, source: &Clip, roles: &Roles) -> Clip {
+        let own = source.skeleton();
+        let is_own = Arc::ptr_eq(own, &self.skeleton) || *own == self.skeleton;
+        let Some(scale) = self.size_beside(own, roles).filter(|_| !is_own) else {
+            return made;
+        };
+        let lift = lift_of_soles(self, (source, roles), scale, |frame, _, out| {
+            made.world_pose_into(frame, out);
+        });
+        made.raised(lift)
     }
 
     /// Returns the joints at which the two bones of each limb begin.
@@ -156,10 +171,11 @@ impl Drive {
         };
         let mut drive =
             Self { source: Arc::clone(source), target: Arc::clone(target), lift: 0.0, way };
-        drive.lift = drive
-            .way
-            .as_ref()
-            .map_or(0.0, |way| drive.found_lift(clip, roles, character, way.scale()));
+        drive.lift = drive.way.as_ref().map_or(0.0, |way| {
+            lift_of_soles(character, (clip, roles), way.scale(), |_, from, to| {
+                drive.pose(from, to);
+            })
+        });
         Some(drive)
     }
 
@@ -194,23 +210,6 @@ impl Drive {
         }
     }
 
-    /// Returns the motion of the character for a clip: on the character's skeleton, with the pose
-    /// of [`Drive::pose`] in every frame.
-    ///
-    /// # Errors
-    /// [`ClipError`] when the clip is not on the skeleton for which the drive was prepared.
-    pub fn clip(&self, clip: &Clip) -> Result<Clip, ClipError> {
-        let Some(way) = &self.way else {
-            return Ok(clip.clone());
-        };
-        let poses = (0..clip.frames()).map(|frame| {
-            let pose = way.pose(&clip.pose(frame));
-            Pose { root_translation: pose.root_translation + Vec3::Y * self.lift, ..pose }
-        });
-        Ok(Clip::from_poses(clip.name(), Arc::clone(&self.target), clip.fps(), poses)?
-            .with_provenance(clip.provenance()))
-    }
-
     /// Returns the transforms that move the character's mesh for a pose of the clip's skeleton:
     /// [`Drive::pose`], then [`SkinnedMesh::joint_transforms`].
     pub fn transforms(
@@ -223,37 +222,45 @@ impl Drive {
         self.pose(source, &mut pose);
         mesh.joint_transforms(&pose, out);
     }
+}
 
-    fn found_lift(&self, clip: &Clip, roles: &Roles, character: &Character, scale: f32) -> f32 {
-        let sole = Sole::of(character);
-        let feet = |pose: &WorldPose| {
-            let points =
-                Side::BOTH.into_iter().flat_map(|side| roles.foot_points(&self.source, side));
-            let heights = points.filter_map(|(joint, point)| {
-                Some((*pose.positions.get(joint)? + *pose.rotations.get(joint)? * point).y)
-            });
-            heights.min_by(f32::total_cmp)
-        };
-        let (mut from, mut to) = (WorldPose::default(), WorldPose::default());
-        let (mut theirs, mut ours) = (Vec::new(), Vec::new());
-        let step = clip.frames().div_ceil(SAMPLES).max(1);
-        for frame in (0..clip.frames()).step_by(step) {
-            clip.world_pose_into(frame, &mut from);
-            self.pose(&from, &mut to);
-            theirs.extend(feet(&from));
-            ours.extend(sole.height(&to));
-        }
-        let (Some(theirs), Some(ours)) = (
-            stats::percentile(&theirs, GROUND_PERCENTILE),
-            stats::percentile(&ours, GROUND_PERCENTILE),
-        ) else {
-            return 0.0;
-        };
-        let reach = MAX_GROUND_DISTANCE * roles.leg_length(&self.source).unwrap_or(0.0);
-        let ground = if theirs.abs() < reach { 0.0 } else { theirs * scale };
-        let lift = ground - ours;
-        if lift.is_finite() { lift } else { 0.0 }
+/// Returns the height by which poses of a character are raised so that its soles are on the ground
+/// on which the feet of `source` are, metres. `pose` stores the character's pose for a frame of the
+/// source, whose own pose it is given; `scale` is the ratio of the sizes.
+fn lift_of_soles(
+    character: &Character,
+    (source, roles): (&Clip, &Roles),
+    scale: f32,
+    mut pose: impl FnMut(usize, &WorldPose, &mut WorldPose),
+) -> f32 {
+    let sole = Sole::of(character);
+    let skeleton = source.skeleton();
+    let feet = |pose: &WorldPose| {
+        let points = Side::BOTH.into_iter().flat_map(|side| roles.foot_points(skeleton, side));
+        let heights = points.filter_map(|(joint, point)| {
+            Some((*pose.positions.get(joint)? + *pose.rotations.get(joint)? * point).y)
+        });
+        heights.min_by(f32::total_cmp)
+    };
+    let (mut from, mut to) = (WorldPose::default(), WorldPose::default());
+    let (mut theirs, mut ours) = (Vec::new(), Vec::new());
+    let step = source.frames().div_ceil(SAMPLES).max(1);
+    for frame in (0..source.frames()).step_by(step) {
+        source.world_pose_into(frame, &mut from);
+        pose(frame, &from, &mut to);
+        theirs.extend(feet(&from));
+        ours.extend(sole.height(&to));
     }
+    let (Some(theirs), Some(ours)) = (
+        stats::percentile(&theirs, GROUND_PERCENTILE),
+        stats::percentile(&ours, GROUND_PERCENTILE),
+    ) else {
+        return 0.0;
+    };
+    let reach = MAX_GROUND_DISTANCE * roles.leg_length(skeleton).unwrap_or(0.0);
+    let ground = if theirs.abs() < reach { 0.0 } else { theirs * scale };
+    let lift = ground - ours;
+    if lift.is_finite() { lift } else { 0.0 }
 }
 
 /// The lowest vertices of a character's feet, each with the joint that it follows most.

@@ -228,7 +228,7 @@ fn retargeted_character_follows_another_skeleton_and_takes_its_colours() {
     }
     let mut pane = Pane::default();
     let gray = |joint: usize| [joint as f32, 0.0, 0.0, 1.0];
-    pane.add_colored_body(&body, &walk.world_pose(10), gray);
+    pane.add_colored_body(&body, &body.drawn_pose(walk.world_pose(10)), gray);
     let hand = character.roles.get(Role::LeftHand).unwrap();
     assert_eq!(pane.joints.len(), character.skeleton.len());
     assert_eq!(pane.joint_colors[hand], gray(roles.get(Role::LeftHand).unwrap()));

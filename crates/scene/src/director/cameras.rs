@@ -2,12 +2,13 @@
 
 use crate::context::{DrawContext, PosedResult};
 use crate::framing::{camera_of, middle_height};
-use crate::{Camera, CameraRig, Pane, pose_at};
+use crate::{Camera, CameraRig, Pane};
 use glam::Vec3;
 use segue_motion::math::Planar;
 use segue_motion::skeleton::Role;
 use segue_session::choices::Follow;
 use segue_session::{Key, Slot, joint_of};
+use std::sync::Arc;
 
 /// Half-life with which a camera that follows no character approaches a new view, seconds.
 const VIEW_HALF_LIFE_SECS: f32 = 0.06;
@@ -84,26 +85,26 @@ pub(super) fn followed_point(
         let place = (params.number(Key::FollowOther) as usize).saturating_sub(1);
         session.extra_characters().get(place)?.motion.as_ref().ok()
     });
-    let source_pose;
-    let (motion, world) = match source {
+    let (motion, body, world) = match source {
         // The result is followed if the wanted character is not on the stage.
         None => match other.flatten() {
-            None => (&outcome.motion, &shown.world),
+            None => (&outcome.motion, Arc::clone(&shown.body), shown.world.clone()),
             Some(motion) => {
-                source_pose = pose_at(motion, session.now_secs(), &Planar::IDENTITY)?;
-                (motion, &source_pose)
+                let (body, world) =
+                    context.figure(motion, session.now_secs(), &Planar::IDENTITY)?;
+                (motion, body, world)
             }
         },
         Some(source) => {
             let (at, world_from_clip) = (outcome.source_at(source, shown.now))
                 .unwrap_or((shown.now - source.starts_at_secs, source.world_from_clip));
-            source_pose = pose_at(&source.motion, at, &shown.place.after(&world_from_clip))?;
-            (&source.motion, &source_pose)
+            let place = shown.place.after(&world_from_clip);
+            let (body, world) = context.figure(&source.motion, at, &place)?;
+            (&source.motion, body, world)
         }
     };
-    let body = context.bodies.body(motion);
     let joint = joint_of(motion, params.text(Key::FollowJoint)).unwrap_or(0);
-    let point = *body.drawn_pose(world).positions.get(body.drawn_joint(joint))?;
+    let point = *world.positions.get(body.drawn_joint(joint))?;
     let hips = motion.roles().get(Role::Hips).unwrap_or(0);
     // A view that bobs with every step is unpleasant: hips are followed over the ground, at a
     // constant height.

@@ -41,7 +41,7 @@ pub(crate) fn add_driven(
         && let Some(pose) = driven.database.pose(candidate, &moment.root)
     {
         let ghost = world_pose(driven.database.skeleton(), &pose);
-        pane.add_ghost(body, &ghost, context.lone_ghost(context.colors.b, 1.0));
+        pane.add_ghost(body, &body.drawn_pose(ghost), context.lone_ghost(context.colors.b, 1.0));
     }
 }
 
@@ -62,7 +62,14 @@ pub(crate) fn add_crowd(shown: &PosedResult<'_>, context: &mut DrawContext<'_>, 
         let color = others[index % others.len()];
         let moved = pose.translations.iter().copied();
         world_pose_into(skeleton, pose.root_translation, &pose.rotations, moved, &mut world);
-        add_character(motion, &world, &body, (color, CROWD_SHARE), context, pane);
+        add_character(
+            motion,
+            &body.drawn_pose(world.clone()),
+            &body,
+            (color, CROWD_SHARE),
+            context,
+            pane,
+        );
     }
 }
 

@@ -1,6 +1,7 @@
 //! Tests of conversions of many files.
 
 use super::*;
+use crate::export::ExportRoot;
 use crate::reading::{Companion, Parcel, ReadSetup, Unpacker, read};
 use segue_formats::archive::{ArchiveLimits, unpack};
 use segue_formats::bvh::{WriteOptions, write};
@@ -243,4 +244,114 @@ fn files_of_long_or_equal_names_are_numbered() {
     paths.sort();
     paths.dedup();
     assert_eq!(paths.len(), 6);
+}
+
+#[test]
+fn files_of_many_rigs_become_animations_of_one_file() {
+    for format in [ExportFormat::Glb, ExportFormat::Fbx] {
+        let mut conversion = Conversion::in_one_file(options(format), None);
+        for (name, bytes) in mixed() {
+            let report = read(&name, &bytes, &ReadSetup::default(), &mut |_| true).unwrap();
+            conversion.add_report(&name, Ok(report));
+        }
+        let walk = Motion::analyze(made(Action::Walk));
+        conversion.add_clip("Walk", &walk, None);
+        conversion.write_one_file();
+        let rows = conversion.rows().to_vec();
+        assert_eq!(rows.len(), 22);
+        let good: Vec<&ConversionRow> = rows.iter().filter(|row| row.output.is_ok()).collect();
+        assert!(good.iter().all(|row| row.output == Ok(format!("clips.{}", format.ending()))));
+        // Points without a body cannot be put on one.
+        let failed: Vec<&str> = (rows.iter().filter(|row| row.output.is_err()))
+            .map(|row| row.source.as_str())
+            .collect();
+        assert_eq!(failed, ["points.c3d", "broken/cut.bvh", "broken/cut.fbx", "broken/notes.txt"]);
+        let robot = rows.iter().find(|row| row.source == "robot.csv").unwrap();
+        assert!(robot.odd.iter().any(|note| note.to_string().contains("body of the file")));
+        let made = conversion.into_file();
+        assert_eq!(made.name, format!("clips.{}", format.ending()));
+        let back = import(&made.name, &made.bytes, &ImportOptions::default()).unwrap().clips;
+        assert_eq!(back.len(), good.len());
+        let mut names: Vec<&str> = back.iter().map(|own| own.clip.name()).collect();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), good.len(), "each animation has a name of its own");
+        for (own, row) in back.iter().zip(&good) {
+            let (_, frames, ..) = row.clip.as_ref().unwrap();
+            assert_eq!(own.clip.frames(), *frames, "{}", row.source);
+            assert_eq!(own.clip.skeleton().len(), walk.clip().skeleton().len());
+        }
+        // What was on this body already is as it was.
+        let (own, back) = (walk.clip(), &back.last().unwrap().clip);
+        for frame in (0..own.frames()).step_by(9) {
+            let [own, back] = [own, back].map(|clip| clip.world_pose(frame).positions);
+            assert!(own.iter().zip(&back).all(|(own, back)| own.distance(*back) < 1e-4));
+        }
+    }
+}
+
+#[test]
+fn one_file_of_all_clips_has_the_chosen_body() {
+    let (walk, run) = (made(Action::Walk), made(Action::Run));
+    let skeleton = segue_motion::skeleton::fixtures::mixamo();
+    let roles = Roles::detect(&skeleton);
+    let mesh = Arc::new(SkinnedMesh::around(&skeleton, &roles, 1.0));
+    let vertices = mesh.positions.len();
+    let character = Character { skeleton: skeleton.clone(), roles, mesh };
+    let mut conversion = Conversion::in_one_file(options(ExportFormat::Glb), Some(&character));
+    for clip in [&walk, &run] {
+        conversion.add_clip(clip.name(), &Motion::analyze(clip.clone()), None);
+    }
+    let mut made = conversion.into_file();
+    let author = made.bytes.windows(6).position(|w| w == b"Segue ").unwrap();
+    made.bytes[author..author + 5].copy_from_slice(b"Other");
+    let back = import(&made.name, &made.bytes, &ImportOptions::default()).unwrap().clips;
+    assert_eq!(back.len(), 2);
+    for own in &back {
+        assert_eq!(own.clip.skeleton().joints()[0].name, skeleton.joints()[0].name);
+        assert_eq!(own.mesh.as_ref().map(|mesh| mesh.positions.len()), Some(vertices));
+    }
+    // A format for one clip says so, in the line of each.
+    let mut conversion = Conversion::in_one_file(options(ExportFormat::Bvh), None);
+    conversion.add_clip("Walk", &Motion::analyze(walk), None);
+    conversion.write_one_file();
+    let reason = conversion.rows()[0].output.clone().unwrap_err().to_string();
+    assert!(reason.contains("choose FBX or GLB"), "{reason}");
+    assert_eq!(conversion.into_file().name, ARCHIVE);
+}
+
+#[test]
+fn root_motion_is_where_the_options_want_it() {
+    let walk = Motion::analyze(made(Action::Walk));
+    let far = |clip: &Clip| {
+        let at = |frame: usize| clip.root_translations()[frame];
+        (at(0) - at(clip.frames() - 1)).length()
+    };
+    for format in [ExportFormat::Bvh, ExportFormat::Fbx, ExportFormat::Glb, ExportFormat::Npz] {
+        let exported = |root: ExportRoot| {
+            let how = ExportOptions { format, root, ..ExportOptions::default() };
+            let bytes = export(&walk, None, &[], &how).unwrap();
+            read_back(&format!("x.{}", format.ending()), &bytes)
+        };
+        let [as_it_is, rooted, still] =
+            [ExportRoot::AsIs, ExportRoot::Ground, ExportRoot::InPlace].map(exported);
+        assert!(as_it_is.unfolded().is_none());
+        let file = rooted.unfolded().expect("joints above the hips");
+        assert_eq!(file.skeleton().joints()[0].name, "root", "{format:?}");
+        assert!(file.root_translations().iter().all(|root| root.y.abs() < 1e-4));
+        assert!((far(&file) - far(walk.clip())).abs() < 0.1);
+        // Reading folds the bone again, and the body is where it was.
+        for frame in (0..walk.clip().frames()).step_by(11) {
+            let own = walk.clip().world_pose(frame).positions;
+            let back = rooted.world_pose(frame).positions;
+            assert!(own.iter().zip(&back).all(|(own, back)| own.distance(*back) < 2e-4));
+        }
+        assert!(far(&still) < 0.2 && far(walk.clip()) > 1.0, "{format:?}");
+    }
+    // A table of a format without such a bone is as it is.
+    let how = ExportOptions { format: ExportFormat::Csv, ..ExportOptions::default() };
+    let ground = ExportOptions { root: ExportRoot::Ground, ..how };
+    assert_eq!(export(&walk, None, &[], &how), export(&walk, None, &[], &ground));
+    let in_place = ExportOptions { root: ExportRoot::InPlace, ..how };
+    assert_ne!(export(&walk, None, &[], &how), export(&walk, None, &[], &in_place));
 }

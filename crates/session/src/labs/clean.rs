@@ -56,18 +56,18 @@ fn is_mended(params: &Params) -> bool {
     params.choice::<Mending>() == Mending::Mended
 }
 
-/// Returns the switch of a kind of fault; `None` for one that has no mend.
-const fn switch_of(kind: FaultKind) -> Option<Key> {
+/// Returns the switch of a kind of fault.
+const fn switch_of(kind: FaultKind) -> Key {
     match kind {
-        FaultKind::Swap => Some(Key::CleanSwaps),
-        FaultKind::Gap => Some(Key::CleanGaps),
-        FaultKind::Spike => Some(Key::CleanSpikes),
-        FaultKind::Jitter => Some(Key::CleanJitter),
-        FaultKind::Drift => Some(Key::CleanDrift),
-        FaultKind::Ground => Some(Key::CleanGround),
-        FaultKind::Ends => Some(Key::CleanEnds),
-        FaultKind::Skating => Some(Key::CleanSkating),
-        FaultKind::Rate => None,
+        FaultKind::Swap => Key::CleanSwaps,
+        FaultKind::Gap => Key::CleanGaps,
+        FaultKind::Spike => Key::CleanSpikes,
+        FaultKind::Jitter => Key::CleanJitter,
+        FaultKind::Drift => Key::CleanDrift,
+        FaultKind::Ground => Key::CleanGround,
+        FaultKind::Ends => Key::CleanEnds,
+        FaultKind::Skating => Key::CleanSkating,
+        FaultKind::Rate => Key::CleanRate,
     }
 }
 
@@ -85,7 +85,7 @@ struct Mends {
 
 impl Mends {
     fn of(params: &Params) -> Self {
-        let is_on = |kind: &FaultKind| switch_of(*kind).is_some_and(|key| params.is_on(key));
+        let is_on = |kind: &FaultKind| params.is_on(switch_of(*kind));
         Self {
             is_on: is_mended(params),
             least: (params.number(Key::CleanSure) / 100.0) as f32,
@@ -142,9 +142,9 @@ impl CleanFacts {
         kinds.filter(|(_, found)| !found.is_empty()).collect()
     }
 
-    /// Returns the switch of a kind of fault; `None` for one that has no mend.
+    /// Returns the switch of a kind of fault.
     #[must_use]
-    pub const fn switch_of(kind: FaultKind) -> Option<Key> {
+    pub const fn switch_of(kind: FaultKind) -> Key {
         switch_of(kind)
     }
 

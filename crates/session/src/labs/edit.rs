@@ -92,6 +92,8 @@ pub enum ClipEdit {
     Reverse,
     /// Declares it one cycle.
     Loop,
+    /// Gives it another frame rate, in whole frames per second.
+    Resample(u32),
 }
 
 /// Returns the parameters of the Edit lab with a clip and one edit.
@@ -101,6 +103,7 @@ pub(crate) fn edit_params(id: &str, edit: ClipEdit) -> Option<Params> {
         ClipEdit::Mirror => (Key::Mirror, Sides::Mirrored.into()),
         ClipEdit::Reverse => (Key::Reverse, Direction::Backwards.into()),
         ClipEdit::Loop => (Key::AsLoop, Repeats::Cycle.into()),
+        ClipEdit::Resample(fps) => (Key::Resample, Value::Number(f64::from(fps))),
     };
     for (key, value) in
         [(Key::Lab, LabId::Edit.into()), (Key::A, Value::Text(id.to_owned())), value]

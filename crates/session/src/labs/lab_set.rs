@@ -8,6 +8,7 @@ use super::lab::{HasPart, Lab};
 use super::layers::{self, LayerCache};
 use super::loop_::{self, CycleFinder};
 use super::match_::{self, DriveScheduler};
+use super::on_character::CharacterMotions;
 use super::pair::Pairs;
 use super::path::{self, Paths};
 use super::register::{self, RegistrationSchedulers};
@@ -54,6 +55,7 @@ pub(crate) struct LabSet {
     cleaned: CleanCache,
     pub(crate) drives: DriveScheduler,
     pub(crate) meter: ArtefactMeter,
+    pub(crate) characters: CharacterMotions,
     /// Clips whose feet are read with options other than the defaults.
     pub(crate) feet: FeetReader,
     /// The jobs for workers.
@@ -62,7 +64,7 @@ pub(crate) struct LabSet {
 
 impl LabSet {
     /// Returns all sliced work, in the order of scheduling.
-    fn sliced(&self) -> [&dyn Sliced; 9] {
+    fn sliced(&self) -> [&dyn Sliced; 10] {
         [
             &self.pairs,
             &self.blends,
@@ -72,12 +74,13 @@ impl LabSet {
             &self.paths,
             &self.drives,
             &self.meter,
+            &self.characters,
             &self.graphs,
         ]
     }
 
-    fn sliced_mut(&mut self) -> ([&mut dyn Sliced; 9], &mut JobBoard) {
-        let sliced: [&mut dyn Sliced; 9] = [
+    fn sliced_mut(&mut self) -> ([&mut dyn Sliced; 10], &mut JobBoard) {
+        let sliced: [&mut dyn Sliced; 10] = [
             &mut self.pairs,
             &mut self.blends,
             &mut self.registrations,
@@ -86,6 +89,7 @@ impl LabSet {
             &mut self.paths,
             &mut self.drives,
             &mut self.meter,
+            &mut self.characters,
             &mut self.graphs,
         ];
         (sliced, &mut self.jobs)

@@ -9,12 +9,13 @@ use crate::LabId;
 use crate::command::Command;
 use crate::library::{Entry, Library};
 use crate::params::{Key, Kind, Params, Value};
+use segue_motion::blend::BlendError;
 use segue_motion::clip::{Motion, ground_speed};
 use segue_motion::gait::{GaitCycle, GaitError};
 use segue_motion::graph::GraphError;
 use segue_motion::matching::MatchError;
 use segue_motion::path::PathEditError;
-use segue_motion::registration::PathError;
+use segue_motion::registration::{PathError, RegistrationError};
 use segue_motion::skeleton::Role;
 use segue_motion::transition::LoopError;
 use segue_text::{Message, msg};
@@ -29,6 +30,16 @@ pub enum Remedy {
         slot: Slot,
         /// The clip's id.
         id: String,
+    },
+    /// Gives the clip in a slot another frame rate: the edited clip joins the library and takes the
+    /// slot. B gets the rate of A anyway.
+    Resample {
+        /// The slot.
+        slot: Slot,
+        /// The clip's id.
+        id: String,
+        /// The rate, frames per second.
+        fps: u32,
     },
     /// Puts another clip into a slot.
     Choose {
@@ -64,6 +75,10 @@ impl Remedy {
         match self {
             Self::TreatAsLoop { slot, .. } => {
                 msg!("Treat {slot} as a loop", slot = Message::data(slot.label()))
+            }
+            Self::Resample { slot, fps, .. } => {
+                let rate = f64::from(*fps);
+                msg!("Resample {slot} to {rate:.0} fps", slot = Message::data(slot.label()), rate)
             }
             Self::Choose { slot, name, .. } => {
                 msg!(
@@ -101,6 +116,9 @@ impl Remedy {
         match self {
             Self::TreatAsLoop { slot, id } => {
                 vec![Command::Edit(id.clone(), ClipEdit::Loop, Some(*slot))]
+            }
+            Self::Resample { slot, id, fps } => {
+                vec![Command::Edit(id.clone(), ClipEdit::Resample(*fps), Some(*slot))]
             }
             Self::Choose { slot, id, .. } => vec![Command::Assign(*slot, id.clone())],
             Self::SetBodyParts { id, .. } => set(vec![
@@ -165,6 +183,11 @@ impl Place<'_> {
             LabError::Loop(LoopError::Range { .. }) | LabError::EmptyCycle => {
                 self.reset(&[Key::LoopFrom, Key::LoopTo, Key::EditFrom, Key::EditTo, Key::AsLoop])
             }
+            LabError::Registration(RegistrationError::TooManyPairs { stride, .. })
+            | LabError::Blend(BlendError::Registration(RegistrationError::TooManyPairs {
+                stride,
+                ..
+            })) => self.at_rate_divided(*stride).into_iter().collect(),
             LabError::Retarget(_) => self.unknown_bodies(),
             LabError::RootWay(_) => self.body_parts(slot).into_iter().collect(),
             LabError::Mirror(_) => {
@@ -240,6 +263,14 @@ impl Place<'_> {
             |entry: &&Arc<Entry>| motion(entry).is_some_and(|motion| motion.clip().frames() > 2);
         let entry = self.slot(slot).filter(can_close);
         entry.map(|entry| Remedy::TreatAsLoop { slot, id: entry.id.clone() }).into_iter().collect()
+    }
+
+    /// Returns the remedy that divides the frame rate of A, and with it that of B.
+    fn at_rate_divided(&self, stride: usize) -> Option<Remedy> {
+        let entry = self.slot(Slot::A)?;
+        let fps = (motion(entry)?.clip().fps() / stride.max(2) as f64).floor();
+        Key::Resample.param().check(Value::Number(fps)).ok()?;
+        Some(Remedy::Resample { slot: Slot::A, id: entry.id.clone(), fps: fps as u32 })
     }
 
     /// Returns a built-in clip for B that is faster or slower than A.

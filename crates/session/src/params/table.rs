@@ -179,6 +179,7 @@ macro_rules! parameters {
     CleanGround "clean_ground" "Ground height" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Brings planted feet to height 0, also where the ground rises evenly.";
     CleanEnds "clean_ends" "Ends" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Cuts off a T-pose in front of the motion, and standing still at the ends.";
     CleanSkating "clean_skating" "Sliding feet" Lab(Clean), Kind::Switch, Start::Switch(true), "", "Holds planted feet that slide in place.";
+    CleanRate "clean_rate" "Frame rate" Lab(Clean), Kind::Switch, Start::Switch(false), "", "Plays the frames at the rate at which steps and falls take as long as those of a person.";
     CleanSkip "clean_skip" "Left alone" Lab(Clean), Kind::List(ListKind::FaultPlaces), Start::Text(""), "", "Faults that are not mended although their kind is: the kind and the first frame of each, as in spike-34,gap-120." [PlaceInA];
     CleanFaults "clean_faults" "Injected faults" Lab(Clean), number(0.0, 20.0, 1.0), Start::Number(0.0), "", "Injects this number of faults into the clip, to see how well they are found: spikes, gaps, swapped sides and jitter in turn.";
     CleanSeed "clean_seed" "Seed of the faults" Lab(Clean), number(0.0, 999.0, 1.0), Start::Number(1.0), "", "Chooses where the faults are injected; the same seed gives the same places.";

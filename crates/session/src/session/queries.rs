@@ -6,7 +6,7 @@ use crate::clip_info::ClipInfo;
 use crate::contact_edits::{ContactClip, corrections_of, with_named_edits};
 use crate::labs::lab::Beside;
 use crate::labs::lab_of;
-use crate::labs::{CycleMade, DistanceMap, Remedy, Slot, remedies};
+use crate::labs::{CharacterMotion, CycleMade, DistanceMap, Remedy, Slot, remedies};
 use crate::labs::{made_motion_has, middle_mps, range_of, synth_action};
 use crate::lesson::would_set_up;
 use crate::library::{Entry, split_reference};
@@ -170,6 +170,14 @@ impl Session {
     #[must_use]
     pub fn character(&self) -> Option<Character> {
         self.document.library.find(self.document.params.text(Key::Character))?.character()
+    }
+
+    /// Returns a motion on the stage on the skeleton of the chosen character, with its feet and
+    /// hands where the motion has them. `None` while that is computed, for characters that the user
+    /// drives, and where the motion cannot move the character: the directions of bones are shown.
+    #[must_use]
+    pub fn on_character(&self, motion: &Motion) -> Option<&Arc<CharacterMotion>> {
+        self.labs.characters.of(motion)
     }
 
     /// Returns the reason why the motion on the stage cannot move the chosen character, in a

@@ -88,12 +88,11 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     if let Some(clips) = session.graph_clips() {
         let moved: Vec<_> = (clips.names().iter().enumerate())
             .filter_map(|(clip, name)| {
-                Some((Some(session.clip_title(name)), &**clips.retargeted(clip)?))
+                let errors = clips.retargeted(clip)?.errors.as_ref()?;
+                Some((Some(session.clip_title(name)), errors))
             })
             .collect();
-        if !moved.is_empty() {
-            retarget_rows_ui(&moved, session, out, ui);
-        }
+        retarget_rows_ui(&moved, session, out, ui);
     }
 }
 

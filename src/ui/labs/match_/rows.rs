@@ -6,7 +6,9 @@ use super::why::why_ui;
 use crate::ui::kit::{self, Button, Icon};
 use crate::ui::language::{Word, say};
 use crate::ui::out::Out;
-use crate::ui::rows::{Detail, KeepOffer, add_clip_ui, clip_list_ui, clip_sets_ui, param_row_ui};
+use crate::ui::rows::{
+    Detail, KeepOffer, add_clip_ui, clip_list_ui, clip_sets_ui, param_row_ui, retarget_rows_ui,
+};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
@@ -246,7 +248,16 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         entries.filter_map(|entry| entry.motion.as_ref())
     };
     let skeleton = |motion: &Arc<Motion>| Arc::clone(motion.clip().skeleton());
-    if motions().skip(1).any(|motion| Some(skeleton(motion)) != motions().next().map(skeleton)) {
+    let built = shown(session).map(|(driven, _)| driven.database.retargeted());
+    let moved: Vec<_> = (built.into_iter().flatten())
+        .map(|(name, errors)| (Some(session.clip_title(name)), errors))
+        .collect();
+    if !moved.is_empty() {
+        retarget_rows_ui(&moved, session, out, ui);
+    } else if motions()
+        .skip(1)
+        .any(|motion| Some(skeleton(motion)) != motions().next().map(skeleton))
+    {
         row(Key::RetargetFeet, session, out, ui);
         row(Key::RetargetHands, session, out, ui);
     }

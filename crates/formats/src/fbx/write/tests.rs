@@ -185,7 +185,8 @@ fn fbx_angles_go_on_beyond_half_a_turn() {
     let turn = |frame: usize| Quat::from_rotation_y(0.3 * frame as f32);
     let rotations = (0..60).flat_map(|frame| [turn(frame), turn(2 * frame)]).collect();
     let clip = Clip::new("spin", skeleton.clone(), 30.0, rotations, vec![Vec3::ZERO; 60]).unwrap();
-    let take = Take::new(&clip, &skeleton, FileAxes { units_per_metre: 1.0, up: UpAxis::Y });
+    let axes = FileAxes { units_per_metre: 1.0, up: UpAxis::Y };
+    let take = Take::new("take".into(), &clip, &skeleton, axes);
     for channel in take.channels.iter().filter(|channel| channel.property == ROTATION) {
         let step = if channel.model == 0 { 0.3 } else { 0.6_f32 };
         assert_eq!([0, 2].map(|axis| channel.values[axis].len()), [1, 1]);

@@ -187,3 +187,19 @@ fn result_and_loading_have_no_remedies() {
         assert_eq!(remedies(&problem, &params, session.library()), []);
     }
 }
+
+#[test]
+fn clips_with_too_many_pairs_of_frames_get_a_lower_rate() {
+    use segue_motion::registration::RegistrationError;
+    let mut session = opened("lab=register&a=walk&b=run");
+    let problem: LabError =
+        RegistrationError::TooManyPairs { pairs: 99_000_000, most: 67_000_000, stride: 2 }.into();
+    let remedies = remedies(&problem, session.params(), session.library());
+    let [Remedy::Resample { slot: Slot::A, fps: 30, .. }] = remedies.as_slice() else {
+        panic!("{remedies:?}")
+    };
+    assert_eq!(remedies[0].label().to_string(), "Resample A to 30 fps");
+    assert_helps(&mut session, &remedies[0]);
+    assert_eq!(session.main_outcome().unwrap().motion.clip().fps(), 30.0);
+    assert_eq!(session.params().text(Key::A), "edit(a:walk,resample:30)");
+}
