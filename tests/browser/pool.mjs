@@ -44,7 +44,7 @@ try {
       // As many as fit are registered at once.
       for (let from = 0; from < pairs; from += 4) {
         const b = longs[1 + ((from / 4 + round) % (longs.length - 1))];
-        const also = longs.filter((id) => id !== b && id !== longs[0]).slice(0, 3).map((id) => `${id}:0.2`).join(",");
+        const also = longs.filter((id) => id !== b && id !== longs[0]).slice(0, 3).map((id) => `0.2:${id}`).join(",");
         await timed(opened, { lab: "view" });
         const made = await timed(opened, { lab: "register", a: longs[0], b, warp_also: also, registration_window: 5 + 2 * (from / 4) + round });
         [seconds, gap] = [seconds + made.seconds, Math.max(gap, made.gap)];

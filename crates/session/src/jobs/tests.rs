@@ -123,7 +123,7 @@ proptest! {
         session.set_workers(workers.workers.len());
         session.apply(Command::OpenLink(link.into())).unwrap();
         workers.settle(&mut session);
-        prop_assert!(workers.run > 3);
+        prop_assert!(workers.run > 1);
         assert_same(&session, &alone);
         // Another window from the same products; another threshold from the same distances.
         for (key, value) in [(Key::BlendWindow, 17.0), (Key::EdgeThreshold, 19.0)] {
@@ -146,7 +146,7 @@ proptest! {
                 .map(|(bytes, name)| session.load(name, Arc::clone(bytes)).unwrap().ids.remove(0))
                 .collect();
             let link = format!(
-                "lab=register&play=off&a={}&b={}&warp_also={}:0.3", ids[0], ids[1], ids[2]
+                "lab=register&play=off&a={}&b={}&warp_also=0.3:{}", ids[0], ids[1], ids[2]
             );
             session.apply(Command::OpenLink(link)).unwrap();
         };

@@ -9,7 +9,7 @@ use segue_motion::graph::{
 use std::sync::Arc;
 
 /// The number of distances of one job, a multiple of some milliseconds; a tile is not divided.
-const CELLS_PER_JOB: usize = 400_000;
+const CELLS_PER_JOB: usize = 200_000;
 
 /// The distances and the candidates of a set as jobs.
 #[derive(Debug)]
