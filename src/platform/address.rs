@@ -31,10 +31,6 @@ pub(super) fn pool_of(query: &str) -> Option<String> {
     value_of(query, POOL)
 }
 
-#[cfg_attr(
-    not(target_arch = "wasm32"),
-    expect(dead_code, reason = "a window has no address with keys of a page")
-)]
 fn value_of(query: &str, wanted: &str) -> Option<String> {
     form_urlencoded::parse(bare(query).as_bytes())
         .find(|(key, _)| key == wanted)

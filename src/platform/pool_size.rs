@@ -18,10 +18,6 @@ pub(crate) struct PoolStats {
 
 /// The number of workers that an address asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(
-    not(any(test, target_arch = "wasm32")),
-    expect(dead_code, reason = "a window has no address to set it in")
-)]
 pub(super) enum PoolSize {
     /// None: the page computes everything.
     Off,

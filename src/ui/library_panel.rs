@@ -5,7 +5,7 @@ mod files;
 mod row;
 mod selection;
 
-pub(in crate::ui) use self::arrange::{Arranged, RowHeights};
+pub(crate) use self::arrange::{Arranged, RowHeights};
 
 use self::arrange::{ArrangedFor, Row, Section, arrange};
 use self::files::files_ui;

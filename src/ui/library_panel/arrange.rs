@@ -22,7 +22,7 @@ pub(super) struct ArrangedFor {
 
 /// The arranged list.
 #[derive(Clone, Debug)]
-pub(in crate::ui) struct Arranged {
+pub(crate) struct Arranged {
     pub(super) key: ArrangedFor,
     pub(super) sections: Vec<Section>,
 }
@@ -51,7 +51,7 @@ impl<'a> Row<'a> {
 /// The heights of rows as they were drawn last, points: those that are out of sight take as much
 /// room.
 #[derive(Clone, Debug)]
-pub(in crate::ui) struct RowHeights {
+pub(crate) struct RowHeights {
     /// That of a clip.
     pub(super) clip: f32,
     /// That of a head.

@@ -2,6 +2,7 @@
 
 use super::pair::FRAMES_PER_SLICE;
 use super::sliced::{JobKind, Sliced};
+use crate::jobs::JobBoard;
 use segue_motion::clip::{Clip, Motion};
 use segue_motion::retarget::{
     MotionRetargeting, RetargetErrors, RetargetOptions, RetargetedMotion, TargetBody,
@@ -178,7 +179,7 @@ impl Sliced for CharacterMotions {
         }
     }
 
-    fn work(&mut self) -> bool {
+    fn work(&mut self, _jobs: &mut JobBoard) -> bool {
         self.under_way.retain(|pending| pending.is_wanted);
         let Some(character) = &self.character else { return false };
         if self.under_way.is_empty() {

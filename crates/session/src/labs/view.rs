@@ -87,16 +87,18 @@ const PER_SLICE: usize = 500;
 pub fn metrics_of_clip(motion: &Arc<Motion>) -> Vec<Metric> {
     let (mut cache, mut meter) = (ViewCache::default(), ArtefactMeter::default());
     let params = Params::default();
+    // Without workers, everything is computed here.
+    let jobs = &mut JobBoard::default();
     // A long clip is measured in slices: it is asked for once before and once after the work.
     let mut inputs = cache.inputs(motion, &params);
-    while cache.work() {
+    while cache.work(jobs) {
         inputs = cache.inputs(motion, &params);
     }
     let Some(Ok(mut outcome)) = inputs.map(|inputs| inputs.run()) else {
         return Vec::new();
     };
     let mut found = meter.numbers(&outcome);
-    while found.is_none() && meter.work() {
+    while found.is_none() && meter.work(jobs) {
         found = meter.numbers(&outcome);
     }
     outcome.take_numbers(found);
