@@ -122,7 +122,11 @@ impl TileComputer {
         let rows = tile.rows.start / ROWS_PER_SUM * ROWS_PER_SUM..tile.rows.end.min(height);
         if rows.is_empty() || width == 0 {
             let counts = vec![0; DistanceOverview::BINS];
-            return Ok(TileDistances { rms_m: Vec::new(), counts, candidates: Default::default() });
+            return Ok(TileDistances {
+                rms_m: Vec::new(),
+                counts,
+                candidates: TileCandidates::default(),
+            });
         }
         // Minima are recognised by their neighbours. The row above the first one would need its
         // whole tile; so its own minima belong to the tile above, which computes two rows more.
@@ -248,10 +252,8 @@ impl TileView {
     }
 
     fn get(&self, row: usize, column: usize) -> Option<f32> {
-        let (row, column) = match self.is_itself {
-            true => (row.min(column), row.max(column)),
-            false => (row, column),
-        };
+        let (row, column) =
+            if self.is_itself { (row.min(column), row.max(column)) } else { (row, column) };
         if row < self.first {
             return None;
         }
