@@ -386,15 +386,12 @@ impl Conversion {
     pub fn into_file(mut self) -> ConvertedFile {
         self.write_one_file();
         let format = self.options.export.format;
-        match self.one_file.take() {
-            Some(bytes) => {
-                let name = file_name(ONE_FILE, format.ending());
-                ConvertedFile { name, mime: format.mime(), bytes }
-            }
-            None => {
-                let (name, bytes) = (ARCHIVE.to_owned(), self.finish());
-                ConvertedFile { name, mime: "application/zip", bytes }
-            }
+        if let Some(bytes) = self.one_file.take() {
+            let name = file_name(ONE_FILE, format.ending());
+            ConvertedFile { name, mime: format.mime(), bytes }
+        } else {
+            let (name, bytes) = (ARCHIVE.to_owned(), self.finish());
+            ConvertedFile { name, mime: "application/zip", bytes }
         }
     }
 

@@ -44,14 +44,13 @@ impl Task for DistanceTask {
     ) -> Result<DistanceAnswer, JobError> {
         let numbers: Vec<u32> = clips.iter().map(|clip| clip.number).collect();
         let kept = memory.tiles.take().filter(|(kept, _)| *kept == numbers);
-        let mut computer = match kept {
-            Some((_, computer)) => computer,
-            None => {
-                let motions: Vec<Arc<Motion>> =
-                    clips.iter().map(|clip| Arc::clone(&clip.motion)).collect();
-                let set = FrameSet::new(motions, self.body_height)?;
-                TileComputer::new(Arc::new(set), memory.max_bytes)?
-            }
+        let mut computer = if let Some((_, computer)) = kept {
+            computer
+        } else {
+            let motions: Vec<Arc<Motion>> =
+                clips.iter().map(|clip| Arc::clone(&clip.motion)).collect();
+            let set = FrameSet::new(motions, self.body_height)?;
+            TileComputer::new(Arc::new(set), memory.max_bytes)?
         };
         let mut answer = Vec::with_capacity(self.tiles.len());
         for tile in &self.tiles {

@@ -64,14 +64,12 @@ impl Task for RegistrationTask {
             return Err(JobError::NoResult);
         };
         let numbers = [a.number, b.number];
-        let terms = take_terms(memory, numbers, self.stride);
-        let terms = match terms {
-            Some(terms) => terms,
-            None => {
-                let mut terms = terms_of(&a.motion, &b.motion, self.stride)?;
-                terms.finish();
-                terms
-            }
+        let terms = if let Some(terms) = take_terms(memory, numbers, self.stride) {
+            terms
+        } else {
+            let mut terms = terms_of(&a.motion, &b.motion, self.stride)?;
+            terms.finish();
+            terms
         };
         let window = self.request.window;
         let kept = memory.matrix.take().filter(|(of, stride, matrix)| {

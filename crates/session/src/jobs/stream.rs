@@ -42,14 +42,13 @@ impl Task for StreamTask {
         let window = self.options.blend_window;
         let kept = memory.stream.take();
         let kept = kept.filter(|(kept, known)| *kept == numbers && known.window() == window);
-        let computer = match kept {
-            Some((_, computer)) => computer,
-            None => {
-                let motions: Vec<Arc<Motion>> =
-                    clips.iter().map(|clip| Arc::clone(&clip.motion)).collect();
-                let set = Arc::new(FrameSet::new(motions, self.body_height)?);
-                StreamComputer::new(&set, window)?
-            }
+        let computer = if let Some((_, computer)) = kept {
+            computer
+        } else {
+            let motions: Vec<Arc<Motion>> =
+                clips.iter().map(|clip| Arc::clone(&clip.motion)).collect();
+            let set = Arc::new(FrameSet::new(motions, self.body_height)?);
+            StreamComputer::new(&set, window)?
         };
         let rows: Result<Vec<StreamRow>, _> =
             self.parts.clone().map(|part| computer.row(part, &self.options)).collect();

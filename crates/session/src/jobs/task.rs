@@ -118,7 +118,7 @@ macro_rules! tasks {
 
         #[derive(Debug)]
         enum AnyAnswer {
-            $($kind(<$task as Task>::Answer),)*
+            $($kind(Box<<$task as Task>::Answer>),)*
         }
 
         impl AnyTask {
@@ -129,13 +129,13 @@ macro_rules! tasks {
                 memory: &mut WorkerMemory,
             ) -> Result<Answer, JobError> {
                 Ok(Answer(match self {
-                    $(Self::$kind(task) => AnyAnswer::$kind(task.run(clips, memory)?),)*
+                    $(Self::$kind(task) => AnyAnswer::$kind(Box::new(task.run(clips, memory)?)),)*
                 }))
             }
 
             fn unpack(&self, parcel: Parcel) -> Result<Answer, ParcelError> {
                 Ok(Answer(match self {
-                    $(Self::$kind(task) => AnyAnswer::$kind(task.unpack(parcel)?),)*
+                    $(Self::$kind(task) => AnyAnswer::$kind(Box::new(task.unpack(parcel)?)),)*
                 }))
             }
 
@@ -153,7 +153,7 @@ macro_rules! tasks {
             /// [`ParcelError`] when JSON cannot represent its header.
             pub fn pack(self) -> Result<Parcel, ParcelError> {
                 match self.0 {
-                    $(AnyAnswer::$kind(answer) => <$task as Task>::pack(answer),)*
+                    $(AnyAnswer::$kind(answer) => <$task as Task>::pack(*answer),)*
                 }
             }
         }
@@ -170,7 +170,7 @@ macro_rules! tasks {
 
                 fn output(answer: Answer) -> Option<Self::Output> {
                     match answer.0 {
-                        AnyAnswer::$kind(answer) => Some(answer),
+                        AnyAnswer::$kind(answer) => Some(*answer),
                         _ => None,
                     }
                 }

@@ -37,6 +37,7 @@ const MAX_CANDIDATES: usize = 800_000;
 
 /// Builds graphs and walks in slices, and caches what a change does not affect: products of frames
 /// for a new window, candidates for a new threshold, the graph for another walk.
+#[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 #[derive(Debug, Default)]
 pub(crate) struct GraphScheduler {
     /// The requested clips, by name and motion.
