@@ -304,6 +304,7 @@ mod tests {
                 .iter()
                 .map(|&key| (key.to_owned(), FileBytes::Here(Arc::from(key.as_bytes()))))
                 .collect(),
+            ..Work::default()
         }
     }
 
