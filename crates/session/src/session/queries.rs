@@ -68,8 +68,8 @@ impl Session {
         clips
     }
 
-    /// Returns the number of clips with the rig of a clip, which corrections of its body parts apply
-    /// to; clips that were never read do not count.
+    /// Returns the number of clips with the rig of a clip, which corrections of its body parts
+    /// apply to; clips that were never read do not count.
     #[must_use]
     pub fn clips_of_rig(&self, id: &str) -> usize {
         let library = &self.document.library;
