@@ -160,7 +160,8 @@ impl Segue {
             || self.session.is_reading_any()
     }
 
-    /// Has the motion of a clip read that is not in memory. Returns whether it has to be waited for.
+    /// Has the motion of a clip read that is not in memory. Returns whether it has to be waited
+    /// for.
     pub(crate) fn read_clip(&mut self, which: &str) -> bool {
         let entry = self.session.library().find(which).filter(|_| pane_number(which).is_none());
         let Some(id) = entry.filter(|entry| entry.motion.is_none()).map(|entry| entry.id.clone())

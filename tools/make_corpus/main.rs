@@ -89,12 +89,16 @@ fn params(index: usize, rig: &Rig) -> Params {
     let frames = bytes / (rig.channels() as f64 * BYTES_PER_VALUE);
     let usual = Params::new(action);
     let pace = 0.85 + 0.3 * random();
+    let least_secs = match action {
+        Action::Start | Action::Stop => 2.5,
+        _ => 1.0,
+    };
     Params {
         speed_mps: usual.speed_mps * pace as f32,
         turn_rate_dps: (60.0 * (random() - 0.5)) as f32,
         height_m: rig.height_m,
         seed: index as u32 + 1,
-        duration_secs: ((frames / f64::from(rig.fps)) as f32).clamp(1.0, 110.0),
+        duration_secs: ((frames / f64::from(rig.fps)) as f32).clamp(least_secs, 60.0),
         fps: rig.fps,
         ..usual
     }

@@ -118,8 +118,8 @@ impl ClipResolver<'_> {
         made.ok_or_else(|| LabError::MissingClip { name: outside::short(&id) })
     }
 
-    /// Keeps the motions of the clips in A and B, and has that of the chosen character read if it is
-    /// not here.
+    /// Keeps the motions of the clips in A and B, and has that of the chosen character read if it
+    /// is not here.
     pub(crate) fn keep_slots_and_character(&mut self) {
         for slot in [Slot::A, Slot::B] {
             let held = self.document.slot(slot).filter(|entry| entry.motion.is_some());

@@ -138,7 +138,7 @@ fn late_work_after_a_drop_joins_the_library() {
     assert_eq!(autosave.known.len(), 0, "nothing is stored over what has not been read yet");
     autosave.on_loaded(&mut session, large_files, Some(late));
     let has = |session: &Session, id: &str| {
-        session.library().get(id).is_some_and(|entry| entry.motion.is_some())
+        session.library().get(id).is_some_and(|entry| entry.is_known())
     };
     assert!(has(&session, &stored_id) && has(&session, &dropped));
     assert_eq!(session.library().get(&stored_id).unwrap().name, "mine");
@@ -229,7 +229,7 @@ fn loose_clips_without_a_record_join_the_built_in_ones() {
         autosave.begin_if_overdue(&mut session, &mut LargeFileStore::default(), 1000.0 + wait_ms);
         autosave.on_loaded(&mut session, &mut LargeFileStore::default(), Some(stored));
         assert_eq!(session.library().entries().len(), built_in + 1, "after {wait_ms} ms");
-        assert!(session.library().get(&id).is_some_and(|entry| entry.motion.is_some()));
+        assert!(session.library().get(&id).is_some_and(|entry| entry.is_known()));
     }
 }
 

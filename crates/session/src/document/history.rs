@@ -43,8 +43,8 @@ impl History {
         self.past.push(State { params: params.clone(), library: library.clone() });
     }
 
-    /// Records the state before a file arrives. The files of one selection that arrive one after the
-    /// other are one step.
+    /// Records the state before a file arrives. The files of one selection that arrive one after
+    /// the other are one step.
     pub(super) fn before_arrival(
         &mut self,
         params: &Params,

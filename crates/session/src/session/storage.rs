@@ -32,8 +32,8 @@ impl Session {
         }
     }
 
-    /// Returns the SHA-256 of the files that undo and redo may restore: they have to stay in storage
-    /// until the session ends.
+    /// Returns the SHA-256 of the files that undo and redo may restore: they have to stay in
+    /// storage until the session ends.
     #[must_use]
     pub fn files_of_steps(&self) -> BTreeSet<String> {
         self.document.files_of_steps()
