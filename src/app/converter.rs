@@ -5,9 +5,7 @@ use super::Segue;
 use crate::platform::{self, FileBytes, ReadEvent, Reader};
 use crate::ui::{ConvertAction, ConvertShown};
 use segue_formats::FileKind;
-use segue_session::convert::{
-    Conversion, ConversionRow, ConvertOptions, ConvertedFile, TargetRig,
-};
+use segue_session::convert::{Conversion, ConversionRow, ConvertOptions, ConvertedFile, TargetRig};
 use segue_session::export::ExportOptions;
 use segue_session::reading::{Companion, Content, ReadReport, ReadSetup, ReadTask};
 use segue_session::{Level, Session, Slot};

@@ -203,9 +203,8 @@ fn exported_files_are_left_for_other_readers() {
     writeln!(list, "character {}", unit(&clip, &WriteOptions::default())).unwrap();
     fs::write(folder.join("cases.txt"), list).unwrap();
     // Two clips in one file, with a root bone on the ground.
-    let clips = [Action::Walk, Action::Run].map(|action| {
-        synthesize(&Params::new(action)).unwrap().clip.with_ground_root()
-    });
+    let clips = [Action::Walk, Action::Run]
+        .map(|action| synthesize(&Params::new(action)).unwrap().clip.with_ground_root());
     let mut list = String::new();
     for clip in &clips {
         let inputs = CsvInputs { clip, contacts: None, columns: &[] };

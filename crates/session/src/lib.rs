@@ -113,8 +113,8 @@ pub use labs::{
     WalkStay, check_graph_clips, graph_of,
 };
 pub use labs::{
-    CharacterMotion, CleanFacts, Cycle, CycleMade, FoundFault, LayerFacts, LayerFit, MatchSearch, Outcome,
-    PlacedClip, RetargetReport, Slot, Transition, mistake_shows,
+    CharacterMotion, CleanFacts, Cycle, CycleMade, FoundFault, LayerFacts, LayerFit, MatchSearch,
+    Outcome, PlacedClip, RetargetReport, Slot, Transition, mistake_shows,
 };
 pub use labs::{ClipEdit, LabError, Remedy, edits_of};
 pub use labs::{

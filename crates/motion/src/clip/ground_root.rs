@@ -4,9 +4,7 @@ use super::Clip;
 use super::carrier::smoothed;
 use super::root_motion::character_frames;
 use crate::math::Planar;
-use crate::skeleton::{
-    ChainJoint, ChainMotion, FoldedChain, Joint, Roles, Skeleton, carrier,
-};
+use crate::skeleton::{ChainJoint, ChainMotion, FoldedChain, Joint, Roles, Skeleton, carrier};
 use glam::{Quat, Vec3};
 use std::sync::Arc;
 

@@ -5,8 +5,7 @@ use crate::clip::{Clip, stance_for_rest};
 use crate::math::sort::sort_by;
 use crate::math::stats;
 use crate::skeleton::{
-    JointMap, Retargeting, Role, Roles, Side, Skeleton, WorldPose, local_pose,
-    world_pose_into,
+    JointMap, Retargeting, Role, Roles, Side, Skeleton, WorldPose, local_pose, world_pose_into,
 };
 use glam::Vec3;
 use std::sync::Arc;

@@ -62,7 +62,14 @@ pub(crate) fn add_crowd(shown: &PosedResult<'_>, context: &mut DrawContext<'_>, 
         let color = others[index % others.len()];
         let moved = pose.translations.iter().copied();
         world_pose_into(skeleton, pose.root_translation, &pose.rotations, moved, &mut world);
-        add_character(motion, &body.drawn_pose(world.clone()), &body, (color, CROWD_SHARE), context, pane);
+        add_character(
+            motion,
+            &body.drawn_pose(world.clone()),
+            &body,
+            (color, CROWD_SHARE),
+            context,
+            pane,
+        );
     }
 }
 

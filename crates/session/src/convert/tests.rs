@@ -265,10 +265,7 @@ fn files_of_many_rigs_become_animations_of_one_file() {
         let failed: Vec<&str> = (rows.iter().filter(|row| row.output.is_err()))
             .map(|row| row.source.as_str())
             .collect();
-        assert_eq!(
-            failed,
-            ["points.c3d", "broken/cut.bvh", "broken/cut.fbx", "broken/notes.txt"]
-        );
+        assert_eq!(failed, ["points.c3d", "broken/cut.bvh", "broken/cut.fbx", "broken/notes.txt"]);
         let robot = rows.iter().find(|row| row.source == "robot.csv").unwrap();
         assert!(robot.odd.iter().any(|note| note.to_string().contains("body of the file")));
         let made = conversion.into_file();
@@ -301,8 +298,7 @@ fn one_file_of_all_clips_has_the_chosen_body() {
     let mesh = Arc::new(SkinnedMesh::around(&skeleton, &roles, 1.0));
     let vertices = mesh.positions.len();
     let character = Character { skeleton: skeleton.clone(), roles, mesh };
-    let mut conversion =
-        Conversion::in_one_file(options(ExportFormat::Glb), Some(&character));
+    let mut conversion = Conversion::in_one_file(options(ExportFormat::Glb), Some(&character));
     for clip in [&walk, &run] {
         conversion.add_clip(clip.name(), &Motion::analyze(clip.clone()), None);
     }

@@ -27,8 +27,7 @@ impl Together {
     /// ask for it.
     #[must_use]
     pub fn new(options: ExportOptions, character: Option<&Character>) -> Self {
-        let has_body =
-            options.format == ExportFormat::Glb && options.body == ExportBody::Character;
+        let has_body = options.format == ExportFormat::Glb && options.body == ExportBody::Character;
         let character = character.filter(|_| has_body).cloned();
         Self { options, character, ..Self::default() }
     }
@@ -60,7 +59,8 @@ impl Together {
                 (Clip::clone(motion.clip()), motion.roles(), false)
             }
             (None, Some(first)) => {
-                let has_its_joints = motion.clip().skeleton().has_joints_of(first.clip().skeleton());
+                let has_its_joints =
+                    motion.clip().skeleton().has_joints_of(first.clip().skeleton());
                 if has_its_joints {
                     (Clip::clone(motion.clip()), motion.roles(), false)
                 } else {
