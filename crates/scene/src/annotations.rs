@@ -14,11 +14,7 @@ const SLIDE_MPS: f32 = 0.08;
 const MARK_RADIUS: f32 = 0.011;
 
 /// Marks the chosen joint of a result. Called after the pane has its camera.
-pub(crate) fn add_joint_mark(
-    shown: &PosedResult<'_>,
-    context: &DrawContext<'_>,
-    pane: &mut Pane,
-) {
+pub(crate) fn add_joint_mark(shown: &PosedResult<'_>, context: &DrawContext<'_>, pane: &mut Pane) {
     let motion = &shown.outcome.motion;
     let Some(joint) = joint_of(motion, context.params.text(Key::Joint)) else {
         return;
@@ -81,6 +77,13 @@ pub(crate) fn add_bones(
     color: Color,
     pane: &mut Pane,
 ) {
+    if motion.clip().is_of_points() {
+        for &at in world.positions.iter().skip(1) {
+            // A line so short that only its round ends are visible.
+            pane.add_line(at, at + Vec3::Y * 1e-4, color, 4.0, Layer::Over);
+        }
+        return;
+    }
     let (skeleton, _) = body.drawn_rig((motion.clip().skeleton(), motion.roles()));
     for (index, joint) in skeleton.joints().iter().enumerate() {
         if let Some(parent) = joint.parent {
