@@ -1,6 +1,7 @@
 //! Units, axes and rates on the command line.
 
 use segue_motion::clip::UpAxis;
+use segue_session::export::ExportRoot;
 
 /// The units of length by their names, in metres.
 const UNITS: [(&str, f64); 5] =
@@ -29,6 +30,19 @@ pub(crate) fn parse_up(text: &str) -> Result<UpAxis, String> {
         "y" | "Y" => Ok(UpAxis::Y),
         "z" | "Z" => Ok(UpAxis::Z),
         _ => Err("expected y or z".to_owned()),
+    }
+}
+
+/// Reads the joint that has the motion over the ground.
+///
+/// # Errors
+/// A sentence that says which are known.
+pub(crate) fn parse_root(text: &str) -> Result<ExportRoot, String> {
+    match text {
+        "as-is" => Ok(ExportRoot::AsIs),
+        "ground" => Ok(ExportRoot::Ground),
+        "in-place" => Ok(ExportRoot::InPlace),
+        _ => Err("expected as-is, ground or in-place".to_owned()),
     }
 }
 

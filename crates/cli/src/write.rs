@@ -2,11 +2,11 @@
 
 use crate::inputs::{Input, shown};
 use crate::status::Failure;
-use crate::units::{parse_rate, parse_unit, parse_up};
+use crate::units::{parse_rate, parse_root, parse_unit, parse_up};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 use segue_motion::clip::UpAxis;
-use segue_session::export::{ExportBody, ExportFormat, ExportOptions, file_name};
+use segue_session::export::{ExportBody, ExportFormat, ExportOptions, ExportRoot, file_name};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -28,6 +28,10 @@ pub(crate) struct WriteArgs {
     /// Frames per second; the motion is interpolated [default: those of the clip]
     #[arg(long, value_name = "FPS", value_parser = parse_rate)]
     rate: Option<f64>,
+    /// Joint that has the motion over the ground: as-is, ground (a root bone on the ground, in BVH,
+    /// FBX, GLB and NPZ) or in-place (none) [default: as-is]
+    #[arg(long, value_name = "ROOT", value_parser = parse_root)]
+    root: Option<ExportRoot>,
     /// Writes a GLB with a plain body, not with the mesh of the file
     #[arg(long)]
     plain_body: bool,
@@ -62,6 +66,7 @@ impl WriteArgs {
             rotation_order: None,
             fps: self.rate,
             body: if self.plain_body { ExportBody::Plain } else { ExportBody::Character },
+            root: self.root.unwrap_or_default(),
         })
     }
 

@@ -77,6 +77,13 @@ pub(crate) fn add_bones(
     color: Color,
     pane: &mut Pane,
 ) {
+    if motion.clip().is_of_points() {
+        for &at in world.positions.iter().skip(1) {
+            // A line so short that only its round ends are visible.
+            pane.add_line(at, at + Vec3::Y * 1e-4, color, 4.0, Layer::Over);
+        }
+        return;
+    }
     let (skeleton, _) = body.drawn_rig((motion.clip().skeleton(), motion.roles()));
     for (index, joint) in skeleton.joints().iter().enumerate() {
         if let Some(parent) = joint.parent {

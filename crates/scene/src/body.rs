@@ -7,7 +7,7 @@ mod tests;
 use crate::framing::reach_of;
 use crate::{Color, Limb};
 use segue_motion::skeleton::{Roles, Skeleton, WorldPose, canonical_stance};
-use segue_motion::skin::shapes::{PlacedShape, Shape, limb_shapes};
+use segue_motion::skin::shapes::{PlacedShape, Shape, ball_shapes, limb_shapes};
 use segue_motion::skin::{Character, Drive, SkinnedMesh};
 use std::sync::Arc;
 
@@ -78,6 +78,18 @@ impl Body {
         shapes.sort_by(|x, y| y.weight(&rest).total_cmp(&x.weight(&rest)));
         let shapes = shapes.into_iter().map(|shape| shape.in_axes_of(&stance)).collect();
         Self { shapes, skin: None, retargeting: None, size: None, reach: 0.0 }
+    }
+
+    /// Makes the body of a clip of points ([`segue_motion::clip::Clip::is_of_points`]): a ball at each of them, and
+    /// nothing between them. Markers of a person are 14 mm wide.
+    #[must_use]
+    pub fn of_points(skeleton: &Skeleton) -> Self {
+        /// The radius as a share of the distance from the middle to the farthest point.
+        const RADIUS_SHARE: f32 = 0.008;
+        let offsets = skeleton.joints().iter().skip(1).map(|joint| joint.offset.length());
+        let farthest = offsets.filter(|length| length.is_finite()).fold(0.0, f32::max);
+        let shapes = ball_shapes(1..skeleton.len(), RADIUS_SHARE * farthest);
+        Self { shapes, ..Self::default() }
     }
 
     /// Makes the body of a character that poses of the skeleton `source` with the roles

@@ -135,6 +135,9 @@ impl BodyCache {
     fn procedural_body(&mut self, motion: &Motion) -> Body {
         let BodyStyle { skin, girth } = self.style;
         let skeleton = motion.clip().skeleton();
+        if motion.clip().is_of_points() {
+            return Body::of_points(skeleton).with_girth(girth);
+        }
         let reference = reference_pose(motion.clip(), motion.roles());
         let body = Body::standing(skeleton, Some(motion.roles()), &reference).with_girth(girth);
         match skin.then(|| self.skin(skeleton, motion.roles(), &reference)).flatten() {

@@ -11,6 +11,11 @@ use segue_motion::retarget::{Compared, LimbReach, RetargetErrors, SkatingValues}
 use segue_session::{Key, Session, format_number};
 use segue_text::{Message, msg};
 
+/// The weights of both feet, or of the left one, and of the right one.
+const FEET: [Key; 2] = [Key::RetargetFeet, Key::RetargetRightFoot];
+/// The weights of both hands, or of the left one, and of the right one.
+const HANDS: [Key; 2] = [Key::RetargetHands, Key::RetargetRightHand];
+
 /// Draws the rows of the weights, and the errors of the clips that were retargeted, each under its
 /// name where there are several. Nothing without any: clips of one rig have none.
 pub(crate) fn retarget_rows_ui(
@@ -23,13 +28,15 @@ pub(crate) fn retarget_rows_ui(
         return;
     }
     let errors = || reports.iter().map(|(_, errors)| errors);
-    let limbs: [(Key, bool, Message); 2] = [
-        (Key::RetargetFeet, errors().any(|of| of.feet != [None; 2]), text::NO_COMMON_LEGS.into()),
-        (Key::RetargetHands, errors().any(|of| of.hands != [None; 2]), text::NO_COMMON_ARMS.into()),
+    let limbs: [(_, bool, Message); 2] = [
+        (FEET, errors().any(|of| of.feet != [None; 2]), text::NO_COMMON_LEGS.into()),
+        (HANDS, errors().any(|of| of.hands != [None; 2]), text::NO_COMMON_ARMS.into()),
     ];
-    for (key, has_any, reason) in limbs {
+    for (keys, has_any, reason) in limbs {
         if has_any {
-            param_row_ui(key, &Detail::default(), session, out, ui);
+            for key in keys {
+                param_row_ui(key, &Detail::default(), session, out, ui);
+            }
         } else {
             kit::note_ui(&reason, palette_of(ui).muted, ui);
         }

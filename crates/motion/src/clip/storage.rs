@@ -373,6 +373,20 @@ impl Clip {
         scaled
     }
 
+    /// Returns whether it is one of points without bones, such as markers: every joint but the
+    /// first hangs from the first, and moves there by itself.
+    #[must_use]
+    pub fn is_of_points(&self) -> bool {
+        let joints = self.skeleton.joints().iter().skip(1);
+        let mut moving = self.translations.iter().map(|track| track.joint);
+        self.skeleton.len() > 1
+            && joints.enumerate().all(|(index, joint)| {
+                joint.parent == Some(0)
+                    && joint.end_site.is_none()
+                    && moving.next() == Some(index + 1)
+            })
+    }
+
     /// Returns the clip with the same frames at another frame rate: it plays faster or slower.
     ///
     /// # Errors

@@ -3,6 +3,7 @@
 use super::*;
 use crate::{Pane, rgb};
 use glam::{Quat, Vec3};
+use segue_motion::clip::fixtures::{points_clip, points_skeleton};
 use segue_motion::skeleton::{Joint, Pose, Role, world_pose};
 use segue_motion::skin::RigidTransform;
 use segue_motion::synth::{Action, Params, synthesize};
@@ -248,5 +249,36 @@ fn girth_above_one_widens_limbs_and_keeps_their_lengths() {
     for (thin, broad) in limbs(1.0).iter().zip(limbs(1.5)) {
         assert_eq!((thin.a, thin.b), (broad.a, broad.b));
         assert!((broad.radius_a - 1.5 * thin.radius_a).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn clip_of_points_has_a_ball_at_each_and_no_limb_between_them() {
+    let skeleton = points_skeleton(4);
+    let frames: Vec<Vec<[f32; 3]>> = (0..3)
+        .map(|frame| {
+            let x = 0.1 * frame as f32;
+            vec![[0.0, 0.9, 0.0], [x, 0.0, 0.0], [x, 1.7, 0.0], [0.4, 0.9, x]]
+        })
+        .collect();
+    let clip = points_clip(&skeleton, 30.0, &frames);
+    assert!(clip.is_of_points());
+    let walk = synthesize(&Params::new(Action::Walk)).unwrap().clip;
+    assert!(!walk.is_of_points());
+    let placed = Skeleton::new(
+        skeleton
+            .joints()
+            .iter()
+            .zip(&frames[0])
+            .map(|(joint, at)| Joint { offset: Vec3::from_array(*at), ..joint.clone() })
+            .collect(),
+    );
+    let body = Body::of_points(&placed.unwrap());
+    let mut limbs = Vec::new();
+    body.limbs(&clip.world_pose(2), rgb(0), &mut limbs);
+    assert_eq!(limbs.len(), 3, "none in their middle");
+    for (limb, at) in limbs.iter().zip(&frames[2][1..]) {
+        assert!(limb.a == limb.b && limb.a.distance(Vec3::from_array(*at)) < 1e-5, "{limb:?}");
+        assert!((0.005..0.03).contains(&limb.radius_a), "{}", limb.radius_a);
     }
 }

@@ -81,7 +81,8 @@ impl<S: HasPart<Pairs>> Lab<S> for EditLab {
 }
 
 /// The parameters that mean something only on another body.
-const WEIGHTS: [Key; 2] = [Key::RetargetFeet, Key::RetargetHands];
+const WEIGHTS: [Key; 4] =
+    [Key::RetargetFeet, Key::RetargetHands, Key::RetargetRightFoot, Key::RetargetRightHand];
 
 /// An edit of a clip of the library that needs no panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -75,8 +75,14 @@ impl Pair {
 
 /// Returns the options of retargeting that the parameters say.
 pub(super) fn retarget_options(params: &Params) -> RetargetOptions {
-    let weight = |key| params.number(key) as f32;
-    RetargetOptions::weights(weight(Key::RetargetFeet), weight(Key::RetargetHands))
+    let both = |left: Key, right: Key| {
+        let left = params.number(left);
+        [left, params.optional(right).unwrap_or(left)].map(|weight| weight as f32)
+    };
+    RetargetOptions {
+        feet: both(Key::RetargetFeet, Key::RetargetRightFoot),
+        hands: both(Key::RetargetHands, Key::RetargetRightHand),
+    }
 }
 
 /// B on the skeleton and at the frame rate of A, and the report on retargeting if it was needed.

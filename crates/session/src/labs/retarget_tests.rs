@@ -100,6 +100,16 @@ fn retargeted_clip_is_kept_while_other_parameters_change() {
     assert!(worst_cm[0] < 0.01 && worst_cm[0] < worst_cm[1] && worst_cm[1] < worst_cm[2]);
     let directions = report(&session).errors.unwrap();
     assert_eq!(directions.feet[0].unwrap().result, directions.feet[0].unwrap().directions);
+    // The right foot may have a weight of its own.
+    let right = vec![(Key::RetargetRightFoot, Value::Number(1.0))];
+    session.apply(Command::Set(right)).unwrap();
+    settle(&mut session);
+    assert_eq!(report(&session).options, RetargetOptions { feet: [0.0, 1.0], hands: [0.0; 2] });
+    let feet = report(&session).errors.unwrap().feet.map(|foot| foot.unwrap().result.mean_cm);
+    assert!(feet[1] < 0.01 && feet[0] > 10.0 * feet[1], "{feet:?}");
+    assert!(session.query().ends_with("retarget_right_foot=1"), "{}", session.query());
+    session.apply(Command::Reset(Key::RetargetRightFoot)).unwrap();
+    settle(&mut session);
     // A link has them.
     assert!(session.query().contains("retarget_feet=0&retarget_hands=0"), "{}", session.query());
 }

@@ -30,6 +30,8 @@ macro_rules! parameters {
 
     RetargetFeet "retarget_feet" "Weight of feet" Lab(Blend), number(0.0, 1.0, 0.05), Start::Number(1.0), "", "For clips of another body: how far the feet move from where rotations alone put them to where the clip has them, at the body's scale. Higher: planted feet slide less and penetrate the ground less, and legs bend more." [NoCompare] in OF_BODIES;
     RetargetHands "retarget_hands" "Weight of hands" Lab(Blend), number(0.0, 1.0, 0.05), Start::Number(1.0), "", "For clips of another body: how far the hands move from where rotations alone put them to where the clip has them, relative to the shoulders. Higher: arms stretch as far as in the clip, and hands that touch keep touching." [NoCompare] in OF_BODIES;
+    RetargetRightFoot "retarget_right_foot" "Weight of right foot" Lab(Blend), auto(0.0, 1.0, 0.05), Start::Auto, "", "The weight of the right foot alone; the weight of feet is then that of the left foot. Auto: the same for both." [NoCompare] in OF_BODIES;
+    RetargetRightHand "retarget_right_hand" "Weight of right hand" Lab(Blend), auto(0.0, 1.0, 0.05), Start::Auto, "", "The weight of the right hand alone; the weight of hands is then that of the left hand. Auto: the same for both." [NoCompare] in OF_BODIES;
 
     Method "method" "Method" Lab(Transition), Kind::Choice(TransitionMethod::CHOICES), Start::Choice(TransitionMethod::Inertialize.word()), "", "The method of the transition from A to B.";
     HalfLife "half_life" "Half-life" Lab(Transition), logarithmic(0.02, 1.5, 0.01), Start::Number(0.2), "s", "How slowly the offset from A decays: half of it remains after 1.2 half-lives. Longer is smoother, but has more lag." in [Loop, Graph];

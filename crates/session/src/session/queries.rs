@@ -212,6 +212,11 @@ impl Session {
     /// Returns the value that Segue found for an automatic parameter.
     #[must_use]
     pub fn automatic_value(&self, key: Key) -> Option<f64> {
+        match key {
+            Key::RetargetRightFoot => return Some(self.document.params.number(Key::RetargetFeet)),
+            Key::RetargetRightHand => return Some(self.document.params.number(Key::RetargetHands)),
+            _ => {}
+        }
         let outcome = self.main_outcome()?;
         let (transition, made) = (outcome.transition, outcome.cycle.map(|cycle| cycle.made));
         match (key, made) {

@@ -258,8 +258,11 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         .skip(1)
         .any(|motion| Some(skeleton(motion)) != motions().next().map(skeleton))
     {
-        row(Key::RetargetFeet, session, out, ui);
-        row(Key::RetargetHands, session, out, ui);
+        for key in
+            [Key::RetargetFeet, Key::RetargetRightFoot, Key::RetargetHands, Key::RetargetRightHand]
+        {
+            row(key, session, out, ui);
+        }
     }
     if session.is_driven() {
         row(Key::Crowd, session, out, ui);

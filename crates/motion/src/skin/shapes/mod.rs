@@ -12,6 +12,7 @@ pub(super) use human::is_person;
 
 use crate::skeleton::{Roles, Skeleton, WorldPose};
 use glam::Vec3;
+use std::ops::Range;
 
 /// A point that moves with a joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,6 +121,13 @@ impl Shape {
         let radius = self.radius_a.max(self.radius_b);
         radius * (radius + at(self.a).distance(at(self.b)))
     }
+}
+
+/// Returns a ball of a radius, metres, at each of these joints.
+#[must_use]
+pub fn ball_shapes(joints: Range<usize>, radius: f32) -> Vec<Shape> {
+    let centre = |joint: usize| Anchor { joint, point: Vec3::ZERO };
+    joints.map(|joint| Shape::round(centre(joint), radius, centre(joint), radius)).collect()
 }
 
 /// Returns the shapes of a skeleton whose joints rest at `rest` (metres, the root at the origin):
