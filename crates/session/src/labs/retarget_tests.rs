@@ -107,7 +107,7 @@ fn retargeted_clip_is_kept_while_other_parameters_change() {
     assert_eq!(report(&session).options, RetargetOptions { feet: [0.0, 1.0], hands: [0.0; 2] });
     let feet = report(&session).errors.unwrap().feet.map(|foot| foot.unwrap().result.mean_cm);
     assert!(feet[1] < 0.01 && feet[0] > 10.0 * feet[1], "{feet:?}");
-    assert!(session.query().ends_with("retarget_right_foot=1"), "{}", session.query());
+    assert!(session.query().contains("&retarget_right_foot=1"), "{}", session.query());
     session.apply(Command::Reset(Key::RetargetRightFoot)).unwrap();
     settle(&mut session);
     // A link has them.
