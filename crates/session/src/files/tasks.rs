@@ -251,7 +251,7 @@ impl FileIntake {
     pub(crate) fn jobs(&self) -> impl Iterator<Item = Job> + '_ {
         let together = self.are_read_together();
         let files = (self.reading.values())
-            .filter(move |reading| !reading.is_small() && !(together && reading.is_new()));
+            .filter(move |reading| !(reading.is_small() || together && reading.is_new()));
         let alone = files.map(|Reading { task, done, .. }| Job {
             task: Some(task.id),
             kind: JobKind::Reading(task.name.clone()),
