@@ -171,7 +171,12 @@ impl Segue {
         let Some(result) = result else { return };
         if let (true, Ok(loaded)) = (brings_clips, &result) {
             let bytes = bytes.map(FileBytes::Large);
-            self.autosave.store_clips(&self.session, &self.large_files, &loaded.ids, bytes);
+            self.autosave.store_clips(
+                &self.session,
+                &self.large_files,
+                &loaded.ids,
+                bytes.as_ref(),
+            );
             if platform::READS_IN_BACKGROUND {
                 for (sha256, bytes) in self.session.move_bytes_outside(&loaded.ids) {
                     self.large_files.insert_as(sha256, platform::outside_memory(bytes));

@@ -115,7 +115,7 @@ pub(crate) fn place_rows_ui(keys: [Key; 2], session: &Session, out: &mut Out, ui
 
 /// Returns how the place was found, with its distance where that is known.
 fn found_sentence(session: &Session, automatic: [bool; 2]) -> Message {
-    if session.jobs().iter().any(|job| job.is_computed()) {
+    if session.jobs().iter().any(segue_session::Job::is_computed) {
         return "Finding the best match…".into();
     }
     match session.main_outcome().and_then(|outcome| outcome.transition) {

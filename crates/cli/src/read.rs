@@ -104,9 +104,11 @@ impl Reader {
     /// Reads a file whose bytes are known.
     pub(crate) fn read_bytes(&self, input: &Input, bytes: &[u8]) -> ReadReport {
         let beside = self.beside.get(folder_of(input)).into_iter().flatten();
-        let mut setup = ReadSetup::default();
-        setup.options = self.options;
-        setup.companions = self.named.iter().chain(beside).cloned().collect();
+        let setup = ReadSetup {
+            options: self.options,
+            companions: self.named.iter().chain(beside).cloned().collect(),
+            ..ReadSetup::default()
+        };
         read(&input.name, bytes, &setup, &mut |_| true).unwrap_or_default()
     }
 }

@@ -12,7 +12,7 @@ impl Autosave {
         session: &Session,
         large_files: &LargeFileStore,
         ids: &[String],
-        bytes: Option<FileBytes>,
+        bytes: Option<&FileBytes>,
     ) {
         let Some(storage) = &self.storage else { return };
         let mut clips = Vec::new();
@@ -21,7 +21,7 @@ impl Autosave {
                 continue;
             };
             let own = || large_files.bytes_of(&file.content).filter(|bytes| !bytes.is_stored());
-            let Some(bytes) = bytes.clone().or_else(own) else {
+            let Some(bytes) = bytes.cloned().or_else(own) else {
                 continue;
             };
             self.known.insert(entry.id.clone());

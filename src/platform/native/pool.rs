@@ -15,6 +15,8 @@ const MAX_KEPT_BYTES: usize = 1 << 30;
 #[derive(Debug)]
 pub(crate) struct Pool {
     inbox: Inbox,
+    /// The number of threads that it starts, at most.
+    size: usize,
     threads: Vec<Sender<Task>>,
     /// The number of jobs that each thread has.
     running: Vec<usize>,
@@ -48,6 +50,7 @@ impl Pool {
         let (sender, answers) = channel();
         Self {
             inbox: inbox.clone(),
+            size: PoolSize::for_cores(std::thread::available_parallelism().map_or(1, usize::from)),
             threads: Vec::new(),
             running: Vec::new(),
             answers,
@@ -58,7 +61,7 @@ impl Pool {
 
     /// Returns the number of threads.
     pub(crate) fn size(&self) -> usize {
-        PoolSize::for_cores(std::thread::available_parallelism().map_or(1, usize::from))
+        self.size
     }
 
     /// Returns what the threads have done.

@@ -124,10 +124,10 @@ pub(super) fn arrange(
         ClipOrder::Added => {}
         ClipOrder::Name => sort_by(&mut shown, |(.., a), (.., b)| by_name(a, b)),
         ClipOrder::Length => {
-            sort_by(&mut shown, |(_, a, _), (_, b, _)| secs(a).total_cmp(&secs(b)))
+            sort_by(&mut shown, |(_, a, _), (_, b, _)| secs(a).total_cmp(&secs(b)));
         }
         ClipOrder::Speed => {
-            sort_by(&mut shown, |(_, a, _), (_, b, _)| speed(a).total_cmp(&speed(b)))
+            sort_by(&mut shown, |(_, a, _), (_, b, _)| speed(a).total_cmp(&speed(b)));
         }
     }
     let groups = groups_of(entries);
