@@ -51,8 +51,8 @@ fn names_tell_joints_of_one_name_apart() {
     ]);
     let names: Vec<String> = (0..body.len()).map(|joint| name_of(&body, joint)).collect();
     assert_eq!(names[..6], ["Root", "Arm", "Hand", "Wing", "Wing/Hand", "A/B"]);
-    for joint in 0..7 {
-        assert_eq!(joint_named(&body, &names[joint]), Some(joint), "{}", names[joint]);
+    for (joint, name) in names[..7].iter().enumerate() {
+        assert_eq!(joint_named(&body, name), Some(joint), "{name}");
     }
     assert_eq!(joint_named(&body, &names[7]), Some(6), "nothing tells the twins apart");
     for name in ["", "hand", "Leg/Hand", "/Hand", "Root/Hand"] {

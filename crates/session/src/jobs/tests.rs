@@ -7,11 +7,12 @@ use crate::params::MAX_PANES;
 use proptest::prelude::*;
 use segue_motion::clip::ContactCorrection;
 use segue_motion::skeleton::Side;
+use std::collections::BTreeSet;
 
 /// Workers as a page has them: jobs, clips and answers are messages.
 struct Workers {
-    workers: Vec<Worker>,
-    clips: Vec<std::collections::BTreeSet<u32>>,
+    all: Vec<Worker>,
+    clips: Vec<BTreeSet<u32>>,
     /// Jobs that were run, whose answers have not been handed in.
     ended: Vec<(u64, Answer)>,
     /// The number of jobs that were run.
@@ -22,8 +23,8 @@ struct Workers {
 impl Workers {
     fn new(count: usize, seed: u64) -> Self {
         Self {
-            workers: (0..count).map(|_| Worker::new(1 << 26)).collect(),
-            clips: vec![Default::default(); count],
+            all: (0..count).map(|_| Worker::new(1 << 26)).collect(),
+            clips: vec![BTreeSet::new(); count],
             ended: Vec::new(),
             run: 0,
             state: seed,
@@ -38,22 +39,22 @@ impl Workers {
 
     /// Replaces a worker that ended.
     fn replace(&mut self, session: &mut Session, worker: usize) {
-        self.workers[worker] = Worker::new(1 << 26);
+        self.all[worker] = Worker::new(1 << 26);
         self.clips[worker].clear();
         session.forget_worker(worker);
     }
 
     /// Runs one waiting job in a worker drawn by chance; returns `false` without one.
     fn run_one(&mut self, session: &mut Session) -> bool {
-        let at = self.draw(self.workers.len());
+        let at = self.draw(self.all.len());
         for number in session.take_dropped_clips() {
-            for (worker, clips) in self.workers.iter_mut().zip(&mut self.clips) {
+            for (worker, clips) in self.all.iter_mut().zip(&mut self.clips) {
                 worker.drop_clip(number);
                 clips.remove(&number);
             }
         }
         let Some(job) = session.take_job(at) else { return false };
-        let worker = &mut self.workers[at];
+        let worker = &mut self.all[at];
         for clip in &job.clips {
             if self.clips[at].insert(clip.number) {
                 worker.take_clip(clip.number, &clip.parcel().unwrap()).unwrap();
@@ -120,7 +121,7 @@ proptest! {
         let mut alone = opened(link);
         let mut workers = Workers::new(workers, seed);
         let mut session = Session::new();
-        session.set_workers(workers.workers.len());
+        session.set_workers(workers.all.len());
         session.apply(Command::OpenLink(link.into())).unwrap();
         workers.settle(&mut session);
         prop_assert!(workers.run > 1);
@@ -152,7 +153,7 @@ proptest! {
         };
         let mut workers = Workers::new(workers, seed);
         let (mut alone, mut session) = (Session::new(), Session::new());
-        session.set_workers(workers.workers.len());
+        session.set_workers(workers.all.len());
         open(&mut alone);
         while alone.work() {}
         open(&mut session);
@@ -266,7 +267,7 @@ fn motion_in_a_parcel_stays_the_same() {
     let correction = ContactCorrection { side: Side::Left, frames: 3..9, planted: false };
     let corrected = Motion::clone(motion)
         .with_contact_corrections([correction].into_iter().collect())
-        .with_seams(vec![4..7])
+        .with_seams(std::iter::once(4..7).collect())
         .declared_cycle(true);
     let fresh = Motion::with_roles(Arc::clone(motion.clip()), motion.roles());
     for motion in [Motion::clone(motion), corrected, fresh] {
