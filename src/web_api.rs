@@ -68,8 +68,8 @@ fn to_js(value: &impl Serialize) -> Result<JsValue, JsValue> {
 
 #[wasm_bindgen]
 impl SegueHandle {
-    /// Starts the app on a canvas. `new_reader` makes the worker that reads files, `new_computer` one
-    /// of those that compute.
+    /// Starts the app on a canvas. `new_reader` makes the worker that reads files, `new_computer`
+    /// one of those that compute.
     pub async fn start(
         canvas: HtmlCanvasElement,
         new_reader: Function,

@@ -11,7 +11,9 @@ use std::path::Path;
 
 /// Sources without sentences for the screen: names for graphics tools, keywords of files and
 /// reports, and the page's API and its test programs, whose messages are English.
-const NOT_SHOWN: [&str; 15] = [
+const NOT_SHOWN: [&str; 18] = [
+    "crates/session/src/jobs/parcel.rs",
+    "crates/session/src/jobs/worker.rs",
     "crates/formats/src/fbx/write/records.rs",
     "crates/session/src/report.rs",
     "src/app/api.rs",
@@ -22,6 +24,7 @@ const NOT_SHOWN: [&str; 15] = [
     "src/main.rs",
     "src/platform/file_bytes.rs",
     "src/platform/native/reader.rs",
+    "src/platform/web/pool.rs",
     "src/web_api.rs",
     "src/render/pipelines.rs",
     "src/render/pipelines/stage.rs",

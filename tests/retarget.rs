@@ -25,8 +25,8 @@ use std::sync::Arc;
 /// The bar: skating beyond that of the source, per stance, and depth in the ground, centimetres.
 const MAX_MORE_SKATING_CM: f64 = 0.3;
 const MAX_PENETRATION_CM: f64 = 0.5;
-/// How deep the mesh of a character may be below the ground in nineteen of twenty frames, where feet
-/// roll over their heels and tips, centimetres.
+/// How deep the mesh of a character may be below the ground in nineteen of twenty frames, where
+/// feet roll over their heels and tips, centimetres.
 const MAX_SUNKEN_MESH_CM: f32 = 2.5;
 /// The frames of a take that go through files.
 const MAX_FRAMES: usize = 900;

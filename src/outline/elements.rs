@@ -66,6 +66,10 @@ impl Found<'_> {
         if (is_text || role == "group") && name.is_empty() && children.is_empty() {
             return None;
         }
+        // The frame around a window that says what it is.
+        if role == "dialog" && name.is_empty() {
+            return None;
+        }
         let range = node.numeric_value().map(|now| Range {
             now,
             min: node.min_numeric_value(),

@@ -101,7 +101,7 @@ onOneBackend("dialogs, refusals, the presenter and Chinese are elements as the p
   await elements(page);
 
   await press(page.getByRole("button", { name: /^Pose jump/ }).first());
-  await until("the explanation is open", async () => (await page.getByRole("dialog").count()) === 1);
+  await until("the explanation is open", async () => (await page.getByRole("dialog", { name: "Pose jump" }).count()) === 1);
   await sound("explanation");
   await page.keyboard.press("Escape");
   await closed("the explanation");

@@ -80,8 +80,8 @@ impl Body {
         Self { shapes, skin: None, retargeting: None, size: None, reach: 0.0 }
     }
 
-    /// Makes the body of a clip of points ([`segue_motion::clip::Clip::is_of_points`]): a ball at each of them, and
-    /// nothing between them. Markers of a person are 14 mm wide.
+    /// Makes the body of a clip of points ([`segue_motion::clip::Clip::is_of_points`]): a ball at
+    /// each of them, and nothing between them. Markers of a person are 14 mm wide.
     #[must_use]
     pub fn of_points(skeleton: &Skeleton) -> Self {
         /// The radius as a share of the distance from the middle to the farthest point.

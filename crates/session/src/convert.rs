@@ -320,8 +320,8 @@ impl Conversion {
         self.rows.push(ConversionRow { source: source.to_owned(), clip, output, odd });
     }
 
-    /// Writes the one file of all clips, if there is one and no clip is added any more. Lines of the
-    /// table say where that failed.
+    /// Writes the one file of all clips, if there is one and no clip is added any more. Lines of
+    /// the table say where that failed.
     pub fn write_one_file(&mut self) {
         let Some(together) = self.together.take().filter(|together| !together.is_empty()) else {
             return;

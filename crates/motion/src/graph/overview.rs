@@ -79,8 +79,8 @@ impl DistanceOverview {
         }
     }
 
-    /// Returns the blocks of the rows of one part, and the histogram, of an overview in which nothing
-    /// else is included.
+    /// Returns the blocks of the rows of one part, and the histogram, of an overview in which
+    /// nothing else is included.
     pub(super) fn into_row(self, part: usize) -> (Vec<f32>, Vec<u32>) {
         let blocks = self.blocks_of(part);
         (self.nearest_m.get(blocks).unwrap_or_default().to_vec(), self.counts)

@@ -195,8 +195,8 @@ impl StreamComputer {
     }
 }
 
-/// Compares two parts a ≤ b: offers their windows to the picker, and includes their distances in the
-/// overview.
+/// Compares two parts a ≤ b: offers their windows to the picker, and includes their distances in
+/// the overview.
 fn compare_parts(
     options: &GraphOptions,
     picker: &mut Picker,

@@ -7,8 +7,8 @@ use std::ops::Range;
 
 /// The number of rows after which the running sums begin anew.
 ///
-/// They begin at the fixed multiples of it, so that some rows alone, beginning with such a one, have
-/// the same bits as among all rows: they can be computed anywhere.
+/// They begin at the fixed multiples of it, so that some rows alone, beginning with such a one,
+/// have the same bits as among all rows: they can be computed anywhere.
 pub(crate) const ROWS_PER_SUM: usize = 512;
 
 impl PairTerms {

@@ -13,7 +13,8 @@ use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The comparison of some parts of a set with the parts behind them. The clips are those of the set.
+/// The comparison of some parts of a set with the parts behind them. The clips are those of the
+/// set.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct StreamTask {
     pub(crate) parts: Range<usize>,

@@ -40,8 +40,8 @@ impl Session {
         self.labs.jobs.forget_worker(worker);
     }
 
-    /// Returns the numbers of clips, since the last call, that no job needs any more: workers should
-    /// drop them.
+    /// Returns the numbers of clips, since the last call, that no job needs any more: workers
+    /// should drop them.
     pub fn take_dropped_clips(&mut self) -> Vec<u32> {
         self.labs.jobs.take_dropped_clips()
     }

@@ -18,7 +18,7 @@ fn longer(skeleton: &Skeleton) -> Arc<Skeleton> {
 
 #[test]
 fn clips_of_one_skeleton_are_animations_on_one_skin() {
-    let skeleton = fixtures::lafan();
+    let skeleton = fixtures::cmu_bvh();
     let [a, b] = [1, 2].map(|seed| wander(&skeleton, 20 + seed as usize, seed).with_name("turn"));
     let other = wander(&longer(&skeleton), 12, 3).with_name("turn 2");
     let clips = [&a, &b, &other];
@@ -60,7 +60,7 @@ fn clips_of_other_joints_are_refused_by_name() {
 
 #[test]
 fn ground_root_of_a_written_clip_is_read_back() {
-    let clip = wander(&fixtures::lafan(), 30, 4).with_ground_root();
+    let clip = wander(&fixtures::cmu_bvh(), 30, 4).with_ground_root();
     let bytes = write_glb(&clip, &GlbOptions::default()).unwrap();
     let back = crate::import("x.glb", &bytes, &ImportOptions::default()).unwrap().clips.remove(0);
     let [own, back] = [&clip, &back.clip].map(|clip| clip.unfolded().unwrap());

@@ -439,8 +439,8 @@ impl GraphScheduler {
             && self.search.is_none()
     }
 
-    /// Asks workers for the candidates, and for the distances where they are not known, or takes one
-    /// of their answers.
+    /// Asks workers for the candidates, and for the distances where they are not known, or takes
+    /// one of their answers.
     fn ask_workers(
         &mut self,
         graph_clips: &Arc<GraphClips>,

@@ -249,8 +249,8 @@ impl RegistrationScheduler {
         worked
     }
 
-    /// Returns the registration in a worker's answer; `None` where it has none, as where there is no
-    /// path.
+    /// Returns the registration in a worker's answer; `None` where it has none, as where there is
+    /// no path.
     fn taken(
         &mut self,
         wanted: &RegistrationRequest,
@@ -416,7 +416,8 @@ fn keep_map(maps: &mut Vec<Arc<DistanceMap>>, map: Arc<DistanceMap>) {
     maps.push(map);
 }
 
-/// Returns the products of the frames of A, and of B on its skeleton, none of which is computed yet.
+/// Returns the products of the frames of A, and of B on its skeleton, none of which is computed
+/// yet.
 pub(crate) fn terms_of(
     a: &Motion,
     b: &Motion,
