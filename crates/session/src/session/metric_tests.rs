@@ -217,10 +217,10 @@ fn long_results_are_shown_at_once_and_measured_in_slices() {
 #[test]
 fn metrics_of_a_clip_are_those_of_the_view_lab() {
     // The second one is long enough to be measured in slices.
-    for a in ["walk_left", "make(make_seconds:30)", "run"] {
+    for a in ["walk_left", "walk(make_seconds:30)", "run"] {
         let session = opened_without_problems(&format!("lab=view&a={a}"));
         let motion = session.library().find(a).and_then(|entry| entry.motion.clone()).unwrap();
-        assert_eq!(motion.clip().frames() > 1_200, a.starts_with("make"), "{a}");
+        assert_eq!(motion.clip().frames() > 1_200, a.contains("30"), "{a}");
         let shown = &session.panes()[0].result().unwrap().outcome.metrics;
         assert_eq!(&crate::metrics_of_clip(&motion), shown, "{a}");
         assert!(shown.len() > 5, "{shown:?}");
