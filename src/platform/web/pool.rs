@@ -415,14 +415,15 @@ fn new_worker(state: &Rc<RefCell<State>>, at: usize) -> Result<Worker, JsValue> 
             if !state.borrow().slots.get(at).is_some_and(is_present) {
                 return;
             }
-            match event.dyn_ref::<MessageEvent>().filter(|event| event.type_() == "message") {
-                Some(event) => state.borrow_mut().on_message(at, &event.data()),
-                None => {
-                    event.prevent_default();
-                    let message = Reflect::get(&event, &"message".into()).ok();
-                    let message = message.and_then(|text| text.as_string()).unwrap_or_default();
-                    state.borrow_mut().replace(at, &message);
-                }
+            if let Some(event) =
+                event.dyn_ref::<MessageEvent>().filter(|event| event.type_() == "message")
+            {
+                state.borrow_mut().on_message(at, &event.data());
+            } else {
+                event.prevent_default();
+                let message = Reflect::get(&event, &"message".into()).ok();
+                let message = message.and_then(|text| text.as_string()).unwrap_or_default();
+                state.borrow_mut().replace(at, &message);
             }
             state.borrow().inbox.wake();
             LISTENER.with(|listener| {
