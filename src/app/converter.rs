@@ -437,9 +437,9 @@ mod tests {
         let (alone, both): (Vec<String>, Vec<String>) = (told(&alone), told(&both));
         let says = |told: &[String]| told.iter().any(|line| line.contains("SMPLH_FEMALE.npz"));
         assert!(!says(&alone) && says(&both), "{alone:?} {both:?}");
-        // A model alone is a clip of one pose.
+        // A model alone has nothing to convert.
         let (_, model) = run(&[("SMPLH_FEMALE.npz", MODEL)]);
-        assert!(model[0].output.is_ok());
+        assert_eq!(model[0].output, Err("it has no frames".into()));
     }
 
     #[test]
