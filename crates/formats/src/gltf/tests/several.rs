@@ -1,7 +1,6 @@
 //! Tests of several clips in one file.
 
 use super::*;
-use segue_motion::clip::fixtures::largest_distance;
 use segue_motion::skeleton::{Joint, Roles, Skeleton};
 use segue_motion::skin::SkinnedMesh;
 
@@ -14,6 +13,20 @@ fn longer(skeleton: &Skeleton) -> Arc<Skeleton> {
         ..joint.clone()
     });
     Arc::new(Skeleton::new(joints.collect()).unwrap())
+}
+
+/// Returns the largest distance between the joints of one name in two clips, metres: nodes are read
+/// depth first.
+fn largest_distance(own: &Clip, back: &Clip) -> f32 {
+    let joints = own.skeleton().joints().iter();
+    let places: Vec<usize> =
+        joints.map(|joint| back.skeleton().find(&joint.name).unwrap()).collect();
+    let distances = (0..own.frames()).flat_map(|frame| {
+        let (own, back) = (own.world_pose(frame), back.world_pose(frame));
+        let pairs = own.positions.iter().zip(&places);
+        pairs.map(|(own, &place)| own.distance(back.positions[place])).collect::<Vec<_>>()
+    });
+    distances.fold(0.0, f32::max)
 }
 
 #[test]
