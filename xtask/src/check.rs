@@ -93,7 +93,7 @@ fn lint(report: &mut Report) {
             let target = "--target=wasm32-unknown-unknown";
             shell::run(&mut clippy(&[&[target, "--bin=segue-app"], what].concat()))
         };
-        web(&["--bin=reader"])?;
+        web(&["--bin=reader", "--bin=compute"])?;
         web(&["--no-default-features", "--features=app"])
     });
 }
