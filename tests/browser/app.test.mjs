@@ -113,7 +113,7 @@ onOneBackend("several files in one drop arrive in order", async ({ open }) => {
   assert.match(b, /^two~/);
 });
 
-onOneBackend("address follows the state and restores it", async ({ open }) => {
+onBackend("webgl2", "address follows the state and restores it", async ({ open }) => {
   const opened = await open("blend_window=24&play=off&backend=webgl2");
   const { page, segue } = opened;
   await segue("set", { blend_window: 48 });
