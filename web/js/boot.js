@@ -126,7 +126,8 @@ function newComputer(maxBytes) {
  * and the browser has no device for it.
  */
 async function chosenModule() {
-  const { module, withWebgl2 } = window.segueDownload;
+  const { module: first, withWebgl2 } = window.segueDownload;
+  const module = await first;
   if (module.hasWebgl2 || isAsked("webgpu") || (await hasWebgpu())) return module;
   module.stop();
   return withWebgl2();

@@ -13,9 +13,9 @@ document.documentElement.lang = ((asked) => {
   return chinese(known) ? "zh-Hant" : "en";
 })(new URLSearchParams(location.search).get("lang"));
 
-// The app comes as one or two modules: with WebGL 2 and, a fifth smaller, with WebGPU alone. boot.js
-// takes the module that is downloaded here, or, if WebGPU turns out not to work, stops that and
-// takes `withWebgl2()`.
+// The app comes as one or two modules: with WebGL 2 and, a fifth smaller, with WebGPU alone. An
+// adapter is found in less time than it takes to download the wrong one. boot.js takes the module
+// that is downloaded here, or, if the adapter has no device, stops that and takes `withWebgl2()`.
 window.segueDownload = (({ js, wasm, webgpuJs, webgpuWasm }) => {
   const begin = (js, wasm, hasWebgl2) => {
     const abort = new AbortController();
@@ -25,6 +25,12 @@ window.segueDownload = (({ js, wasm, webgpuJs, webgpuWasm }) => {
     return { js, wasm, hasWebgl2, response, stop: () => abort.abort() };
   };
   const withWebgl2 = () => begin(js, wasm, true);
-  const needsWebgl2 = !navigator.gpu || ["webgl2", "fallback"].includes(new URLSearchParams(location.search).get("backend"));
-  return { module: webgpuWasm && !needsWebgl2 ? begin(webgpuJs, webgpuWasm, false) : withWebgl2(), withWebgl2 };
+  const withWebgpu = () => begin(webgpuJs, webgpuWasm, false);
+  const asked = new URLSearchParams(location.search).get("backend");
+  const choose = async () => {
+    if (!webgpuWasm || !navigator.gpu || ["webgl2", "fallback"].includes(asked)) return withWebgl2();
+    if (asked === "webgpu") return withWebgpu();
+    return (await navigator.gpu.requestAdapter().catch(() => null)) ? withWebgpu() : withWebgl2();
+  };
+  return { module: choose(), withWebgl2 };
 })(document.currentScript.dataset);
