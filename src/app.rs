@@ -257,7 +257,7 @@ impl Segue {
     fn receive_all(&mut self) {
         let began_ms = platform::now_ms();
         while let Some(incoming) = self.inbox.pop() {
-            // What follows from several files is computed once.
+            // The consequences of several files are computed once.
             let is_of_file = matches!(incoming, Incoming::Reading { .. } | Incoming::Large { .. });
             if is_of_file {
                 self.session.hold();

@@ -85,7 +85,7 @@ impl Converter {
                 current.done = done;
                 return;
             }
-            // What is converted is not stored.
+            // Converted files are not stored.
             ReadEvent::Bytes(_) => return,
             ReadEvent::NoRoom(_) => Err("there is no room for the file".into()),
             ReadEvent::Done(report) => report.map_err(|error| error.to_message()),

@@ -5,7 +5,7 @@ use serde::Serialize;
 /// The greatest number of workers.
 const MAX_WORKERS: usize = 8;
 
-/// What the pool has done so far.
+/// The counts of a pool.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub(crate) struct PoolStats {
     /// The number of workers that are running.

@@ -51,7 +51,7 @@ pub(crate) struct Driven {
     pub(crate) ids: Vec<String>,
     /// Values that hold whatever clip is shown.
     values: Vec<(Key, Value)>,
-    /// What the session could not do as it was asked, a sentence each.
+    /// The session's refusals and corrections of the options, one sentence each.
     pub(crate) notes: Vec<String>,
 }
 

@@ -33,7 +33,7 @@ pub(crate) struct Made {
     ending: &'static str,
     /// The file that was written.
     written: Option<Result<PathBuf, String>>,
-    /// What could not be done as it was asked.
+    /// The refusals and corrections of the options, one sentence each.
     notes: Vec<String>,
     /// The exit code of a run that gave nothing.
     failed: Option<Status>,

@@ -212,7 +212,7 @@ pub struct Conversion {
     one_file: Option<Vec<u8>>,
 }
 
-/// What a conversion leaves to be saved.
+/// The file that a conversion has made.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ConvertedFile {
     /// Its name.

@@ -86,7 +86,7 @@ pub struct SavedEntry {
     pub known: Option<KnownClip>,
 }
 
-/// What is known of a clip of a file without reading it.
+/// The facts about a clip of a file that is not read.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KnownClip {
     /// The facts of its motion.

@@ -25,7 +25,7 @@ pub(crate) struct Pool {
     jobs: u64,
 }
 
-/// What a thread is given.
+/// A message to a thread.
 #[derive(Debug)]
 enum Task {
     Run(Job),

@@ -9,7 +9,7 @@ use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// What the order of the list depends on.
+/// Everything that the order of the list depends on.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct ArrangedFor {
     /// The session's revision.

@@ -3,7 +3,7 @@
 use segue_motion::clean::FaultKind;
 use segue_session::metrics::{MetricId, Unit};
 
-/// What a check looks at.
+/// The source of a check's values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Source {
     /// A metric of the View lab; above the limit it is a finding.
@@ -19,7 +19,7 @@ pub(super) enum Source {
 pub(super) struct Check {
     /// The word on the command line and in reports.
     pub(super) word: &'static str,
-    /// What it looks at.
+    /// The source of its values.
     pub(super) source: Source,
     /// The value above which it is a finding, in the unit of the source.
     pub(super) limit: f64,

@@ -1,4 +1,4 @@
-//! What the checks find in a file.
+//! The findings of the checks in a file.
 
 use super::checks::{Rule, Source, unit_of};
 use crate::info::{error_text, rounded};

@@ -283,7 +283,7 @@ fn files_of_many_rigs_become_animations_of_one_file() {
             assert!((own.clip.duration_secs() - secs).abs() < 1e-3, "{}", row.source);
             assert_eq!(own.clip.skeleton().len(), walk.clip().skeleton().len());
         }
-        // What was on this body already is as it was.
+        // A clip that has this body already is unchanged.
         let (own, back) = (walk.clip(), &back.last().unwrap().clip);
         for frame in (0..own.frames()).step_by(9) {
             let [own, back] = [own, back].map(|clip| clip.world_pose(frame).positions);

@@ -47,7 +47,7 @@ pub(crate) struct Ticket<T> {
     kind: PhantomData<fn() -> T>,
 }
 
-/// What has become of a job.
+/// The state of a job.
 #[derive(Debug)]
 pub(crate) enum Taken<A> {
     /// It waits or runs.

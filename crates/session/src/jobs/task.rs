@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 /// A kind of job: what it needs besides its clips.
 pub(crate) trait Task: Kind<Output = Self::Answer> + Into<AnyTask> {
-    /// What it computes.
+    /// The result of the task.
     type Answer;
 
     /// Computes the answer, a pure function of the task and the clips. The memory may save work,
@@ -32,7 +32,7 @@ pub(crate) trait Task: Kind<Output = Self::Answer> + Into<AnyTask> {
 
 /// The place of a task in the table of kinds.
 pub(crate) trait Kind: Sized {
-    /// What it computes.
+    /// The result of the task.
     type Output;
 
     /// Returns the answer, if it is of this kind.

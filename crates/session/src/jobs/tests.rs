@@ -274,7 +274,7 @@ fn motion_in_a_parcel_stays_the_same() {
         let clip = JobClip { number: 1, motion: Arc::new(motion.clone()) };
         let parcel = clip.parcel().unwrap();
         assert!(motion_parcel::unpack(&parcel).unwrap() == motion);
-        // What is torn is refused.
+        // A message that is cut off is refused.
         let torn = Parcel { floats: parcel.floats[1..].to_vec(), ..parcel.clone() };
         assert!(motion_parcel::unpack(&torn).is_err());
         let torn = Parcel { head: parcel.head[1..].to_owned(), ..parcel };

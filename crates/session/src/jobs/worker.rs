@@ -30,7 +30,7 @@ pub enum JobError {
     NoResult,
 }
 
-/// What a worker keeps between jobs to save work.
+/// The intermediate results that a worker keeps between jobs.
 #[derive(Debug)]
 pub(crate) struct WorkerMemory {
     /// The limit for each of the two, bytes.

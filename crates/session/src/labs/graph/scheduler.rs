@@ -103,7 +103,7 @@ fn serves(known: &GraphOptions, options: &GraphOptions) -> bool {
     alike == *known && options.edge_threshold_cm <= known.edge_threshold_cm
 }
 
-/// What became of a slice.
+/// The outcome of a slice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Progressed {
     /// There may be more to do.
@@ -112,7 +112,7 @@ enum Progressed {
     Waits,
 }
 
-/// What became of a slice of a search for candidates.
+/// The outcome of a slice of a search for candidates.
 #[derive(Debug)]
 enum Searched {
     Found(Arc<Candidates>),

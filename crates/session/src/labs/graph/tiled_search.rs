@@ -25,7 +25,7 @@ pub(super) struct TiledSearch {
     candidates: Vec<TileCandidates>,
 }
 
-/// What has become of the jobs.
+/// The state of the jobs of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum TiledStep {
     /// No job has ended meanwhile.

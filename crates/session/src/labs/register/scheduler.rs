@@ -208,7 +208,7 @@ impl RegistrationScheduler {
     /// Asks workers for what is requested, and takes one answer. Returns `false` if there was
     /// nothing to do.
     fn ask_workers(&mut self, jobs: &mut JobBoard) -> bool {
-        // What is not requested any more is cancelled.
+        // Jobs that are no longer requested are cancelled.
         let wanted = &self.wanted;
         self.offered.retain(|(asked, _)| wanted.contains(asked));
         let mut worked = false;
