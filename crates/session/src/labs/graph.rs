@@ -5,6 +5,7 @@ use super::lab::{Beside, HasPart, Inputs, Lab, LabClips, LabInputs};
 use crate::labs::LabError;
 use crate::params::{Key, Params, Value};
 mod built_graph;
+mod candidate_finder;
 mod graph_clips;
 mod plan;
 mod requests;

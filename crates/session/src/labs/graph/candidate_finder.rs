@@ -1,0 +1,372 @@
+//! The candidates for transitions of a set of clips, and the distances that they are found in.
+
+use super::streamed_search::StreamedSearch;
+use super::tiled_search::{TiledSearch, TiledStep};
+use super::{DistanceField, GraphClips};
+use crate::jobs::JobBoard;
+use crate::params::MAX_PANES;
+use segue_motion::graph::{
+    AllPairs, CandidateSearch, CandidateStream, Candidates, CountedTo, GraphError, GraphOptions,
+    PausedAllSweep,
+};
+use segue_motion::registration::Progress;
+use std::sync::Arc;
+
+/// The number of pairs of frames in one slice, about a millisecond for 31 joints.
+const PAIRS: usize = 100_000;
+/// The number of cells of the matrix in one slice.
+const CELLS: usize = 250_000;
+/// The number of pairs of frames from which on workers compute them; fewer take less time than a
+/// worker takes to begin.
+const MIN_WORKER_PAIRS: usize = 400_000;
+/// Above this number of frames the distance matrix (300 MB) is not kept in memory.
+const MAX_FRAMES: usize = 6_000;
+/// The number of cells of all distance fields that are kept: 160 MB.
+const MAX_CELLS: usize = 40_000_000;
+/// The number of candidates that are kept for other thresholds: 50 MB.
+const MAX_CANDIDATES: usize = 800_000;
+
+/// Finds candidates in slices, or by workers, and caches what a change of the options does not
+/// affect: products of frames for a new window, candidates for a new threshold.
+#[derive(Debug, Default)]
+pub(super) struct CandidateFinder {
+    all: Option<AllPairs>,
+    sweep: Option<PausedAllSweep>,
+    /// A distance field that is being counted, and the progress.
+    counting: Option<(DistanceField, CountedTo)>,
+    /// One field for each window that was requested last.
+    fields: Vec<Arc<DistanceField>>,
+    /// The search in progress, with the options whose threshold it covers.
+    search: Option<(GraphOptions, Search)>,
+    /// The search in progress by workers.
+    by_workers: Option<WorkerSearch>,
+    /// Whether workers gave no answer, so that everything is computed in slices.
+    in_line: bool,
+    /// The last candidates, with their options.
+    found: Vec<(GraphOptions, Arc<Candidates>)>,
+}
+
+/// The outcome of a slice of the search for candidates.
+#[derive(Debug)]
+pub(super) enum Searched {
+    /// The candidates.
+    Found(Arc<Candidates>),
+    /// There is more to do; workers took that long for the answer that has arrived, seconds.
+    Worked { worker_secs: f64 },
+    /// Workers compute everything that is left.
+    Waits,
+}
+
+/// The stages of a search in slices.
+#[derive(Debug)]
+enum Search {
+    Held(Box<CandidateSearch>),
+    Streamed(Box<CandidateStream>),
+}
+
+/// A search by workers.
+#[derive(Debug)]
+enum WorkerSearch {
+    Tiled(Box<TiledSearch>),
+    Streamed(Box<StreamedSearch>),
+}
+
+impl WorkerSearch {
+    fn options(&self) -> &GraphOptions {
+        match self {
+            Self::Tiled(search) => search.options(),
+            Self::Streamed(search) => search.options(),
+        }
+    }
+
+    fn progress(&self) -> f64 {
+        match self {
+            Self::Tiled(search) => search.progress(),
+            Self::Streamed(search) => search.progress(),
+        }
+    }
+
+    fn advance(&mut self, jobs: &mut JobBoard) -> Result<TiledStep, GraphError> {
+        match self {
+            Self::Tiled(search) => Ok(search.advance(jobs)),
+            Self::Streamed(search) => search.advance(jobs),
+        }
+    }
+
+    /// Returns the distances, if they were asked for, and the candidates. All jobs have ended.
+    fn finish(
+        self,
+        graph_clips: &GraphClips,
+    ) -> Result<(Option<DistanceField>, Candidates), GraphError> {
+        match self {
+            Self::Tiled(search) => Ok(search.finish(graph_clips.set())),
+            Self::Streamed(search) => {
+                let (found, overview) = search.finish()?;
+                Ok((Some(DistanceField::overview(overview)), found))
+            }
+        }
+    }
+}
+
+/// Returns search options with the threshold raised above the requested one, so that moderate
+/// increases need no new search. Candidates above the requested threshold are filtered when the
+/// graph is built; at most as many as can be kept are found.
+fn widened(options: &GraphOptions) -> GraphOptions {
+    let most = GraphOptions::MAX_THRESHOLD_CM.max(options.edge_threshold_cm);
+    GraphOptions {
+        edge_threshold_cm: (1.5 * options.edge_threshold_cm + 4.0).min(most),
+        ..*options
+    }
+}
+
+/// Returns whether the candidates for some options serve others.
+fn serves(known: &GraphOptions, options: &GraphOptions) -> bool {
+    let alike = GraphOptions {
+        edge_threshold_cm: known.edge_threshold_cm,
+        most_ways_out: known.most_ways_out,
+        ..*options
+    };
+    alike == *known && options.edge_threshold_cm <= known.edge_threshold_cm
+}
+
+/// Returns whether the distances of clips are not kept in memory.
+fn is_streamed(graph_clips: &GraphClips) -> bool {
+    graph_clips.set().frames() > MAX_FRAMES
+}
+
+impl CandidateFinder {
+    /// Returns the distances of the windows that were requested last.
+    pub(super) fn fields(&self) -> &[Arc<DistanceField>] {
+        &self.fields
+    }
+
+    /// Cancels the jobs of workers.
+    pub(super) fn cancel_jobs(&mut self) {
+        self.by_workers = None;
+    }
+
+    /// Does a slice of the search for the candidates of a graph. The clips are those of all calls.
+    ///
+    /// # Errors
+    /// [`GraphError`] with the reason why they cannot be found.
+    pub(super) fn advance(
+        &mut self,
+        graph_clips: &GraphClips,
+        options: &GraphOptions,
+        jobs: &mut JobBoard,
+    ) -> Result<Searched, GraphError> {
+        if let Some(found) = self.known(options) {
+            return Ok(Searched::Found(Arc::clone(found)));
+        }
+        if self.is_for_workers(graph_clips, jobs) {
+            return self.take_answer(graph_clips, options, jobs);
+        }
+        let found = self.advance_in_line(graph_clips, options)?;
+        Ok(found.map_or(Searched::Worked { worker_secs: 0.0 }, Searched::Found))
+    }
+
+    /// Returns the progress of the search for the candidates of a graph, 0 to 1.
+    pub(super) fn progress(&self, graph_clips: &GraphClips, options: &GraphOptions) -> f64 {
+        /// The shares of the time that comparing, sweeping and searching take.
+        const SHARES: [f64; 3] = [0.53, 0.33, 0.14];
+        let share = |progress: Progress| progress.done as f64 / progress.total.max(1) as f64;
+        if self.known(options).is_some() {
+            return 1.0;
+        }
+        if let Some(search) = &self.by_workers {
+            return search.progress();
+        }
+        let search = self.search.as_ref().filter(|(known, _)| serves(known, options));
+        let searched = match search {
+            Some((_, Search::Streamed(stream))) => return share(stream.progress()),
+            // The distances are computed by the search for candidates, not before.
+            _ if is_streamed(graph_clips) => return 0.0,
+            Some((_, Search::Held(search))) => share(search.progress()),
+            None => 0.0,
+        };
+        let pairs = self.all.as_ref().map_or(0.0, |all| share(all.progress()));
+        let window = options.blend_window;
+        let swept = match (&self.sweep, &self.all) {
+            _ if self.counting.is_some() || self.has_field(window) => 1.0,
+            (Some(sweep), Some(all)) if sweep.window() == window => share(sweep.progress(all)),
+            _ => 0.0,
+        };
+        SHARES[0] * pairs + SHARES[1] * swept + SHARES[2] * searched
+    }
+
+    /// Returns whether workers compute the distances.
+    fn is_for_workers(&self, graph_clips: &GraphClips, jobs: &JobBoard) -> bool {
+        let frames = graph_clips.set().frames();
+        frames * (frames + 1) / 2 >= MIN_WORKER_PAIRS
+            && jobs.has_workers()
+            && !self.in_line
+            && self.all.is_none()
+            && self.search.is_none()
+    }
+
+    /// Asks workers for the candidates, and for the distances where they are not known, or takes
+    /// one of their answers.
+    fn take_answer(
+        &mut self,
+        graph_clips: &GraphClips,
+        options: &GraphOptions,
+        jobs: &mut JobBoard,
+    ) -> Result<Searched, GraphError> {
+        let under_way = self.by_workers.take().filter(|known| serves(known.options(), options));
+        let mut search = match under_way {
+            Some(search) => search,
+            None => self.begin_by_workers(graph_clips, widened(options), jobs)?,
+        };
+        match search.advance(jobs)? {
+            TiledStep::Waits => {
+                self.by_workers = Some(search);
+                Ok(Searched::Waits)
+            }
+            TiledStep::Took(worker_secs) => {
+                self.by_workers = Some(search);
+                Ok(Searched::Worked { worker_secs })
+            }
+            TiledStep::Complete => {
+                let options = *search.options();
+                let (field, found) = search.finish(graph_clips)?;
+                self.keep_field(field);
+                Ok(Searched::Found(self.keep_found(options, found)))
+            }
+            TiledStep::Failed => {
+                self.in_line = true;
+                Ok(Searched::Worked { worker_secs: 0.0 })
+            }
+        }
+    }
+
+    fn begin_by_workers(
+        &self,
+        graph_clips: &GraphClips,
+        options: GraphOptions,
+        jobs: &mut JobBoard,
+    ) -> Result<WorkerSearch, GraphError> {
+        Ok(if is_streamed(graph_clips) {
+            let search = StreamedSearch::begin(graph_clips, options, jobs)?;
+            WorkerSearch::Streamed(Box::new(search))
+        } else {
+            let wants_field = !self.has_field(options.blend_window);
+            let search = TiledSearch::begin(graph_clips, options, wants_field, jobs);
+            WorkerSearch::Tiled(Box::new(search))
+        })
+    }
+
+    /// Does a slice of the search without workers.
+    fn advance_in_line(
+        &mut self,
+        graph_clips: &GraphClips,
+        options: &GraphOptions,
+    ) -> Result<Option<Arc<Candidates>>, GraphError> {
+        if is_streamed(graph_clips) {
+            let (widened, mut stream) = match self.search.take() {
+                Some((known, Search::Streamed(stream))) if serves(&known, options) => {
+                    (known, stream)
+                }
+                _ => {
+                    let options = widened(options);
+                    (options, Box::new(CandidateStream::new(graph_clips.set(), &options)?))
+                }
+            };
+            if stream.advance(1)?.is_complete() {
+                let (found, overview) = stream.finish()?;
+                self.keep_field(Some(DistanceField::overview(overview)));
+                return Ok(Some(self.keep_found(widened, found)));
+            }
+            self.search = Some((widened, Search::Streamed(stream)));
+            return Ok(None);
+        }
+        let Some(all) = &mut self.all else {
+            self.all = Some(AllPairs::new(Arc::clone(graph_clips.set()))?);
+            return Ok(None);
+        };
+        if !all.progress().is_complete() {
+            all.advance(PAIRS)?;
+            return Ok(None);
+        }
+        let window = options.blend_window;
+        let of_window = self.fields.iter().filter(|field| field.window() == window);
+        let Some(distances) = of_window.clone().find_map(|field| field.all()) else {
+            if let Some((mut field, mut at)) =
+                self.counting.take().filter(|(field, _)| field.window() == window)
+            {
+                if field.count(&mut at, CELLS) {
+                    self.keep_field(Some(field));
+                } else {
+                    self.counting = Some((field, at));
+                }
+                return Ok(None);
+            }
+            let mut sweep = match self.sweep.take().filter(|sweep| sweep.window() == window) {
+                Some(sweep) => sweep.resume(all),
+                None => all.sweep(window)?,
+            };
+            if sweep.advance(CELLS.div_ceil(graph_clips.set().longest().max(1)))?.is_complete() {
+                self.counting = Some((DistanceField::held(sweep.finish()?), CountedTo::default()));
+            } else {
+                self.sweep = Some(sweep.pause());
+            }
+            return Ok(None);
+        };
+        let (widened, mut search) = match self.search.take() {
+            Some((known, Search::Held(search))) if serves(&known, options) => (known, search),
+            _ => {
+                let options = widened(options);
+                (options, Box::new(CandidateSearch::new(distances, &options)?))
+            }
+        };
+        // Sorting the candidates takes a slice of its own.
+        if search.progress().is_complete() {
+            return Ok(Some(self.keep_found(widened, search.finish())));
+        }
+        search.advance(all, distances, CELLS)?;
+        self.search = Some((widened, Search::Held(search)));
+        Ok(None)
+    }
+
+    /// Returns known candidates that serve a graph, if the distances that are shown with it are
+    /// also known.
+    fn known(&self, options: &GraphOptions) -> Option<&Arc<Candidates>> {
+        let is_shown = self.has_field(options.blend_window);
+        let mut known = self.found.iter().filter(|(known, _)| is_shown && serves(known, options));
+        known.next().map(|(_, found)| found)
+    }
+
+    fn has_field(&self, window: usize) -> bool {
+        self.fields.iter().any(|field| field.window() == window)
+    }
+
+    fn keep_found(&mut self, options: GraphOptions, found: Candidates) -> Arc<Candidates> {
+        let found = Arc::new(found);
+        // A search with a higher threshold serves all uses of a lower one.
+        self.found.retain(|(known, _)| !serves(&options, known));
+        self.found.push((options, Arc::clone(&found)));
+        let count = |found: &[(GraphOptions, Arc<Candidates>)]| {
+            found.iter().map(|(_, found)| found.found().len()).sum::<usize>()
+        };
+        while self.found.len() > 1
+            && (self.found.len() > MAX_PANES || count(&self.found) > MAX_CANDIDATES)
+        {
+            self.found.remove(0);
+        }
+        found
+    }
+
+    /// Keeps distances, where those of their window are not known: they are the same for every
+    /// threshold, so that drawings of the known ones stay valid.
+    fn keep_field(&mut self, field: Option<DistanceField>) {
+        let Some(field) = field.filter(|field| !self.has_field(field.window())) else {
+            return;
+        };
+        self.fields.push(Arc::new(field));
+        while self.fields.len() > MAX_PANES
+            || (self.fields.len() > 1
+                && self.fields.iter().map(|field| field.cells()).sum::<usize>() > MAX_CELLS)
+        {
+            self.fields.remove(0);
+        }
+    }
+}
