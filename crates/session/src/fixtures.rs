@@ -17,41 +17,9 @@ pub(crate) use segue_motion::clip::Motion;
 pub(crate) use std::sync::Arc;
 
 /// A skeleton with two bones.
-pub(crate) const ASF: &str = "\
-:version 1.10
-:name toy
-:units
-  length 1.0
-  angle deg
-:root
-  order TX TY TZ RX RY RZ
-  axis XYZ
-  position 0 0 0
-  orientation 0 0 0
-:bonedata
-  begin
-    id 1
-    name thigh
-    direction 0 -1 0
-    length 85
-    axis 0 0 0 XYZ
-    dof rx
-  end
-  begin
-    id 2
-    name spine
-    direction 0 1 0
-    length 80
-    axis 0 0 0 XYZ
-    dof rx
-  end
-:hierarchy
-  begin
-    root thigh spine
-  end
-";
+pub(crate) const ASF: &str = include_str!("fixtures/toy.asf");
 /// A motion of [`ASF`] with two frames.
-pub(crate) const AMC: &str = ":FULLY-SPECIFIED\n:DEGREES\n1\nroot 0 85 0 0 0 0\nthigh 10\nspine 1\n2\nroot 0 85 1 0 0 0\nthigh 20\nspine 2\n";
+pub(crate) const AMC: &str = include_str!("fixtures/toy.amc");
 
 /// Does all remaining work.
 pub(crate) fn settle(session: &mut Session) {

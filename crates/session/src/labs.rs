@@ -23,6 +23,7 @@ mod recipe;
 mod register;
 mod remedy;
 mod repetition;
+mod request_cache;
 pub(super) mod sliced;
 mod speed;
 mod transition;

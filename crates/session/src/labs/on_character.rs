@@ -1,6 +1,7 @@
 //! Results on the skeleton of the character on the stage.
 
 use super::pair::FRAMES_PER_SLICE;
+use super::request_cache::RequestCache;
 use super::sliced::{JobKind, Sliced};
 use crate::jobs::JobBoard;
 use segue_motion::clip::{Clip, Motion};
@@ -93,24 +94,8 @@ impl Fitting {
 #[derive(Debug, Default)]
 pub(crate) struct CharacterMotions {
     character: Option<Character>,
-    known: Vec<Known>,
-    under_way: Vec<Pending>,
-    /// Whether a motion is finished that was not there when it was asked for.
-    is_ready: bool,
-}
-
-#[derive(Debug)]
-struct Known {
-    is_wanted: bool,
-    of: Arc<Motion>,
-    /// `None` where the motion cannot move the character.
-    made: Option<Arc<CharacterMotion>>,
-}
-
-#[derive(Debug)]
-struct Pending {
-    is_wanted: bool,
-    fitting: Fitting,
+    /// `None` for motions that cannot move the character.
+    cache: RequestCache<Arc<Motion>, Fitting, Option<Arc<CharacterMotion>>>,
 }
 
 impl CharacterMotions {
@@ -133,13 +118,8 @@ impl CharacterMotions {
     /// in slices if `is_final`, and not at all while the motion itself will soon be another one.
     pub(crate) fn request(&mut self, motion: &Arc<Motion>, is_final: bool) {
         let Some(character) = &self.character else { return };
-        if let Some(known) = self.known.iter_mut().find(|known| Arc::ptr_eq(&known.of, motion)) {
-            known.is_wanted = true;
-            return;
-        }
-        let is_it = |pending: &&mut Pending| Arc::ptr_eq(&pending.fitting.motion, motion);
-        if let Some(pending) = self.under_way.iter_mut().find(is_it) {
-            pending.is_wanted = true;
+        let is_it = |of: &Arc<Motion>| Arc::ptr_eq(of, motion);
+        if self.cache.request(|of, _| is_it(of)).is_some() || self.cache.is_under_way(is_it) {
             return;
         }
         if !is_final {
@@ -148,63 +128,38 @@ impl CharacterMotions {
         if motion.clip().frames() > AT_ONCE
             && let Some(fitting) = Fitting::new(motion, character)
         {
-            self.under_way.push(Pending { is_wanted: true, fitting });
+            self.cache.begin(Arc::clone(motion), fitting);
             return;
         }
-        let made = CharacterMotion::new(motion, character);
-        self.keep(Arc::clone(motion), made);
+        let made = CharacterMotion::new(motion, character).map(Arc::new);
+        self.cache.keep(Arc::clone(motion), made);
     }
 
     /// Returns a motion on the character; `None` while it is computed, and where the motion cannot
     /// move it.
     pub(crate) fn of(&self, motion: &Motion) -> Option<&Arc<CharacterMotion>> {
-        let is_it = |known: &&Known| std::ptr::eq(&raw const *known.of, motion);
-        self.known.iter().find(is_it)?.made.as_ref()
-    }
-
-    fn keep(&mut self, of: Arc<Motion>, made: Option<CharacterMotion>) {
-        self.known.push(Known { is_wanted: true, of, made: made.map(Arc::new) });
+        self.cache.known(|of| std::ptr::eq(&raw const **of, motion))?.as_ref()
     }
 }
 
 impl Sliced for CharacterMotions {
     fn clear_requests(&mut self) {
-        self.is_ready = false;
-        self.known.retain(|known| known.is_wanted);
-        for known in &mut self.known {
-            known.is_wanted = false;
-        }
-        for pending in &mut self.under_way {
-            pending.is_wanted = false;
-        }
+        self.cache.clear_requests();
     }
 
     fn work(&mut self, _jobs: &mut JobBoard) -> bool {
-        self.under_way.retain(|pending| pending.is_wanted);
         let Some(character) = &self.character else { return false };
-        if self.under_way.is_empty() {
-            return false;
-        }
-        let Pending { is_wanted, fitting } = self.under_way.remove(0);
-        let of = Arc::clone(&fitting.motion);
-        match fitting.advance(FRAMES_PER_SLICE, character) {
-            ControlFlow::Continue(fitting) => {
-                self.under_way.insert(0, Pending { is_wanted, fitting });
-            }
-            ControlFlow::Break(made) => {
-                self.keep(of, made);
-                self.is_ready = true;
-            }
-        }
-        true
+        self.cache.work(|_, fitting| match fitting.advance(FRAMES_PER_SLICE, character) {
+            ControlFlow::Continue(fitting) => ControlFlow::Continue(fitting),
+            ControlFlow::Break(made) => ControlFlow::Break(made.map(Arc::new)),
+        })
     }
 
     fn is_ready(&self) -> bool {
-        self.is_ready
+        self.cache.is_ready()
     }
 
     fn progress(&self) -> Option<(JobKind, f64)> {
-        let pending = self.under_way.first()?;
-        Some((JobKind::Retargeting, f64::from(pending.fitting.work.progress())))
+        Some((JobKind::Retargeting, f64::from(self.cache.next()?.work.progress())))
     }
 }

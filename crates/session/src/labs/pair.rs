@@ -1,6 +1,7 @@
 //! Two clips on one skeleton and at one frame rate.
 
 use super::RetargetReport;
+use super::request_cache::RequestCache;
 use super::sliced::{JobKind, Sliced};
 use crate::jobs::JobBoard;
 use crate::labs::LabError;
@@ -182,24 +183,11 @@ fn unmatched(a: &Motion, b: &Motion) -> Vec<String> {
 /// A cache of pairs, which labs and panes share. Those that no pane asks for any more are dropped.
 #[derive(Debug, Default)]
 pub(crate) struct Pairs {
-    known: Vec<Known>,
-    under_way: Vec<Pending>,
-    /// Whether a requested pair is available and has not been fetched yet.
-    is_ready: bool,
+    cache: RequestCache<PairOf, Fitting, Result<Arc<Pair>, LabError>>,
 }
 
-#[derive(Debug)]
-struct Known {
-    is_wanted: bool,
-    of: (Arc<Motion>, Arc<Motion>, FittingOptions),
-    pair: Result<Arc<Pair>, LabError>,
-}
-
-#[derive(Debug)]
-struct Pending {
-    is_wanted: bool,
-    fitting: Fitting,
-}
+/// The parts of a pair: A, B and how B is fitted to A.
+type PairOf = (Arc<Motion>, Arc<Motion>, FittingOptions);
 
 impl Pairs {
     /// Returns the pair of a lab's slots, as [`of`](Self::of) does.
@@ -242,23 +230,19 @@ impl Pairs {
         b: &Arc<Motion>,
         options: FittingOptions,
     ) -> Result<Option<Arc<Pair>>, LabError> {
-        let is_it = |known: &&mut Known| {
-            let (known_a, known_b, by) = &known.of;
-            let is_it = Arc::ptr_eq(known_a, a) && Arc::ptr_eq(known_b, b) && *by == options;
-            is_it || known.pair.as_ref().is_ok_and(|pair| pair.is_of(a, b, options))
-        };
-        if let Some(known) = self.known.iter_mut().find(is_it) {
-            known.is_wanted = true;
-            return known.pair.clone().map(Some);
-        }
-        let is_it = |pending: &&mut Pending| {
-            let Fitting { a: known_a, b: known_b, options: by, .. } = &pending.fitting;
+        let is_it = |(known_a, known_b, by): &PairOf| {
             Arc::ptr_eq(known_a, a) && Arc::ptr_eq(known_b, b) && *by == options
         };
-        if let Some(pending) = self.under_way.iter_mut().find(is_it) {
-            pending.is_wanted = true;
+        let known = self.cache.request(|of, pair| {
+            is_it(of) || pair.as_ref().is_ok_and(|pair| pair.is_of(a, b, options))
+        });
+        if let Some(pair) = known {
+            return pair.clone().map(Some);
+        }
+        if self.cache.is_under_way(is_it) {
             return Ok(None);
         }
+        let of = (Arc::clone(a), Arc::clone(b), options);
         let mut next = Fitting::new(a, b, options)?;
         let fitted = loop {
             next = match next {
@@ -267,68 +251,42 @@ impl Pairs {
                     fitting.advance(AT_ONCE)?
                 }
                 ControlFlow::Continue(fitting) => {
-                    self.under_way.push(Pending { is_wanted: true, fitting });
+                    self.cache.begin(of, fitting);
                     return Ok(None);
                 }
             };
         };
-        self.keep((Arc::clone(a), Arc::clone(b), options), Ok(fitted)).map(Some)
+        let pair = pair_of(&of, fitted);
+        self.cache.keep(of, Ok(Arc::clone(&pair)));
+        Ok(Some(pair))
     }
+}
 
-    fn keep(
-        &mut self,
-        of: (Arc<Motion>, Arc<Motion>, FittingOptions),
-        fitted: Result<FittedClip, LabError>,
-    ) -> Result<Arc<Pair>, LabError> {
-        let pair = fitted.map(|(incoming, retargeted)| {
-            let (a, b, options) = of.clone();
-            Arc::new(Pair { a, b, incoming, retargeted, options })
-        });
-        self.known.push(Known { is_wanted: true, of, pair: pair.clone() });
-        pair
-    }
+fn pair_of((a, b, options): &PairOf, (incoming, retargeted): FittedClip) -> Arc<Pair> {
+    let (a, b, options) = (Arc::clone(a), Arc::clone(b), *options);
+    Arc::new(Pair { a, b, incoming, retargeted, options })
 }
 
 impl Sliced for Pairs {
     fn clear_requests(&mut self) {
-        self.is_ready = false;
-        self.known.retain(|known| known.is_wanted);
-        for known in &mut self.known {
-            known.is_wanted = false;
-        }
-        for pending in &mut self.under_way {
-            pending.is_wanted = false;
-        }
+        self.cache.clear_requests();
     }
 
     fn work(&mut self, _jobs: &mut JobBoard) -> bool {
-        self.under_way.retain(|pending| pending.is_wanted);
-        if self.under_way.is_empty() {
-            return false;
-        }
-        let Pending { is_wanted, fitting } = self.under_way.remove(0);
-        let of = (Arc::clone(&fitting.a), Arc::clone(&fitting.b), fitting.options);
-        let fitted = match fitting.advance(FRAMES_PER_SLICE) {
-            Ok(ControlFlow::Continue(fitting)) => {
-                self.under_way.insert(0, Pending { is_wanted, fitting });
-                return true;
-            }
-            Ok(ControlFlow::Break(fitted)) => Ok(fitted),
-            Err(error) => Err(error),
-        };
-        // Its error is told when a pane asks for it.
-        self.keep(of, fitted).ok();
-        self.is_ready = true;
-        true
+        self.cache.work(|of, fitting| match fitting.advance(FRAMES_PER_SLICE) {
+            Ok(ControlFlow::Continue(fitting)) => ControlFlow::Continue(fitting),
+            Ok(ControlFlow::Break(fitted)) => ControlFlow::Break(Ok(pair_of(of, fitted))),
+            // It is told when a pane asks for the pair.
+            Err(error) => ControlFlow::Break(Err(error)),
+        })
     }
 
     fn is_ready(&self) -> bool {
-        self.is_ready
+        self.cache.is_ready()
     }
 
     fn progress(&self) -> Option<(JobKind, f64)> {
-        let pending = self.under_way.first()?;
-        Some((JobKind::Retargeting, f64::from(pending.fitting.progress())))
+        Some((JobKind::Retargeting, f64::from(self.cache.next()?.progress())))
     }
 }
 

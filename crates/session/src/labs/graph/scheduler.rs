@@ -15,8 +15,8 @@ use segue_motion::retarget::RetargetOptions;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// Builds graphs and walks in slices, and caches what a change does not affect: candidates for a new
-/// threshold, the graph for another walk.
+/// Builds graphs and walks in slices, and caches what a change does not affect: candidates for a
+/// new threshold, the graph for another walk.
 #[derive(Debug, Default)]
 pub(crate) struct GraphScheduler {
     /// The requested clips, by name and motion.

@@ -1,0 +1,144 @@
+//! A cache of results that panes request, and that are computed in slices.
+
+use std::ops::ControlFlow;
+
+/// Results by what they are made of. Those that no pane requests any more are dropped, as is their
+/// work.
+#[derive(Debug)]
+pub(super) struct RequestCache<Of, Work, Made> {
+    known: Vec<Entry<Of, Made>>,
+    under_way: Vec<Entry<Of, Work>>,
+    /// Whether a result is finished that was not there when it was requested.
+    is_ready: bool,
+}
+
+#[derive(Debug)]
+struct Entry<Of, T> {
+    is_wanted: bool,
+    of: Of,
+    content: T,
+}
+
+impl<Of, Work, Made> Default for RequestCache<Of, Work, Made> {
+    fn default() -> Self {
+        Self { known: Vec::new(), under_way: Vec::new(), is_ready: false }
+    }
+}
+
+/// Returns the first entry that `is_it` selects, after noting that it is requested.
+fn wanted<Of, T>(
+    entries: &mut [Entry<Of, T>],
+    is_it: impl Fn(&Of, &T) -> bool,
+) -> Option<&mut Entry<Of, T>> {
+    let entry = entries.iter_mut().find(|entry| is_it(&entry.of, &entry.content))?;
+    entry.is_wanted = true;
+    Some(entry)
+}
+
+impl<Of, Work, Made> RequestCache<Of, Work, Made> {
+    /// Requests a result, and returns it if it is known.
+    pub(super) fn request(&mut self, is_it: impl Fn(&Of, &Made) -> bool) -> Option<&Made> {
+        wanted(&mut self.known, is_it).map(|entry| &entry.content)
+    }
+
+    /// Requests a result, and returns whether it is being computed.
+    pub(super) fn is_under_way(&mut self, is_it: impl Fn(&Of) -> bool) -> bool {
+        wanted(&mut self.under_way, |of, _| is_it(of)).is_some()
+    }
+
+    /// Returns a known result without requesting it.
+    pub(super) fn known(&self, is_it: impl Fn(&Of) -> bool) -> Option<&Made> {
+        self.known.iter().find(|entry| is_it(&entry.of)).map(|entry| &entry.content)
+    }
+
+    /// Begins to compute a result that is requested.
+    pub(super) fn begin(&mut self, of: Of, work: Work) {
+        self.under_way.push(Entry { is_wanted: true, of, content: work });
+    }
+
+    /// Keeps a result that is requested.
+    pub(super) fn keep(&mut self, of: Of, made: Made) {
+        self.known.push(Entry { is_wanted: true, of, content: made });
+    }
+
+    /// Drops the results that were not requested since the last call, and clears the requests.
+    pub(super) fn clear_requests(&mut self) {
+        self.is_ready = false;
+        self.known.retain(|entry| entry.is_wanted);
+        self.known.iter_mut().for_each(|entry| entry.is_wanted = false);
+        self.under_way.iter_mut().for_each(|entry| entry.is_wanted = false);
+    }
+
+    /// Does one slice of the first result that is requested and not known. Returns `false` if there
+    /// is none.
+    pub(super) fn work(
+        &mut self,
+        slice: impl FnOnce(&Of, Work) -> ControlFlow<Made, Work>,
+    ) -> bool {
+        self.under_way.retain(|entry| entry.is_wanted);
+        if self.under_way.is_empty() {
+            return false;
+        }
+        let Entry { is_wanted, of, content } = self.under_way.remove(0);
+        match slice(&of, content) {
+            ControlFlow::Continue(content) => {
+                self.under_way.insert(0, Entry { is_wanted, of, content });
+            }
+            ControlFlow::Break(made) => {
+                self.keep(of, made);
+                self.is_ready = true;
+            }
+        }
+        true
+    }
+
+    /// Returns the work that is next.
+    pub(super) fn next(&self) -> Option<&Work> {
+        self.under_way.first().map(|entry| &entry.content)
+    }
+
+    /// Returns whether a result is finished that was not there when it was requested.
+    pub(super) fn is_ready(&self) -> bool {
+        self.is_ready
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns work that takes as many slices as are left, and one to finish.
+    fn slices() -> impl Fn(&u32, u32) -> ControlFlow<String, u32> + Copy {
+        |of, left| match left {
+            0 => ControlFlow::Break(of.to_string()),
+            _ => ControlFlow::Continue(left - 1),
+        }
+    }
+
+    #[test]
+    fn result_is_computed_in_slices_and_kept_while_it_is_requested() {
+        let (mut cache, slice) = (RequestCache::<u32, u32, String>::default(), slices());
+        assert!(!cache.work(slice) && !cache.is_under_way(|&of| of == 7));
+        cache.begin(7, 2);
+        assert!(cache.work(slice) && cache.work(slice) && !cache.is_ready());
+        assert!(cache.work(slice) && cache.is_ready() && !cache.work(slice));
+        cache.clear_requests();
+        assert!(!cache.is_ready());
+        assert_eq!(cache.request(|&of, _| of == 7).map(String::as_str), Some("7"));
+        cache.clear_requests();
+        assert!(cache.known(|&of| of == 7).is_some(), "it was requested");
+        cache.clear_requests();
+        assert_eq!(cache.known(|&of| of == 7), None, "nothing requested it");
+    }
+
+    #[test]
+    fn work_that_is_no_longer_requested_is_dropped() {
+        let (mut cache, slice) = (RequestCache::<u32, u32, String>::default(), slices());
+        cache.begin(1, 5);
+        cache.begin(2, 0);
+        cache.clear_requests();
+        assert!(cache.is_under_way(|&of| of == 2));
+        assert!(cache.work(slice) && !cache.work(slice));
+        assert!(cache.known(|&of| of == 2).is_some() && cache.known(|&of| of == 1).is_none());
+    }
+}
