@@ -27,20 +27,17 @@ const prepare = (page) => page.addInitScript(() => {
 });
 
 /**
- * Returns the page with calls that are made again when it was loaded again meanwhile: with WebGL 2,
- * after two lost WebGPU devices.
+ * Returns the page with calls that wait for a page that is loaded again, and are made again there:
+ * after two lost WebGPU devices, with WebGL 2.
  */
 function surviving(opened) {
-  let loads = 0;
-  opened.page.on("framenavigated", () => { loads += 1; });
   const again = (call) => async (...args) => {
     for (;;) {
-      const before = loads;
       try {
+        await opened.ready();
         return await call(...args);
       } catch (reason) {
-        if (loads === before) throw reason;
-        await opened.ready();
+        if (!String(reason).includes("Execution context was destroyed")) throw reason;
       }
     }
   };
