@@ -1,13 +1,16 @@
 //! Reading of files outside the document: a pure function of names and bytes, so that a thread or
 //! worker can read a large file.
 
+mod converted;
 mod wire;
 
+pub(crate) use converted::without_motion;
 pub use wire::{Parcel, Unpacker, WireError};
 
 use super::bone_map::{BoneMaps, mapped};
-use super::convert::{ConvertOptions, ConvertedClip, convert_file};
+use super::convert::{ConvertOptions, ConvertedClip};
 use super::outside;
+use converted::convert_file;
 use segue_formats::acclaim::{self, AcclaimSkeleton};
 use segue_formats::archive::{self, ArchiveLimits};
 use segue_formats::numpy::{self, SmplModel};
