@@ -45,6 +45,19 @@ const APP: [(&str, &str); 8] = [
 const CRATES: [&str; 5] =
     ["segue_motion", "segue_fbx", "segue_formats", "segue_session", "segue_scene"];
 
+/// The crates whose results have the same bits on every machine.
+const EXACT_CRATES: [&str; 4] = ["crates/motion", "crates/fbx", "crates/formats", "crates/session"];
+
+/// Methods of numbers that call the machine's C library, and `slerp` of glam, which has another
+/// formula for each kind of processor.
+const INEXACT: [&str; 22] = [
+    "sin", "cos", "tan", "sin_cos", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp",
+    "exp2", "exp_m1", "ln", "ln_1p", "log", "log2", "log10", "powf", "hypot", "slerp",
+];
+
+/// Lines that call methods of these names of other types.
+const EXACT_METHODS: [&str; 1] = ["product.turned(axis, angles.sin_cos())"];
+
 /// Names that the libraries never use: screens, the browser, files, clock and threads.
 const OUTSIDE: [&str; 12] = [
     "egui",
@@ -138,6 +151,22 @@ fn sources_contain_nothing_unfinished() {
     assert!(violations_found.is_empty(), "\n{}", violations_found.join("\n"));
 }
 
+/// The same motion gives the same bits natively and in the page only if both compute with the same
+/// functions: those of `libm`, and not those of the machine's C library.
+#[test]
+fn libraries_compute_with_the_functions_of_libm() {
+    let sources: Vec<_> = EXACT_CRATES.into_iter().flat_map(sources).collect();
+    let tests = test_modules(&sources);
+    let mut violations_found = Vec::new();
+    for (path, text) in &sources {
+        if is_production(path) && !is_test_file(path, &tests) {
+            violations_found.extend(inexact(path, text));
+        }
+    }
+    assert!(sources.len() > 200, "only {} sources found", sources.len());
+    assert!(violations_found.is_empty(), "\n{}", violations_found.join("\n"));
+}
+
 #[test]
 fn sources_begin_with_a_module_line_and_have_narrow_comments() {
     let sources: Vec<_> = ALL_SOURCES.into_iter().flat_map(sources).collect();
@@ -177,10 +206,10 @@ fn violations_are_reported() {
     );
     assert_eq!(
         found(
-            "crates/motion/src/blend/mod.rs",
+            "crates/motion/src/blend.rs",
             "use crate::{\n    clip::{Clip, graph},\n    path,\n};"
         ),
-        ["crates/motion/src/blend/mod.rs:1: `blend` names `path`"]
+        ["crates/motion/src/blend.rs:1: `blend` names `path`"]
     );
     assert_eq!(
         found("src/render/light.rs", "use super::super::ui;"),
@@ -210,6 +239,11 @@ fn violations_are_reported() {
 
     let code = "fn f() {\n    g().unwrap();\n}\n#[cfg(test)]\nmod tests {\n    fn f() {\n        g().unwrap();\n    }\n}\n";
     assert_eq!(unwraps(Path::new("src/a.rs"), code), ["src/a.rs:2: `unwrap` outside of tests"]);
+    let code = "fn f(x: f64) {\n    x.sin() + x.sqrt() + libm::cos(x)\n}\n";
+    assert_eq!(
+        inexact(Path::new("src/a.rs"), code),
+        ["src/a.rs:2: `sin` differs between machines: use libm"]
+    );
     for mark in UNFINISHED {
         assert_eq!(
             unfinished(Path::new("src/a.rs"), &format!("\n{mark}")),
@@ -221,7 +255,7 @@ fn violations_are_reported() {
     assert_eq!(named_labs(Path::new("src/app.rs"), named), ["src/app.rs:2: names a lab"]);
 
     let parent = (
-        PathBuf::from("crates/motion/src/skeleton/mod.rs"),
+        PathBuf::from("crates/motion/src/skeleton.rs"),
         "#[cfg(any(test, feature = \"fixtures\"))]\n#[expect(\n    clippy::unwrap_used,\n    reason = \"for tests\"\n)]\npub mod fixtures;\nmod tree;\n"
             .to_owned(),
     );
@@ -481,6 +515,19 @@ fn unwraps(path: &Path, text: &str) -> Vec<String> {
     lines
         .map(|(index, _)| format!("{}:{}: `unwrap` outside of tests", path.display(), index + 1))
         .collect()
+}
+
+fn inexact(path: &Path, text: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    for (index, line) in code(text).lines().enumerate() {
+        for method in INEXACT {
+            if line.contains(&format!(".{method}(")) && !EXACT_METHODS.contains(&line.trim()) {
+                let (path, line) = (path.display(), index + 1);
+                found.push(format!("{path}:{line}: `{method}` differs between machines: use libm"));
+            }
+        }
+    }
+    found
 }
 
 fn unfinished(path: &Path, text: &str) -> Vec<String> {

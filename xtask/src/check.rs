@@ -159,6 +159,8 @@ fn browser(report: &mut Report) {
     report.step("browser tests", || {
         let chromium = tools::chromium()?;
         tools::browser_packages()?;
+        // The command line as its own tests have it, so that it is not built twice.
+        shell::run(tests_without_ui().arg("--no-run"))?;
         let server = server::Server::bind(0, dist::folder())?;
         let address = server.address();
         std::thread::spawn(move || server.run());
@@ -167,6 +169,10 @@ fn browser(report: &mut Report) {
         let mut node = command("node", &["--test", "--test-reporter=spec", "--test-concurrency=1"]);
         node.current_dir(root().join("tests/browser"))
             .env("SEGUE_URL", address)
+            .env(
+                "SEGUE_CLI",
+                shell::target().join("debug/segue").with_extension(std::env::consts::EXE_EXTENSION),
+            )
             .env("CHROMIUM", chromium);
         shell::run(&mut node)
     });

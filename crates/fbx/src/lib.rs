@@ -35,6 +35,7 @@
 mod error;
 #[cfg(target_arch = "wasm32")]
 mod libc;
+mod math;
 mod matrix;
 mod mesh;
 mod scene;

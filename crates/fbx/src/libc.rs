@@ -1,47 +1,10 @@
-//! The functions of the C library that ufbx calls where there is none, under the names that it
-//! gives them (`UFBX_NO_LIBC` in ufbx.c).
+//! The functions of strings and memory that ufbx calls where there is no C library, under the names
+//! that it gives them (`UFBX_NO_LIBC` in ufbx.c).
 
 #![expect(unsafe_code, reason = "C calls these functions by name and with raw pointers")]
 
 use std::alloc::{Layout, alloc, dealloc, realloc};
 use std::ffi::{c_int, c_void};
-
-/// Defines functions of real numbers by those of `libm`.
-macro_rules! math {
-    ($($name:ident = $libm:ident($($x:ident),+);)+) => {$(
-        // SAFETY: no other symbol has this prefix, and plain numbers are passed.
-        #[unsafe(no_mangle)]
-        extern "C" fn $name($($x: f64),+) -> f64 {
-            libm::$libm($($x),+)
-        }
-    )+};
-}
-
-math! {
-    ufbx_sqrt = sqrt(x);
-    ufbx_sin = sin(x);
-    ufbx_cos = cos(x);
-    ufbx_tan = tan(x);
-    ufbx_asin = asin(x);
-    ufbx_acos = acos(x);
-    ufbx_atan = atan(x);
-    ufbx_atan2 = atan2(y, x);
-    ufbx_pow = pow(x, y);
-    ufbx_fmin = fmin(x, y);
-    ufbx_fmax = fmax(x, y);
-    ufbx_fabs = fabs(x);
-    ufbx_copysign = copysign(x, y);
-    ufbx_nextafter = nextafter(x, y);
-    ufbx_rint = rint(x);
-    ufbx_floor = floor(x);
-    ufbx_ceil = ceil(x);
-}
-
-// SAFETY: no other symbol has this prefix, and a plain number is passed.
-#[unsafe(no_mangle)]
-extern "C" fn ufbx_isnan(x: f64) -> c_int {
-    c_int::from(x.is_nan())
-}
 
 // SAFETY, for the functions of strings and memory: ufbx passes what the functions of the same name
 // in C ask for, pointers to that many bytes or to a text with a NUL at its end.

@@ -9,13 +9,13 @@ pub(super) fn encoded(linear: f32) -> f32 {
         let linear = linear.max(0.0);
         linear * 12.92
     } else {
-        1.055 * linear.powf(1.0 / 2.4) - 0.055
+        1.055 * libm::powf(linear, 1.0 / 2.4) - 0.055
     }
 }
 
 /// Decodes a channel, 0 to 1, to linear light: the inverse of [`encoded`].
 pub(super) fn linear(encoded: f32) -> f32 {
-    if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+    if encoded <= 0.040_45 { encoded / 12.92 } else { libm::powf((encoded + 0.055) / 1.055, 2.4) }
 }
 
 #[cfg(test)]

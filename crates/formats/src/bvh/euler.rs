@@ -38,7 +38,7 @@ pub(super) fn compose(axes: &[usize], angles: &[f64]) -> DQuat {
 /// Returns the angle (radians) between two rotations.
 pub(super) fn distance(a: DQuat, b: DQuat) -> f64 {
     let q = b * a.conjugate();
-    2.0 * DVec3::new(q.x, q.y, q.z).length().atan2(q.w.abs())
+    2.0 * libm::atan2(DVec3::new(q.x, q.y, q.z).length(), q.w.abs())
 }
 
 /// Returns the angles (radians) about three different `axes` whose product is `q`, of all solutions
@@ -53,9 +53,12 @@ pub(super) fn three_angles(q: DQuat, axes: [usize; 3], near: [f64; 3]) -> [f64; 
     let c = axes[2];
     let m = DMat3::from_quat(q);
     let sign = parity(axes);
-    let cosine = entry(&m, a, a).hypot(entry(&m, a, b));
-    let last =
-        if cosine > LOCKED { (-sign * entry(&m, a, b)).atan2(entry(&m, a, a)) } else { near[2] };
+    let cosine = libm::hypot(entry(&m, a, a), entry(&m, a, b));
+    let last = if cosine > LOCKED {
+        libm::atan2(-sign * entry(&m, a, b), entry(&m, a, a))
+    } else {
+        near[2]
+    };
     let rest = q * DQuat::from_axis_angle(axis(c), -last);
     let [first, middle] = two_angles(rest, [a, b]);
     let here = nearest([first, middle, last], near);
@@ -75,14 +78,14 @@ pub(super) fn two_angles(q: DQuat, [a, b]: [usize; 2]) -> [f64; 2] {
     let m = DMat3::from_quat(q);
     let sign = parity([a, b, c]);
     [
-        (sign * entry(&m, c, b)).atan2(entry(&m, b, b)),
-        (sign * entry(&m, a, c)).atan2(entry(&m, a, a)),
+        libm::atan2(sign * entry(&m, c, b), entry(&m, b, b)),
+        libm::atan2(sign * entry(&m, a, c), entry(&m, a, a)),
     ]
 }
 
 /// Returns the angle about one axis that is nearest to `q`.
 pub(super) fn one_angle(q: DQuat, index: usize) -> f64 {
-    2.0 * DVec3::new(q.x, q.y, q.z).dot(axis(index)).atan2(q.w)
+    2.0 * libm::atan2(DVec3::new(q.x, q.y, q.z).dot(axis(index)), q.w)
 }
 
 /// Returns 1 for the axes X, Y, Z in cyclic order, -1 otherwise.

@@ -129,7 +129,7 @@ impl<'a> Writer<'a> {
             units_per_metre: unit.recip(),
             up: options.up.unwrap_or(source.up),
             // A ten-millionth of a metre, and never less than six digits.
-            decimals: (7.0 + unit.log10()).ceil().clamp(6.0, 300.0) as usize,
+            decimals: (7.0 + libm::log10(unit)).ceil().clamp(6.0, 300.0) as usize,
             plans: Vec::new(),
             tracks,
         };

@@ -146,7 +146,9 @@ fn sampled(
     let image = images.get(document, texture.source.value())?;
     let way = Way::of(texture.sampler.and_then(|index| document.root.get(index)));
     let (cos, sin, [du, dv], [su, sv]) = match transform {
-        Some(own) => (own.rotation.0.cos(), own.rotation.0.sin(), own.offset.0, own.scale.0),
+        Some(own) => {
+            (libm::cosf(own.rotation.0), libm::sinf(own.rotation.0), own.offset.0, own.scale.0)
+        }
         None => (1.0, 0.0, [0.0; 2], [1.0; 2]),
     };
     let coordinates = coordinates.as_chunks::<2>().0;

@@ -275,7 +275,7 @@ fn picked<T: Copy + Default>(values: &[T], vertices: &[u32]) -> Vec<T> {
 
 /// Converts a channel of an `sRGB` colour to linear (IEC 61966-2-1).
 fn decoded(encoded: f32) -> f32 {
-    if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+    if encoded <= 0.040_45 { encoded / 12.92 } else { libm::powf((encoded + 0.055) / 1.055, 2.4) }
 }
 
 /// Returns a material: clay for a generated body; for a character, whose surfaces may be open, the

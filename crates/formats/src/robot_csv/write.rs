@@ -71,12 +71,12 @@ pub fn write_robot_csv(clip: &Clip, fps: Option<f64>) -> Result<String, RobotCsv
         for (hinge, (turn, axis)) in rotations.iter().skip(1).zip(robot.axes()).enumerate() {
             let turn = z_up(*turn);
             let along = turn.xyz().dot(*axis);
-            let twist = along.hypot(turn.w);
-            let off = 2.0 * twist.min(1.0).acos();
+            let twist = libm::hypot(along, turn.w);
+            let off = 2.0 * libm::acos(twist.min(1.0));
             if off > worst.map_or(MAX_OFF_AXIS, |(_, most, _)| most) {
                 worst = Some((hinge, off, frame));
             }
-            let angle = 2.0 * along.atan2(turn.w);
+            let angle = 2.0 * libm::atan2(along, turn.w);
             angles[hinge] = angle + TAU * ((angles[hinge] - angle) / TAU).round();
         }
         out.push(',');

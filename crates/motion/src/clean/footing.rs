@@ -100,7 +100,7 @@ fn stances(motion: &Motion) -> Vec<Stance> {
 /// Returns the turn of a joint about the vertical, radians: the twist of its rotation about Y.
 fn yaw_of(world: &WorldPose, joint: usize) -> f64 {
     let q = world.rotations[joint];
-    2.0 * f64::from(q.y).atan2(f64::from(q.w))
+    2.0 * libm::atan2(f64::from(q.y), f64::from(q.w))
 }
 
 /// Returns a drift that most stances share.

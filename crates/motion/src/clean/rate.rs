@@ -30,7 +30,7 @@ pub(super) fn rate(motion: &Motion) -> Option<Fault> {
     }
     let wanted = clip.fps() * factor;
     let fps = RATES.into_iter().min_by(|a, b| {
-        let off = |rate: f64| (rate / wanted).ln().abs();
+        let off = |rate: f64| libm::log(rate / wanted).abs();
         off(*a).total_cmp(&off(*b))
     })?;
     let size = (fps as f32, SizeUnit::FramesPerSecond);
@@ -61,7 +61,7 @@ fn by_flight(motion: &Motion) -> Option<(f64, f32)> {
     }
     found.sort_by(f64::total_cmp);
     let middle = *found.get(found.len() / 2)?;
-    let agree = found.iter().filter(|factor| (*factor / middle).ln().abs() < 0.25).count();
+    let agree = found.iter().filter(|factor| libm::log(*factor / middle).abs() < 0.25).count();
     (found.len() >= 2 && agree * 3 >= found.len() * 2)
         .then(|| (middle, confidence(agree as f32, 2.0)))
 }

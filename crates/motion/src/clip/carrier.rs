@@ -237,7 +237,7 @@ impl<'a> Fold<'a> {
         let mut turns = Vec::with_capacity(poses_of_joint.len());
         for (position, rotation) in poses_of_joint {
             let turned = *rotation * upright.conjugate();
-            let yaw = 2.0 * f64::from(turned.y).atan2(f64::from(turned.w));
+            let yaw = 2.0 * libm::atan2(f64::from(turned.y), f64::from(turned.w));
             let lean = quat::angle_between(turned, Quat::from_rotation_y(yaw as f32));
             if (position.y - start.y).abs() > STILL_M || lean > STILL_RADIANS {
                 return None;
@@ -259,8 +259,8 @@ impl<'a> Fold<'a> {
         let (mut sin, mut cos, mut shift) = (0.0, 0.0, DVec2::ZERO);
         for ((position, _), (turn, here)) in poses_of_joint.iter().zip(turns.iter().zip(&frames)) {
             let yaw = turn - here.yaw;
-            sin += yaw.sin();
-            cos += yaw.cos();
+            sin += libm::sin(yaw);
+            cos += libm::cos(yaw);
             let off = DVec2::new(f64::from(position.x), f64::from(position.z));
             shift += here.inverse().apply_ground(off) / count;
         }
@@ -269,7 +269,7 @@ impl<'a> Fold<'a> {
             height: start.y,
             rotation: upright,
             shift: shift.to_array(),
-            yaw: does_turn.then(|| sin.atan2(cos)),
+            yaw: does_turn.then(|| libm::atan2(sin, cos)),
         })
     }
 }

@@ -252,7 +252,7 @@ impl Feet {
                 let along = |frame: usize| Some(tip.0.way.get(frame)? - heel.0.way.get(frame)?);
                 let (before, after) = (along(frame)?, along(frame + 1)?);
                 // About +Y, from z to x.
-                let turn = after.perp_dot(before).atan2(after.dot(before));
+                let turn = libm::atan2(after.perp_dot(before), after.dot(before));
                 Some((-turn, heel.1.min(tip.1)))
             });
             let (sum, weights) = turned

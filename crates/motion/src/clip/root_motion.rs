@@ -97,12 +97,13 @@ fn turned_since_the_first(turns: &[Quat]) -> Vec<Option<f64>> {
     let start = if Vec3::new(forward.x, 0.0, forward.z).length() < MIN_HORIZONTAL_SHARE {
         0.0
     } else {
-        f64::from(forward.x).atan2(f64::from(forward.z))
+        libm::atan2(f64::from(forward.x), f64::from(forward.z))
     };
     let yaw = |turn: &Quat| {
         let since = *turn * first.conjugate();
-        let upright = since.y.hypot(since.w) > MIN_HORIZONTAL_SHARE;
-        upright.then(|| wrap_angle(start + 2.0 * f64::from(since.y).atan2(f64::from(since.w))))
+        let upright = libm::hypotf(since.y, since.w) > MIN_HORIZONTAL_SHARE;
+        upright
+            .then(|| wrap_angle(start + 2.0 * libm::atan2(f64::from(since.y), f64::from(since.w))))
     };
     turns.iter().map(yaw).collect()
 }

@@ -251,8 +251,8 @@ impl Candidate {
             source.clip().fps(),
         );
         [
-            (self.range.len() as f32).ln(),
-            speed.max(1e-3).ln(),
+            libm::logf(self.range.len() as f32),
+            libm::logf(speed.max(1e-3)),
             self.events.left_lift as f32,
             self.events.right_strike as f32,
             (self.events.right_lift - self.events.right_strike) as f32,

@@ -241,7 +241,7 @@ impl FollowSearch {
 
 fn first_place(graph: &MotionGraph, start: NodeIndex, path: &GroundPath) -> Planar {
     let ahead = path.at(0.5_f64.min(path.length())) - path.at(0.0);
-    let world = Planar::new(ahead.x.atan2(ahead.y), path.at(0.0).x, path.at(0.0).y);
+    let world = Planar::new(libm::atan2(ahead.x, ahead.y), path.at(0.0).x, path.at(0.0).y);
     let stretch = graph.graph().node_weight(start);
     let frame = stretch
         .and_then(|stretch| graph.set().clip(stretch.clip)?.ground_frames().get(stretch.start));

@@ -16,7 +16,7 @@ pub fn soft_limit(value: f32, from: f32, to: f32) -> f32 {
         return value;
     }
     let room = to - from;
-    from + room * (1.0 - (-(value - from) / room).exp())
+    from + room * (1.0 - libm::expf(-(value - from) / room))
 }
 
 /// Evaluates a Catmull-Rom spline: the cubic through `p1` (t = 0) and `p2` (t = 1) with slopes from

@@ -32,7 +32,7 @@ impl Planar {
     #[must_use]
     pub fn standing_at(position: Vec3, facing: Vec3) -> Self {
         Self::new(
-            f64::from(facing.x).atan2(f64::from(facing.z)),
+            libm::atan2(f64::from(facing.x), f64::from(facing.z)),
             f64::from(position.x),
             f64::from(position.z),
         )
@@ -47,7 +47,7 @@ impl Planar {
     /// Returns the direction to which +Z is turned.
     #[must_use]
     pub fn forward(&self) -> Vec3 {
-        Vec3::new(self.yaw.sin() as f32, 0.0, self.yaw.cos() as f32)
+        Vec3::new(libm::sin(self.yaw) as f32, 0.0, libm::cos(self.yaw) as f32)
     }
 
     /// Returns the shift as a point on the ground.
@@ -57,7 +57,7 @@ impl Planar {
     }
 
     fn turned(&self, v: DVec2) -> DVec2 {
-        let (sin, cos) = self.yaw.sin_cos();
+        let (sin, cos) = libm::sincos(self.yaw);
         DVec2::new(v.x * cos + v.y * sin, -v.x * sin + v.y * cos)
     }
 

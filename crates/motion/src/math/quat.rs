@@ -34,7 +34,7 @@ pub fn log_as_given(q: Quat) -> Vec3 {
     if sine < 1e-9 {
         return v * 2.0;
     }
-    v * (2.0 * sine.atan2(q.w) / sine)
+    v * (2.0 * libm::atan2f(sine, q.w) / sine)
 }
 
 /// Returns the unit quaternion that turns by `rotation_vector` (axis × angle, radians).
@@ -45,7 +45,7 @@ pub fn exp(rotation_vector: Vec3) -> Quat {
     let (scale, w) = if angle < 1e-4 {
         (0.5 - angle * angle / 48.0, 1.0 - angle * angle / 8.0)
     } else {
-        ((angle * 0.5).sin() / angle, (angle * 0.5).cos())
+        (libm::sinf(angle * 0.5) / angle, libm::cosf(angle * 0.5))
     };
     let v = rotation_vector * scale;
     renormalize(Quat::from_xyzw(v.x, v.y, v.z, w))
@@ -62,8 +62,19 @@ pub fn slerp(a: Quat, b: Quat, t: f32) -> Quat {
     if cos_minus_one > NEAR && (0.0..=1.0).contains(&t) {
         renormalize(a * sine_ratio(1.0 - t, cos_minus_one) + b * sine_ratio(t, cos_minus_one))
     } else {
-        renormalize(a.slerp(b, t))
+        renormalize(far_slerp(a, b, t))
     }
+}
+
+/// Interpolates spherically between rotations of one hemisphere. The same as `Quat::slerp`, which
+/// computes the sines in another way on each kind of processor.
+fn far_slerp(a: Quat, b: Quat, t: f32) -> Quat {
+    let angle = libm::acosf(a.dot(b).clamp(-1.0, 1.0));
+    let sine = libm::sinf(angle);
+    if sine < 1e-6 {
+        return a.lerp(b, t);
+    }
+    (a * libm::sinf((1.0 - t) * angle) + b * libm::sinf(t * angle)) * (1.0 / sine)
 }
 
 /// Interpolates spherically without choosing the shorter way, `t` from 0 (`a`) to 1 (`b`): the
@@ -142,7 +153,7 @@ pub fn rate_to_angular_velocity(x: Vec3, rate: Vec3) -> Vec3 {
     let (first, second) = if angle < 1e-2 {
         (0.5 - angle * angle / 24.0, 1.0 / 6.0 - angle * angle / 120.0)
     } else {
-        ((1.0 - angle.cos()) / (angle * angle), (angle - angle.sin()) / angle.powi(3))
+        ((1.0 - libm::cosf(angle)) / (angle * angle), (angle - libm::sinf(angle)) / angle.powi(3))
     };
     let across = x.cross(rate);
     rate + across * first + x.cross(across) * second
@@ -159,7 +170,7 @@ pub fn vector_rate(x: Vec3, angular_velocity: Vec3) -> Vec3 {
         1.0 / 12.0 + angle * angle / 720.0
     } else {
         let held = angle.min(6.0);
-        (1.0 / held - 0.5 / (0.5 * held).tan()) / held
+        (1.0 / held - 0.5 / libm::tanf(0.5 * held)) / held
     };
     let across = x.cross(angular_velocity);
     angular_velocity - across * 0.5 + x.cross(across) * second

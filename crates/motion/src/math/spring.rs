@@ -24,7 +24,7 @@ pub fn rate(half_life_secs: f64) -> f64 {
 pub fn response(half_life_secs: f64, secs: f64) -> Response {
     let y = rate(half_life_secs);
     let t = secs.max(0.0);
-    let e = (-y * t).exp();
+    let e = libm::exp(-y * t);
     Response { xx: e * (1.0 + y * t), xv: e * t, vx: -e * y * y * t, vv: e * (1.0 - y * t) }
 }
 
@@ -72,7 +72,7 @@ pub fn towards_rotation(
 pub fn velocity_decay(half_life_secs: f64, secs: f64) -> (f64, f64) {
     let y = 0.5 * rate(half_life_secs);
     let t = secs.max(0.0);
-    ((-y * t).exp(), -(-y * t).exp_m1() / y)
+    (libm::exp(-y * t), -libm::expm1(-y * t) / y)
 }
 
 /// Returns the seconds until a spring that starts at rest has only `share` (0 to 1) of its offset
@@ -85,7 +85,7 @@ pub fn secs_until(half_life_secs: f64, share: f64) -> f64 {
     let (mut low, mut high) = (0.0_f64, 40.0_f64);
     for _ in 0..80 {
         let middle = 0.5 * (low + high);
-        if (1.0 + middle) * (-middle).exp() > share {
+        if (1.0 + middle) * libm::exp(-middle) > share {
             low = middle;
         } else {
             high = middle;

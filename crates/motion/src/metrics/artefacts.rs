@@ -270,7 +270,7 @@ impl BodyTracks {
             }
             if let Some((left, right)) = self.hips {
                 let across = world.positions[left] - world.positions[right];
-                self.headings.push(f64::from(across.x).atan2(f64::from(across.z)));
+                self.headings.push(libm::atan2(f64::from(across.x), f64::from(across.z)));
             }
         }
     }

@@ -164,7 +164,7 @@ impl ArcLengthPath {
         let beyond = along_m - along_m.max(0.0).min(length);
         if beyond != 0.0 {
             let yaw = waypoint.frame.yaw;
-            waypoint.frame.shift += DVec2::new(yaw.sin(), yaw.cos()) * beyond;
+            waypoint.frame.shift += DVec2::new(libm::sin(yaw), libm::cos(yaw)) * beyond;
             waypoint.curvature = 0.0;
         }
         waypoint

@@ -144,7 +144,7 @@ impl GroundSpline {
             PathEdit::Mirror => {
                 let start = self.points()[0];
                 let yaw = self.overall_yaw();
-                let axis = DVec2::new(yaw.sin(), yaw.cos());
+                let axis = DVec2::new(libm::sin(yaw), libm::cos(yaw));
                 all(&|p| start + axis * (2.0 * axis.dot(p - start)) - (p - start))
             }
             PathEdit::Straighten { share } => {
@@ -262,7 +262,7 @@ impl GroundSpline {
     fn overall_yaw(&self) -> f64 {
         let way = self.points()[self.points().len() - 1] - self.points()[0];
         if way.length() > super::arc_length::MIN_LENGTH_M {
-            way.x.atan2(way.y)
+            libm::atan2(way.x, way.y)
         } else {
             self.heading(0.0)
         }
@@ -315,7 +315,7 @@ impl GroundSpline {
         let mut points = vec![self.points()[0]];
         for (k, own) in headings.into_iter().enumerate() {
             let yaw = heading(own, (k as f64 + 0.5) / steps as f64, mean);
-            points.push(points[k] + DVec2::new(yaw.sin(), yaw.cos()) * along(1.0));
+            points.push(points[k] + DVec2::new(libm::sin(yaw), libm::cos(yaw)) * along(1.0));
         }
         if to_loop {
             let missing = points[0] - points[steps];

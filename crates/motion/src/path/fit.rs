@@ -217,7 +217,7 @@ impl Band {
                 break;
             }
             if row[0] != 0.0 {
-                let length = own[0].hypot(row[0]);
+                let length = libm::hypot(own[0], row[0]);
                 let (cos, sin) = (own[0] / length, row[0] / length);
                 for (a, b) in own.iter_mut().zip(&mut row) {
                     (*a, *b) = (cos * *a + sin * *b, cos * *b - sin * *a);

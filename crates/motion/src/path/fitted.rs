@@ -145,7 +145,7 @@ fn smoothed(way: &[DVec2], deviation: f64) -> Vec<DVec2> {
     let count = way.len() as isize;
     let reach = ((3.0 * deviation).ceil() as isize).min(count - 1);
     let weights: Vec<f64> =
-        (0..=reach).map(|k| (-0.5 * (k as f64 / deviation.max(1e-9)).powi(2)).exp()).collect();
+        (0..=reach).map(|k| libm::exp(-0.5 * (k as f64 / deviation.max(1e-9)).powi(2))).collect();
     let sum = 2.0 * weights.iter().sum::<f64>() - 1.0;
     let at = |index: isize| {
         if index < 0 {

@@ -310,7 +310,7 @@ impl GroundSpline {
             }
             first = self.jet(parameter + step).first;
         }
-        if moves(first) { first.x.atan2(first.y) } else { 0.0 }
+        if moves(first) { libm::atan2(first.x, first.y) } else { 0.0 }
     }
 
     /// Returns the same curve with a further control point and a knot at `parameter` (Boehm 1980).

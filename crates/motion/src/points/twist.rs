@@ -34,7 +34,7 @@ impl Twist {
         if from.length_squared() < 1e-12 || to.length_squared() < 1e-12 {
             return Self::default();
         }
-        Self { angle: from.cross(to).dot(axis).atan2(from.dot(to)), weight }
+        Self { angle: libm::atan2f(from.cross(to).dot(axis), from.dot(to)), weight }
     }
 
     /// Returns the twist that turns `hinge` into the axis about which the limb bends from the unit
@@ -76,7 +76,7 @@ pub(super) fn settle(twists: &[Twist], fps: f64) -> Vec<f32> {
     let sigma = (SMOOTH_SECS * fps).max(1e-3);
     let radius = ((3.0 * sigma).round() as usize).min(MAX_RADIUS);
     let kernel: Vec<f32> =
-        (0..=radius).map(|step| (-0.5 * (step as f64 / sigma).powi(2)).exp() as f32).collect();
+        (0..=radius).map(|step| libm::exp(-0.5 * (step as f64 / sigma).powi(2)) as f32).collect();
     let weight = |frame: usize| if known[frame] { twists[frame].weight } else { INTERPOLATED };
     (0..angles.len())
         .map(|frame| {

@@ -124,13 +124,13 @@ impl PairMoments {
         let b = self.dot - p.dot(q) / w;
         let spread = (self.source_square - p.length_squared() / w)
             + (self.target_square - q.length_squared() / w);
-        let strength = a.hypot(b);
+        let strength = libm::hypot(a, b);
         // The strength that rounding alone gives a perfectly round or point-like cloud.
         let noise = rounding * spread + 1e-14 * (self.source_square + self.target_square);
         // Written as a negation, so that NaN counts as free and is caught by the test below.
         let turn_is_free = strength.partial_cmp(&noise) != Some(std::cmp::Ordering::Greater);
-        let yaw = if turn_is_free { fallback_yaw } else { a.atan2(b) };
-        let (sin, cos) = yaw.sin_cos();
+        let yaw = if turn_is_free { fallback_yaw } else { libm::atan2(a, b) };
+        let (sin, cos) = libm::sincos(yaw);
         let turned = |v: DVec2| DVec2::new(v.x * cos + v.y * sin, -v.x * sin + v.y * cos);
         let shift = (p - turned(q)) / w + source_centre - turned(target_centre);
         let distance = (spread - 2.0 * strength + self.height).max(0.0);

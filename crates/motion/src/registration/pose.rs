@@ -304,7 +304,7 @@ impl PoseSearch {
             enter,
             cost,
             position_cm: position * 100.0 * self.scale,
-            rotation_deg: (2.0 * (0.5 * rotation).min(1.0).asin()).to_degrees(),
+            rotation_deg: (2.0 * libm::asin((0.5 * rotation).min(1.0))).to_degrees(),
             velocity_mps: velocity * self.scale,
             grown: leave_grew || enter_grew,
         })

@@ -90,7 +90,7 @@ impl TwistSpread {
 /// Returns the angle of the twist of a rotation about a unit axis, radians: that of swing and
 /// twist, in the turn that is nearest to `before`.
 fn twist_angle(rotation: Quat, axis: Vec3, before: f32) -> f32 {
-    let angle = 2.0 * rotation.xyz().dot(axis).atan2(rotation.w);
+    let angle = 2.0 * libm::atan2f(rotation.xyz().dot(axis), rotation.w);
     angle + ((before - angle) / std::f32::consts::TAU).round() * std::f32::consts::TAU
 }
 

@@ -272,7 +272,7 @@ fn turned_about_bone(from: Vec3, to: Vec3, bones: &[(Vec3, Vec3)], near: Quat) -
     if size < MIN_DISTANCE_FROM_BONE * from.length() {
         return turn;
     }
-    quat::renormalize(Quat::from_axis_angle(axis, sin.atan2(cos)) * turn)
+    quat::renormalize(Quat::from_axis_angle(axis, libm::atan2f(sin, cos)) * turn)
 }
 
 /// Returns the unit vector from right to left of the rest pose: by roles, otherwise by names.

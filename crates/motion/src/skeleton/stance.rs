@@ -325,8 +325,13 @@ impl<'a> Stance<'a> {
             self.swing(head, self.end_of(head), Vec3::Y, Vec3::X, MAX_LEAN_RADIANS.max(least));
         }
         for (side, sign) in [(Side::Left, 1.0), (Side::Right, -1.0)] {
-            let arm = Vec3::new(sign * ARMS_DOWN_RADIANS.cos(), -ARMS_DOWN_RADIANS.sin(), 0.0);
-            let foot = Vec3::new(0.0, -FOOT_DOWN_RADIANS.sin(), FOOT_DOWN_RADIANS.cos());
+            let arm = Vec3::new(
+                sign * libm::cosf(ARMS_DOWN_RADIANS),
+                -libm::sinf(ARMS_DOWN_RADIANS),
+                0.0,
+            );
+            let foot =
+                Vec3::new(0.0, -libm::sinf(FOOT_DOWN_RADIANS), libm::cosf(FOOT_DOWN_RADIANS));
             let [thigh, shin, ankle, toe] = Role::leg(side).map(joint);
             let [upper, fore, hand] = Role::arm(side).map(joint);
             let bones = [

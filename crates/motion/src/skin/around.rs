@@ -131,7 +131,10 @@ impl SkinBuilder {
         // Cells are halved repeatedly, so sizes are rounded accordingly.
         let size = |cone: &Cone| {
             largest
-                * (MAX_CELL_SHARE * cone.thinness() / largest).clamp(0.2, 1.0).log2().round().exp2()
+                * libm::exp2f(
+                    libm::log2f((MAX_CELL_SHARE * cone.thinness() / largest).clamp(0.2, 1.0))
+                        .round(),
+                )
         };
         let sizes: Vec<f32> = cones.iter().map(size).collect();
         // A surface passes through about 1.5 cells for each square of the size of a cell.
@@ -268,7 +271,7 @@ impl ProceduralSkin {
         for ((position, reach), power) in
             mesh.positions.iter_mut().zip(&self.reach).zip(&self.powers)
         {
-            *position += *reach * (girth.powf(*power) - 1.0);
+            *position += *reach * (libm::powf(girth, *power) - 1.0);
         }
         mesh.normals = normals(&mesh.positions, &mesh.triangles);
         mesh

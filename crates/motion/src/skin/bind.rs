@@ -24,8 +24,8 @@ pub(super) fn bind_pose(skeleton: &Skeleton, roles: &Roles, stance: &WorldPose) 
     if let Some((left, up)) = body {
         for (side, sign) in [(Side::Left, 1.0), (Side::Right, -1.0)] {
             let out = left * sign;
-            let arm = out * ARMS_DOWN_RADIANS.cos() - up * ARMS_DOWN_RADIANS.sin();
-            let leg = out * LEGS_OUT_RADIANS.sin() - up * LEGS_OUT_RADIANS.cos();
+            let arm = out * libm::cosf(ARMS_DOWN_RADIANS) - up * libm::sinf(ARMS_DOWN_RADIANS);
+            let leg = out * libm::sinf(LEGS_OUT_RADIANS) - up * libm::cosf(LEGS_OUT_RADIANS);
             let bones = [
                 (Role::upper_arm(side), Role::forearm(side), arm),
                 (Role::forearm(side), Role::hand(side), arm),

@@ -38,9 +38,10 @@ pub(super) fn capsules(shapes: &[Shape], bind: &WorldPose) -> (SkinnedMesh, Vec<
         };
         // From the pole at `a` to the pole at `b`; the waist of both balls is where their cone
         // touches them.
-        let lean = ((placed.radius_a - placed.radius_b) / placed.a.distance(placed.b).max(1e-6))
-            .clamp(-0.9, 0.9)
-            .asin();
+        let lean = libm::asinf(
+            ((placed.radius_a - placed.radius_b) / placed.a.distance(placed.b).max(1e-6))
+                .clamp(-0.9, 0.9),
+        );
         corner(placed.a, -axis, placed.radius_a, joint_a);
         let up_a =
             (1..=RINGS).map(|ring| -FRAC_PI_2 + (FRAC_PI_2 + lean) * ring as f32 / RINGS as f32);
@@ -50,10 +51,10 @@ pub(super) fn capsules(shapes: &[Shape], bind: &WorldPose) -> (SkinnedMesh, Vec<
             .chain(up_b.map(|up| (placed.b, placed.radius_b, joint_b, up)));
         for (center, radius, joint, up) in rings {
             for side in 0..SIDES {
-                let (sin, cos) = (TAU * side as f32 / SIDES as f32).sin_cos();
+                let (sin, cos) = libm::sincosf(TAU * side as f32 / SIDES as f32);
                 corner(
                     center,
-                    axis * up.sin() + (flat * cos + other * sin) * up.cos(),
+                    axis * libm::sinf(up) + (flat * cos + other * sin) * libm::cosf(up),
                     radius,
                     joint,
                 );

@@ -53,7 +53,7 @@ impl Contouring {
         let all: Arc<[u16]> =
             (0..field.cones.len()).filter_map(|index| u16::try_from(index).ok()).collect();
         let can_be_meshed = !all.is_empty() && extent.is_finite() && finest > 0.0;
-        let levels = (extent / finest).log2().ceil().clamp(1.0, MAX_LEVELS as f32) as u32;
+        let levels = libm::log2f(extent / finest).ceil().clamp(1.0, MAX_LEVELS as f32) as u32;
         let cell = finest.max(extent / (1u32 << levels) as f32);
         Self {
             tree: Octree {

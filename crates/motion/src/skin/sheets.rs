@@ -89,7 +89,7 @@ fn order_around(contour: &Contour, around: &mut [HalfEdge]) {
         let way = vertex(next(next(edge.corner))) - start;
         // u, v and the axis are right-handed, so that the angle grows as a turn about the axis.
         let sign = u.cross(v).dot(axis).signum();
-        (sign * way.dot(v)).atan2(way.dot(u))
+        libm::atan2f(sign * way.dot(v), way.dot(u))
     };
     sort_by(around, |x, y| angle(x).total_cmp(&angle(y)));
 }

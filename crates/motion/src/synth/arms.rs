@@ -35,7 +35,7 @@ pub(super) fn arm(plan: &Plan, posture: &Posture, params: &Params, side: usize, 
     let phase = plan.cycles(secs) * TAU;
     // The right arm is in front with the left leg.
     let opposite = if side == 0 { -1.0 } else { 1.0 };
-    let wave = |shift: f64| opposite * (phase - shift * TAU).cos();
+    let wave = |shift: f64| opposite * libm::cos(phase - shift * TAU);
     let [a, b, c, _] = person(params.seed, 7 + side as u32);
     let mut arm = if gait.running {
         let quick = (gait.alike_mps / 3.5).clamp(0.5, 1.9);

@@ -61,7 +61,7 @@ fn over_the_ground(
         .collect();
     bridge(&mut away);
     let away: Vec<DVec2> = away.into_iter().map(Option::unwrap_or_default).collect();
-    let mut swayed = two_sided(&away, (-rate * plan.dt_secs).exp());
+    let mut swayed = two_sided(&away, libm::exp(-rate * plan.dt_secs));
     if let Some(period) = plan.period {
         let mean = swayed[plan.margin..plan.margin + period].iter().sum::<DVec2>() / period as f64;
         for sway in &mut swayed {

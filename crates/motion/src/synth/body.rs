@@ -92,7 +92,7 @@ impl Body {
     /// Returns the distance from hip joint to ankle when the knee is flexed by `radians`.
     pub(super) fn reach_at_flexion(&self, radians: f32) -> f32 {
         let (a, b) = (self.thigh, self.shank);
-        (a * a + b * b + 2.0 * a * b * radians.cos()).max(0.0).sqrt()
+        (a * a + b * b + 2.0 * a * b * libm::cosf(radians)).max(0.0).sqrt()
     }
 }
 

@@ -89,7 +89,7 @@ impl Foot {
 /// the pitch.
 fn pitched(v: Vec3, pitch: f64) -> (DVec2, DVec2) {
     let (y, z) = (f64::from(v.y), f64::from(v.z));
-    let (sin, cos) = pitch.sin_cos();
+    let (sin, cos) = libm::sincos(pitch);
     (
         DVec2::new(z * cos + y * sin, y * cos - z * sin),
         DVec2::new(y * cos - z * sin, -y * sin - z * cos),
@@ -98,7 +98,7 @@ fn pitched(v: Vec3, pitch: f64) -> (DVec2, DVec2) {
 
 /// Returns the direction of a yaw over the ground, (x, z).
 fn along(yaw: f64) -> DVec2 {
-    DVec2::new(yaw.sin(), yaw.cos())
+    DVec2::new(libm::sin(yaw), libm::cos(yaw))
 }
 
 /// Returns the world position of the ball of a planted foot at a pitch, and its derivative by the

@@ -51,8 +51,8 @@ impl Gait {
                 * f64::from(0.35 + 0.65 * style.stance_width),
             flat_from: 0.085,
             flat_to: 0.35 - 0.05 * (quick - 1.0),
-            strike_pitch: -(19.0 * quick.powf(0.6)).to_radians(),
-            release_pitch: (61.0 * quick.powf(0.2)).to_radians(),
+            strike_pitch: -(19.0 * libm::pow(quick, 0.6)).to_radians(),
+            release_pitch: (61.0 * libm::pow(quick, 0.2)).to_radians(),
             alike_mps: alike,
         }
     }
@@ -70,7 +70,7 @@ impl Gait {
         // A bouncier runner has a shorter contact and therefore a higher flight; gravity does not
         // change.
         let contact_secs =
-            0.45 * alike.max(1.0).powf(-0.64) * (1.12 - 0.12 * f64::from(style.bounce));
+            0.45 * libm::pow(alike.max(1.0), -0.64) * (1.12 - 0.12 * f64::from(style.bounce));
         let quick = ((alike - 1.8) / 4.7).clamp(0.0, 1.0);
         Self {
             running: true,

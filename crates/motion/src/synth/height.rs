@@ -149,7 +149,7 @@ impl<'a> Legs<'a> {
 fn smoothed(values: &[f64], half: usize) -> Vec<f64> {
     let span = (half + 1) as f64;
     let weights: Vec<f64> =
-        (0..=half).map(|k| 1.0 + (std::f64::consts::PI * k as f64 / span).cos()).collect();
+        (0..=half).map(|k| 1.0 + libm::cos(std::f64::consts::PI * k as f64 / span)).collect();
     let total: f64 = weights[0] + 2.0 * weights[1..].iter().sum::<f64>();
     let last = values.len().saturating_sub(1);
     (0..values.len())
@@ -220,7 +220,7 @@ fn walking(plan: &Plan, legs: &Legs, params: &Params) -> Vec<f64> {
                 - 0.5
                     * rise
                     * plan.going(secs)
-                    * (2.0 * std::f64::consts::TAU * (plan.cycles(secs) - LOWEST_CYCLES)).cos()
+                    * libm::cos(2.0 * std::f64::consts::TAU * (plan.cycles(secs) - LOWEST_CYCLES))
         })
         .collect();
     // Over a whole step, so that the mean height is lowered and the wave is kept.
@@ -243,7 +243,7 @@ fn spring_mass(secs: f64, step_secs: f64, contact_secs: f64) -> f64 {
         let peak = 0.5 * std::f64::consts::PI * step_secs / c;
         // Integrated twice with the velocity `down` at the strike; symmetric about the middle, so
         // that the release mirrors the strike.
-        let from_force = g * peak * (secs / w - (w * secs).sin() / (w * w));
+        let from_force = g * peak * (secs / w - libm::sin(w * secs) / (w * w));
         down * secs + from_force - 0.5 * g * secs * secs
     } else {
         let t = secs - contact_secs;
@@ -265,7 +265,7 @@ fn running(plan: &Plan, legs: &Legs) -> Vec<f64> {
         .collect();
     // 12° at the strike, about 40° in the middle, 16° at the release (Novacheck 1998, figure 8).
     let flexion =
-        |progress: f64| (14.0 + 27.0 * (std::f64::consts::PI * progress).sin()).to_radians();
+        |progress: f64| (14.0 + 27.0 * libm::sin(std::f64::consts::PI * progress)).to_radians();
     let mut sum = 0.0;
     let mut total = 0.0;
     let mut limit = f64::INFINITY;

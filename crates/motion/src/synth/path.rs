@@ -20,12 +20,12 @@ pub(super) struct Place {
 impl Place {
     /// Returns the heading as (x, z).
     pub(super) fn forward(&self) -> DVec2 {
-        DVec2::new(self.yaw.sin(), self.yaw.cos())
+        DVec2::new(libm::sin(self.yaw), libm::cos(self.yaw))
     }
 
     /// Returns the direction to the left as (x, z).
     pub(super) fn left(&self) -> DVec2 {
-        DVec2::new(self.yaw.cos(), -self.yaw.sin())
+        DVec2::new(libm::cos(self.yaw), -libm::sin(self.yaw))
     }
 
     /// Returns the acceleration over the ground: thrust along the heading, centripetal across it.
@@ -69,9 +69,9 @@ fn arc(yaw: f64, speed: f64, yaw_rate: f64, dt: f64) -> DVec2 {
     let sinc = if half_turn.abs() < 1e-6 {
         1.0 - half_turn * half_turn / 6.0
     } else {
-        half_turn.sin() / half_turn
+        libm::sin(half_turn) / half_turn
     };
-    let (sin, cos) = (yaw + half_turn).sin_cos();
+    let (sin, cos) = libm::sincos(yaw + half_turn);
     DVec2::new(sin, cos) * (speed * dt * sinc)
 }
 

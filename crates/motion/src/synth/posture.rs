@@ -115,8 +115,8 @@ impl Posture {
         let shift = self.looped(6.0, secs);
         let (fast, faster) = (self.looped(2.6, secs), self.looped(1.7, secs));
         DVec2::new(
-            0.022 * (shift + 0.25 * shift.sin()).sin() + 0.003 * fast.sin(),
-            0.006 * (self.looped(3.3, secs) + 1.0).sin() + 0.0025 * faster.sin(),
+            0.022 * libm::sin(shift + 0.25 * libm::sin(shift)) + 0.003 * libm::sin(fast),
+            0.006 * libm::sin(self.looped(3.3, secs) + 1.0) + 0.0025 * libm::sin(faster),
         ) * self.size
     }
 
@@ -124,18 +124,18 @@ impl Posture {
     /// faster than expiration.
     pub(super) fn breath(&self, secs: f64) -> f64 {
         let phase = self.looped(4.2, secs);
-        (phase + 0.35 * phase.sin()).sin()
+        libm::sin(phase + 0.35 * libm::sin(phase))
     }
 
     fn angles(&self, plan: &Plan, secs: f64) -> Angles {
         let place = plan.path.at(secs);
         let going = plan.going(secs);
         let phase = plan.cycles(secs) * TAU;
-        let wave = |shift: f64| (phase - shift * TAU).cos();
-        let twice = |shift: f64| (2.0 * (phase - shift * TAU)).cos();
+        let wave = |shift: f64| libm::cos(phase - shift * TAU);
+        let twice = |shift: f64| libm::cos(2.0 * (phase - shift * TAU));
         let lean = place.to_local(place.lean(gravity()));
-        let into_curve = lean.x.atan() * (0.3 + 0.7 * self.lean) * 0.85;
-        let thrust_lean = lean.y.atan() * 0.45;
+        let into_curve = libm::atan(lean.x) * (0.3 + 0.7 * self.lean) * 0.85;
+        let thrust_lean = libm::atan(lean.y) * 0.45;
         let energy = (0.4 + 0.6 * self.energy) * going;
         let quick = self.quick;
         let mut a = Angles {
@@ -159,7 +159,7 @@ impl Posture {
             a.pelvis_turn = -degrees(3.0 + 2.5 * quick) * energy * wave(-0.01);
             a.pelvis_list = degrees(1.8 + 2.8 * quick)
                 * energy
-                * (0.85 * wave(0.20) + 0.15 * (3.0 * (phase - 0.20 * TAU) + 0.5 * TAU).cos());
+                * (0.85 * wave(0.20) + 0.15 * libm::cos(3.0 * (phase - 0.20 * TAU) + 0.5 * TAU));
             a.pelvis_tilt = degrees(3.0)
                 + degrees(1.5) * going * quick * self.lean
                 + degrees(1.2) * energy * twice(0.04);
@@ -177,7 +177,7 @@ impl Posture {
             a.pelvis_list += 1.6 * drift;
             a.chest_list -= 0.7 * drift;
             a.pelvis_turn -= 0.9 * drift;
-            a.head_heading += degrees(1.5) * (self.looped(6.0, secs) + 2.0).sin();
+            a.head_heading += degrees(1.5) * libm::sin(self.looped(6.0, secs) + 2.0);
         }
         let quiet = (1.0 - going) * degrees(0.9) * self.breath(secs);
         a.chest_bow -= quiet;

@@ -140,7 +140,7 @@ impl LimbPose {
     /// Returns the greatest length of this leg.
     pub(crate) fn reach(&self) -> f32 {
         let (a, b) = (self.thigh.length(), self.shin.length());
-        let reach = (a * a + b * b + 2.0 * a * b * MIN_FLEXION_RADIANS.cos()).sqrt();
+        let reach = (a * a + b * b + 2.0 * a * b * libm::cosf(MIN_FLEXION_RADIANS)).sqrt();
         reach.max(self.line().length())
     }
 
@@ -195,13 +195,13 @@ impl LimbPose {
     pub(crate) fn flexion(&self, usual_axis: Vec3) -> f32 {
         let sine = self.bend().dot(self.rotations[0] * usual_axis);
         let lengths = (self.thigh.length() * self.shin.length()).max(1e-9);
-        sine.atan2(self.thigh.dot(self.shin) / lengths)
+        libm::atan2f(sine, self.thigh.dot(self.shin) / lengths)
     }
 
     /// Returns the distance from start to end at a flexion, metres.
     fn distance_at(&self, flexion: f32) -> f32 {
         let (a, b) = (self.thigh.length(), self.shin.length());
-        (a * a + b * b + 2.0 * a * b * flexion.cos()).max(0.0).sqrt()
+        (a * a + b * b + 2.0 * a * b * libm::cosf(flexion)).max(0.0).sqrt()
     }
 
     /// Returns world rotations of the two bones that move the end by `shift` relative to the start,

@@ -355,7 +355,7 @@ fn with_wrong_alignment(
 
 /// Returns the yaw of a program that uses `atan(A / B)`.
 fn by_atan(yaw: f64) -> f64 {
-    (yaw.sin() / yaw.cos()).atan()
+    libm::atan(libm::sin(yaw) / libm::cos(yaw))
 }
 
 /// Returns the yaw of a program that passes degrees as radians.
@@ -366,14 +366,14 @@ fn by_degrees(yaw: f64) -> f64 {
 /// Returns the ground frame of a character whose facing is the projection of its root's Y axis.
 fn standing_by_y(source: &Motion, frame: usize) -> Planar {
     let axis = source.clip().rotations(frame).first().map_or(Vec3::Y, |root| *root * Vec3::Y);
-    Planar { yaw: f64::from(axis.x).atan2(axis.z.into()), ..source.ground_frames()[frame] }
+    Planar { yaw: libm::atan2(f64::from(axis.x), axis.z.into()), ..source.ground_frames()[frame] }
 }
 
 /// Returns the alignment of a program that gets the yaw wrong: the correct one, with the point
 /// cloud rotated about its middle by another angle.
 fn with_wrong_yaw(right: &Planar, middle: DVec2, wrong: fn(f64) -> f64) -> Planar {
     // B is treated as facing the other way if the mistake would otherwise have no effect.
-    let facing = if right.yaw.cos() > 0.0 { PI } else { 0.0 };
+    let facing = if libm::cos(right.yaw) > 0.0 { PI } else { 0.0 };
     let mistaken = wrong(right.yaw - facing) + facing;
     let turned = |yaw: f64| Planar { yaw, shift: DVec2::ZERO };
     let to = right.after(&Planar { yaw: 0.0, shift: middle });

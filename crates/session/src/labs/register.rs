@@ -146,7 +146,7 @@ impl RegistrationFacts {
     #[must_use]
     pub fn secs_near(&self, frames: [f64; 2]) -> Option<f64> {
         let off = |frame_pair: &FramePair| {
-            (frame_pair.frames[0] - frames[0]).hypot(frame_pair.frames[1] - frames[1])
+            libm::hypot(frame_pair.frames[0] - frames[0], frame_pair.frames[1] - frames[1])
         };
         let nearest =
             (self.frame_pairs.iter().enumerate()).min_by(|x, y| off(x.1).total_cmp(&off(y.1)));

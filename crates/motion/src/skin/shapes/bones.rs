@@ -51,7 +51,8 @@ impl Lengths {
     fn radius(&self, below: f32, length: f32) -> f32 {
         let (of_bone, of_limb) = MAX_RADIUS_SHARES;
         let limit = (of_bone * length).max(of_limb * below);
-        (GIRTH * self.total.powf(1.0 - GIRTH_POWER) * below.powf(GIRTH_POWER)).min(limit)
+        (GIRTH * libm::powf(self.total, 1.0 - GIRTH_POWER) * libm::powf(below, GIRTH_POWER))
+            .min(limit)
     }
 }
 

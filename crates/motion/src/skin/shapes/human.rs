@@ -119,7 +119,7 @@ fn scale(skeleton: &Skeleton, rest: &[Vec3], roles: &Roles) -> Option<f32> {
     let trunk = middle(Role::thigh)?.distance(middle(Role::upper_arm)?);
     let height = roles.body_height(skeleton);
     let longer = (trunk / TRUNK_SHARE / height / LONG_TRUNK).max(1.0);
-    Some(longer.powf(0.75) * height / 1.75)
+    Some(libm::powf(longer, 0.75) * height / 1.75)
 }
 
 impl Human<'_> {
@@ -510,7 +510,7 @@ impl Human<'_> {
         let (sin, cos) = if (0.05..0.9).contains(&slope) {
             (slope, (1.0 - slope * slope).sqrt())
         } else {
-            27f32.to_radians().sin_cos()
+            libm::sincosf(27f32.to_radians())
         };
         let forward = along * cos + rise * sin;
         let up = rise * cos - along * sin;

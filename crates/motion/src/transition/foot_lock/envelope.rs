@@ -3,7 +3,8 @@
 /// Returns means over `reach` values to either side with the weights of a raised cosine; at the
 /// ends over the existing ones.
 pub(crate) fn smoothed(values: &[f32], reach: usize) -> Vec<f32> {
-    let weight = |off: isize| 1.0 + (std::f32::consts::PI * off as f32 / (reach + 1) as f32).cos();
+    let weight =
+        |off: isize| 1.0 + libm::cosf(std::f32::consts::PI * off as f32 / (reach + 1) as f32);
     let weights: Vec<f32> = (-(reach as isize)..=reach as isize).map(weight).collect();
     let mean = |at: usize| {
         let first = at.saturating_sub(reach);
