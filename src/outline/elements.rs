@@ -42,6 +42,11 @@ impl Found<'_> {
                     self.sort_line(&mut element.children);
                 }
                 numbers.push(element.number);
+                if child.role() == Role::Button {
+                    // A button has no contents: what it opens stands after it, and the button
+                    // stays what it is, with the focus.
+                    numbers.append(&mut element.children);
+                }
                 self.elements.push(element);
             } else {
                 self.describe(&inner, child.description());
@@ -59,7 +64,7 @@ impl Found<'_> {
         // A container with nothing but a hint is replaced by its contents.
         let is_hint = node.description() == Some(&name) && node.role() == Role::GenericContainer;
         let mut role = aria_role(node, !name.is_empty() && !is_hint)?;
-        if role == "button" && !children.is_empty() {
+        if role == "button" && node.role() != Role::Button && !children.is_empty() {
             // A window that is raised by a press.
             role = "group";
         }

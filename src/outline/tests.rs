@@ -216,3 +216,30 @@ fn keys_have_the_names_of_the_browser() {
     assert_eq!(key_of("Digit7"), Some(Key::Num7));
     assert_eq!(key_of("Unidentified"), None);
 }
+
+#[test]
+fn button_stays_a_button_while_what_it_opens_is_shown() {
+    let (ctx, _outline) = told_outline();
+    let show = |is_open: bool, ui: &mut Ui| {
+        let opener = ui.button("Pose jump");
+        egui::Popup::from_response(&opener).open(is_open).show(|ui| {
+            ui.ctx().accesskit_node_builder(ui.unique_id(), |node| {
+                node.set_role(Role::Dialog);
+                node.set_label("Explanation");
+            });
+            ui.label("How far a joint turns in one frame.");
+        });
+    };
+    let closed = frame(&ctx, |ui| show(false, ui)).expect("all elements");
+    let number = number_of(&closed, "button", "Pose jump");
+    // egui measures a popup in its first frame, and shows it in its second.
+    let open: Vec<_> = (0..2).filter_map(|_| frame(&ctx, |ui| show(true, ui))).collect();
+    let dialog = open.iter().find(|changes| find(changes, "dialog", "Explanation").is_some());
+    assert!(dialog.is_some(), "{open:?}");
+    for changes in &open {
+        let mut elements = changes["elements"].as_array().expect("elements").iter();
+        let opener = elements.find(|element| element["number"] == number);
+        assert!(opener.is_none_or(|opener| opener["role"] == "button"), "{changes}");
+        assert_eq!(changes["gone"].as_array().map(Vec::len), Some(0), "{changes}");
+    }
+}

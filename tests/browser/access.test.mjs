@@ -83,9 +83,11 @@ onOneBackend("menus, help and contents are elements as the page is", async ({ op
   assert.deepEqual(await faults(page), [], "help");
 });
 
-// Fails when the explanation of a number is wrong for screen readers.
-onOneBackend("explanation of a number is an element as the page is", async ({ open }) => {
-  const { page } = await open("lab=blend&play=off", { viewport: [1280, 800] });
+// Fails when a window over the page, a refusal, the presenter or the other language is wrong for
+// screen readers.
+onOneBackend("dialogs, refusals, the presenter and Chinese are elements as the page is", async ({ open }) => {
+  const { page, segue } = await open("lab=blend&play=off", { viewport: [1280, 800] });
+  const button = (name) => page.getByRole("button", { name, exact: true }).first();
   const press = async (element) => {
     await until("it is there", async () => (await element.count()) > 0);
     await element.focus();
@@ -95,11 +97,36 @@ onOneBackend("explanation of a number is an element as the page is", async ({ op
     await elements(page);
     assert.deepEqual(await faults(page), [], what);
   };
+  const closed = (what) => until(`${what} is closed`, async () => (await page.getByRole("dialog").count()) === 0);
   await elements(page);
 
   await press(page.getByRole("button", { name: /^Pose jump/ }).first());
   await until("the explanation is open", async () => (await page.getByRole("dialog", { name: "Pose jump" }).count()) === 1);
   await sound("explanation");
+  await page.keyboard.press("Escape");
+  await closed("the explanation");
+  const number = await focused(page);
+  assert.equal(number.what, "button");
+  assert.match(number.name, /^Pose jump/, "the number has the keyboard again");
+
+  await press(button("More ways to share"));
+  await press(page.getByRole("menuitem", { name: "Convert many files…" }));
+  await until("the converter is open", async () => (await page.getByRole("dialog", { name: "Convert many files" }).count()) === 1);
+  await sound("converter");
+  await page.keyboard.press("Escape");
+  await closed("the converter");
+
+  await segue("set", { lab: "speed", a: "idle", b: "idle" }).catch(() => {});
+  await until("the refusal is told", async () => (await page.locator("#outline [aria-label='Stage']").textContent()).includes("Stand"));
+  await sound("refusal");
+  await segue("set", { lang: "zh-Hant", lab: "match" });
+  await until("the page is Chinese", () => page.evaluate(() => document.documentElement.lang === "zh-Hant"));
+  await sound("Chinese");
+  await segue("set", { lang: "en", lab: "blend", a: "walk", b: "run" });
+  await press(button("More ways to share"));
+  await press(page.getByRole("menuitem", { name: "Present" }));
+  await until("the stage stands alone", async () => (await page.locator("#outline > [aria-label='Library']").count()) === 0);
+  await sound("presenter");
 });
 
 // Fails when Tab does not begin at the first element, leaves the reading order, or loses a press

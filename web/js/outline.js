@@ -53,6 +53,7 @@ export class Outline {
   }
 
   #update({ elements, gone, focus, top, skip }) {
+    const hadKeyboard = this.#root.contains(document.activeElement);
     setText(this.#skip, skip);
     for (const told of elements) this.#show(told);
     // Only now: a parent may name a child that comes after it.
@@ -66,7 +67,16 @@ export class Outline {
     const modal = top.findLast((number) => this.#told.get(number).modal);
     for (const number of top) this.#elements.get(number).inert = modal !== undefined && number !== modal;
     this.#settle(focus);
+    if (hadKeyboard) this.#keepKeyboard(modal);
     this.#nameEditor();
+  }
+
+  /** Moves the keyboard from an element that is gone, or behind a dialog, into that dialog, or else to the canvas. */
+  #keepKeyboard(modal) {
+    const active = document.activeElement;
+    if (active !== document.body && !active.closest("[inert]")) return;
+    const first = modal === undefined ? undefined : this.#stops(`[data-number='${modal}']`)[0];
+    (first ?? this.#canvas()).focus({ preventScroll: true });
   }
 
   /** Makes an element as the app tells. */

@@ -7,8 +7,8 @@ use super::paint::{Run, faded, focus_ring, full_width, line_of, put};
 use crate::ui::language::{Text, say};
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{
-    Align2, CursorIcon, InnerResponse, Popup, PopupCloseBehavior, Rect, RectAlign, Response, Role,
-    Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
+    Align2, CursorIcon, Id, InnerResponse, Popup, PopupCloseBehavior, Rect, RectAlign, Response,
+    Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };
 
 /// One line of a menu.
@@ -50,11 +50,44 @@ fn popup_ui<R>(
     closes: PopupCloseBehavior,
     content: impl FnOnce(&mut Ui) -> R,
 ) -> Option<InnerResponse<R>> {
-    Popup::menu(opener).align(align).gap(space::XS).close_behavior(closes).show(|ui| {
+    let id = Popup::default_response_id(opener);
+    let was_open = Popup::is_id_open(&opener.ctx, id);
+    let menu = Popup::menu(opener).align(align).gap(space::XS).close_behavior(closes);
+    let shown = menu.show(|ui| {
         ui.spacing_mut().item_spacing.y = 1.0;
         ui.set_min_width(opener.rect.width().max(150.0 * theme_of(ui).scale()));
-        content(ui)
-    })
+        if closes == PopupCloseBehavior::CloseOnClick {
+            until_choice(content, ui)
+        } else {
+            content(ui)
+        }
+    });
+    let is_closed = was_open && !Popup::is_id_open(&opener.ctx, id);
+    if is_closed && !opener.ctx.input(|input| input.pointer.any_click()) {
+        // Keys have closed it, and go on from where they opened it.
+        opener.request_focus();
+    }
+    shown
+}
+
+/// Draws the contents of a menu, and closes it once one of its lines is chosen. egui closes it for
+/// clicks of a pointer only, and not for keys and screen readers.
+pub(crate) fn until_choice<R>(content: impl FnOnce(&mut Ui) -> R, ui: &mut Ui) -> R {
+    let before = choices(ui);
+    let result = content(ui);
+    if choices(ui) != before {
+        ui.close();
+    }
+    result
+}
+
+/// Returns how many lines of menus have been chosen.
+fn choices(ui: &Ui) -> u64 {
+    ui.data(|data| data.get_temp(choices_id())).unwrap_or(0)
+}
+
+fn choices_id() -> Id {
+    Id::unique("segue choices in menus")
 }
 
 /// Draws a menu that opens at the pointer when `widget` is clicked with the second button, or
@@ -66,7 +99,7 @@ pub(crate) fn context_menu_ui<R>(
     Popup::context_menu(widget).close_behavior(PopupCloseBehavior::CloseOnClick).show(|ui| {
         ui.spacing_mut().item_spacing.y = 1.0;
         ui.set_min_width(150.0 * theme_of(ui).scale());
-        content(ui)
+        until_choice(content, ui)
     })
 }
 
@@ -116,6 +149,9 @@ pub(crate) fn menu_item_ui(item: MenuItem<'_>, ui: &mut Ui) -> Response {
     let mut info = WidgetInfo::labeled(Role::MenuItem, enabled, name);
     info.selected = item.chosen;
     describe(&response, &info);
+    if response.clicked() {
+        ui.data_mut(|data| *data.get_temp_mut_or_default::<u64>(choices_id()) += 1);
+    }
     response
 }
 

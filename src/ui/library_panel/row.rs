@@ -209,7 +209,7 @@ fn menu_ui(
     let at_pointer = ui.data(|data| data.get_temp(at_pointer_id)).unwrap_or(false);
     let menu = Popup::menu(row).align(RectAlign::BOTTOM_END).open_memory(opens);
     let menu = if at_pointer { menu.at_pointer_fixed() } else { menu };
-    menu.show(|ui| {
+    let lines = |ui: &mut Ui| {
         let needs_focus = !ui.is_sizing_pass()
             && ui.data_mut(|data| std::mem::take(data.get_temp_mut_or_default::<bool>(focus_id)));
         let mut first = needs_focus;
@@ -268,5 +268,6 @@ fn menu_ui(
                 out.actions.push(Action::Save { which: entry.id.clone(), how });
             }
         }
-    });
+    };
+    menu.show(|ui| kit::until_choice(lines, ui));
 }

@@ -3,7 +3,7 @@
 use super::*;
 use crate::ui::out::ConvertAction;
 use crate::ui::state::ConvertShown;
-use segue_session::convert::ConversionRow;
+use segue_session::conversion::ConversionRow;
 use std::sync::Arc;
 
 fn row(
@@ -134,6 +134,31 @@ fn chosen_clips_go_to_the_panel_of_conversions() {
     assert_eq!(harness.state().out.actions, [Action::Convert(clips)]);
     assert!(harness.state().state.convert.is_open);
     // Escape closes the panel.
+    harness.key_press(eframe::egui::Key::Escape);
+    harness.run();
+    assert!(!harness.state().state.convert.is_open);
+}
+
+/// Keys choose a line of a menu as a pointer does: the menu closes, and they go on at its button.
+#[test]
+fn menu_closes_after_a_choice_by_keys() {
+    let mut harness = harness(DESK, DARK, page("lab=blend&play=off"));
+    let opener = |harness: &Harness<'_, Page>| {
+        harness.get_by_label(text::SHARE.english()).accesskit_node().is_focused()
+    };
+    harness.get_by_label(text::SHARE.english()).focus();
+    harness.run();
+    harness.key_press(eframe::egui::Key::Enter);
+    harness.run();
+    harness.get_by_label(text::CONVERT_FILES.english()).focus();
+    harness.run();
+    harness.key_press(eframe::egui::Key::Enter);
+    harness.run();
+    assert!(harness.state().state.convert.is_open);
+    assert!(
+        harness.query_by_role_and_label(Role::MenuItem, text::CONVERT_FILES.english()).is_none()
+    );
+    assert!(opener(&harness), "the button of the menu has the keyboard");
     harness.key_press(eframe::egui::Key::Escape);
     harness.run();
     assert!(!harness.state().state.convert.is_open);
