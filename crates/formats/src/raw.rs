@@ -14,7 +14,7 @@ const SAME_PLACE: f32 = 1e-6;
 
 /// A motion as in the file: joints, rotations (frame-major), the translations of the root, and
 /// those of other joints by index.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct RawMotion {
     pub(super) joints: Vec<Joint>,
     pub(super) rotations: Vec<Quat>,

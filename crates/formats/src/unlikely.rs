@@ -1,5 +1,5 @@
-//! Detection of implausible motions: bodies of a size that people do not have, roots that jump,
-//! positions far from the origin. They are read unchanged, with a warning.
+//! Detection of implausible motions: bodies of a size that people do not have, joints that jump,
+//! positions far from the origin or the parent joint. They are read unchanged, with a warning.
 
 use super::ImportOptions;
 use super::measure::Measure;
@@ -23,13 +23,13 @@ pub struct Mendable {
     /// Metres per unit that make the body as tall as a person: the assumed unit times a power of
     /// ten.
     pub metres_per_unit: Option<f64>,
-    /// Whether the root is far off in single rows, and back in the next one.
+    /// Whether a joint is far off in single rows, and back in the next one.
     pub wild_rows: bool,
 }
 
 impl RawMotion {
     /// Adds warnings about implausible values of a measured motion, and evens out single rows in
-    /// which the root is far off if the options say so.
+    /// which a joint is far off if the options say so.
     pub(super) fn warn_of_unlikely(
         &mut self,
         measure: &Measure,
@@ -44,32 +44,71 @@ impl RawMotion {
             mendable.metres_per_unit = fitting_unit(measure);
         }
         let unit = measure.provenance.metres_per_unit;
-        let found = jumps(&self.root_translations, unit);
-        if let Some(metres) = found.wild_metres {
-            let evened = options.even_wild_rows;
-            for _ in &found.wild_rows {
-                tally.add(WarningKind::WildRows { metres, evened }, None);
-            }
-            mendable.wild_rows = !evened;
-            if evened {
-                for &row in &found.wild_rows {
-                    even_out(&mut self.root_translations, row);
-                }
-            }
-        }
-        for _ in 0..found.others {
-            let metres = found.other_metres;
-            tally.add(WarningKind::RootJumps { metres }, None);
-        }
-        let farthest = self
-            .root_translations
-            .iter()
-            .map(|place| place.as_dvec3().length() * unit)
-            .fold(0.0, f64::max);
-        if farthest > FAR_METRES {
-            tally.add(WarningKind::FarAway { metres: farthest }, None);
-        }
+        let joints = &self.joints;
+        let name = |joint: usize| joints.get(joint).map(|joint| joint.name.as_str());
+        let others = self.tracks.iter_mut().map(|(joint, way)| (name(*joint), way));
+        let ways = std::iter::once((None, &mut self.root_translations)).chain(others);
+        mendable.wild_rows = warn_of_ways(ways, unit, options, tally);
         mendable
+    }
+}
+
+/// Adds warnings about the positions of joints by their names, `None` for the root, and evens out
+/// single rows if the options say so. Returns whether there are such rows that were not.
+fn warn_of_ways<'a>(
+    ways: impl Iterator<Item = (Option<&'a str>, &'a mut Vec<Vec3>)>,
+    unit: f64,
+    options: &ImportOptions,
+    tally: &mut Tally,
+) -> bool {
+    let evened = options.even_wild_rows;
+    let (mut wild, mut others, mut far) = (Worst::default(), Worst::default(), Worst::default());
+    for (joint, way) in ways {
+        let found = jumps(way, unit);
+        wild.take(found.wild_rows.len(), found.wild_metres.unwrap_or(0.0), joint);
+        others.take(found.others, found.other_metres, joint);
+        if evened {
+            for &row in &found.wild_rows {
+                even_out(way, row);
+            }
+        }
+        let farthest = way.iter().map(|place| place.as_dvec3().length() * unit).fold(0.0, f64::max);
+        far.take(usize::from(farthest > FAR_METRES), farthest, joint);
+    }
+    for _ in 0..wild.count {
+        let (joint, metres) = wild.worst();
+        tally.add(WarningKind::WildRows { joint, metres, evened }, None);
+    }
+    for _ in 0..others.count {
+        let (joint, metres) = others.worst();
+        tally.add(WarningKind::Jumps { joint, metres }, None);
+    }
+    if far.count > 0 {
+        let (joint, metres) = far.worst();
+        tally.add(WarningKind::FarAway { joint, metres }, None);
+    }
+    wild.count > 0 && !evened
+}
+
+/// How often something is found, and where it is worst.
+#[derive(Debug, Default)]
+struct Worst<'a> {
+    count: usize,
+    metres: f64,
+    joint: Option<&'a str>,
+}
+
+impl<'a> Worst<'a> {
+    /// Adds what was found at a joint.
+    fn take(&mut self, count: usize, metres: f64, joint: Option<&'a str>) {
+        self.count += count;
+        if count > 0 && metres > self.metres {
+            (self.metres, self.joint) = (metres, joint);
+        }
+    }
+
+    fn worst(&self) -> (Option<String>, f64) {
+        (self.joint.map(str::to_owned), self.metres)
     }
 }
 
@@ -77,7 +116,7 @@ impl RawMotion {
 fn fitting_unit(measure: &Measure) -> Option<f64> {
     let unit = measure.provenance.metres_per_unit;
     // From 1.7 m, the middle of the range, this is the nearest power.
-    let power = (1.7 / measure.height_metres()).log10().round();
+    let power = libm::log10(1.7 / measure.height_metres()).round();
     let fitting = unit * 10_f64.powi(power as i32);
     (fitting.is_finite()
         && fitting > 0.0
@@ -141,6 +180,7 @@ fn even_out(way: &mut [Vec3], row: usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use segue_motion::skeleton::Joint;
 
     fn walk(places: &[(usize, f32)]) -> Vec<Vec3> {
         let mut way: Vec<Vec3> =
@@ -163,6 +203,38 @@ mod tests {
         // The same in centimetres is no jump.
         assert_eq!(jumps(&walk(&[(4, 400.0)]), 0.01), Jumps::default());
         assert_eq!(jumps(&[], 1.0), Jumps::default());
+    }
+
+    /// As in the files of Bandai-Namco: a root at rest on the ground, and hips that move below it.
+    #[test]
+    fn positions_of_every_joint_are_checked() {
+        let joint = |name: &str, parent| Joint { name: name.into(), parent, offset: Vec3::ZERO };
+        let motion = || RawMotion {
+            joints: vec![joint("root", None), joint("hips", Some(0)), joint("hand", Some(1))],
+            rotations: Vec::new(),
+            root_translations: vec![Vec3::ZERO; 10],
+            tracks: vec![(1, walk(&[(4, 1e18)])), (2, walk(&[(6, 7.0), (7, 7.0)]))],
+        };
+        let warned = |options: &ImportOptions, motion: &mut RawMotion| {
+            let (mut tally, way) = (Tally::default(), &mut motion.tracks);
+            let ways = way
+                .iter_mut()
+                .map(|(joint, way)| (Some(if *joint == 1 { "hips" } else { "hand" }), way));
+            let mendable = warn_of_ways(ways, 1.0, options, &mut tally);
+            let sentences = tally.into_warnings(b"").into_iter();
+            (mendable, sentences.map(|warning| warning.to_string()).collect::<Vec<_>>())
+        };
+        let mut read = motion();
+        let (mendable, sentences) = warned(&ImportOptions::default(), &mut read);
+        assert!(mendable);
+        assert!(sentences[0].contains("1 row with a joint") && sentences[0].contains("`hips`"));
+        assert!(sentences[1].contains("jumps of joints") && sentences[1].contains("`hand`"));
+        assert!(sentences[2].contains("`hips` goes"), "{sentences:?}");
+        assert_eq!(read, motion(), "nothing is changed unasked");
+        let evened = ImportOptions { even_wild_rows: true, ..ImportOptions::default() };
+        let (mendable, sentences) = warned(&evened, &mut read);
+        assert!(!mendable && sentences[0].contains("put between"), "{sentences:?}");
+        assert!(read.tracks[0].1.iter().all(|place| place.length() < 2.0));
     }
 
     #[test]

@@ -164,20 +164,26 @@ pub enum WarningKind {
         /// Its height, metres.
         metres: f64,
     },
-    /// Single rows in which the root is far from its positions before and after.
+    /// Single rows in which a joint is far from its positions before and after.
     WildRows {
+        /// The joint, or the one that is farthest away of several; `None` for the root.
+        joint: Option<String>,
         /// The farthest jump, metres.
         metres: f64,
         /// Whether these positions were replaced by positions between their neighbours.
         evened: bool,
     },
-    /// A root that jumps from one frame to the next and stays there.
-    RootJumps {
+    /// A joint that jumps from one frame to the next and stays there.
+    Jumps {
+        /// The joint, or the one that jumps farthest of several; `None` for the root.
+        joint: Option<String>,
         /// The farthest jump, metres.
         metres: f64,
     },
-    /// A root far from the origin.
+    /// A root far from the origin, or a joint far from its parent.
     FarAway {
+        /// The joint, or the farthest of several; `None` for the root.
+        joint: Option<String>,
         /// The greatest distance, metres.
         metres: f64,
     },

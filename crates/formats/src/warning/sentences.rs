@@ -251,24 +251,39 @@ impl ToMessage for ImportWarning {
             WarningKind::UnlikelyHeight { metres } => {
                 msg!("the body is {metres} tall: its unit may be wrong", metres = length(*metres))
             }
-            WarningKind::WildRows { metres, evened: false } => {
+            WarningKind::WildRows { joint: None, metres, evened: false } => {
                 msg!(
                     "{count, plural, one {# row} other {# rows}} with a root that is {metres} away for that row alone",
                     metres = length(*metres)
                 )
             }
-            WarningKind::WildRows { metres, evened: true } => msg!(
+            WarningKind::WildRows { joint: None, metres, evened: true } => msg!(
                 "{count, plural, one {# row} other {# rows}} with a root that is {metres} away for that row alone; put between its neighbours",
                 metres = length(*metres)
             ),
-            WarningKind::RootJumps { metres } => {
+            WarningKind::WildRows { joint: Some(joint), metres, evened: false } => msg!(
+                "{count, plural, one {# row} other {# rows}} with a joint that is away for that row alone, `{joint}` by {metres}",
+                metres = length(*metres)
+            ),
+            WarningKind::WildRows { joint: Some(joint), metres, evened: true } => msg!(
+                "{count, plural, one {# row} other {# rows}} with a joint that is away for that row alone, `{joint}` by {metres}; put between its neighbours",
+                metres = length(*metres)
+            ),
+            WarningKind::Jumps { joint: None, metres } => {
                 msg!(
                     "{count, plural, one {# jump} other {# jumps}} of the root from one frame to the next, up to {metres}",
                     metres = length(*metres)
                 )
             }
-            WarningKind::FarAway { metres } => {
+            WarningKind::Jumps { joint: Some(joint), metres } => msg!(
+                "{count, plural, one {# jump} other {# jumps}} of joints from one frame to the next, `{joint}` by {metres}",
+                metres = length(*metres)
+            ),
+            WarningKind::FarAway { joint: None, metres } => {
                 msg!("the root goes {metres} away from the origin", metres = length(*metres))
+            }
+            WarningKind::FarAway { joint: Some(joint), metres } => {
+                msg!("`{joint}` goes {metres} away from its parent joint", metres = length(*metres))
             }
             WarningKind::SkeletonFromPoints { markers, of, error_mm } => msg!(
                 "joints were computed from {markers} of {of} points; they lie {error_mm:.1} mm from them on average"
