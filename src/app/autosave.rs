@@ -98,9 +98,19 @@ impl Autosave {
         matches!(self.phase, Phase::Waiting { .. })
     }
 
-    /// Returns whether the session has begun without the stored work, and it may still come.
+    /// Returns whether the session has begun without the stored work, and calls of the page's API
+    /// still wait for it.
     pub(crate) fn is_late(&self, now_ms: f64) -> bool {
-        matches!(self.phase, Phase::Late { since_ms, .. } if now_ms - since_ms < MAX_STORAGE_WAIT_MS)
+        self.late_ms(now_ms).is_some_and(|late_ms| late_ms < MAX_STORAGE_WAIT_MS)
+    }
+
+    /// Returns the time for which the session has gone on without the stored work, milliseconds;
+    /// `None` once that is there or will not come.
+    pub(crate) fn late_ms(&self, now_ms: f64) -> Option<f64> {
+        match self.phase {
+            Phase::Late { since_ms, .. } => Some(now_ms - since_ms),
+            Phase::Waiting { .. } | Phase::Ready => None,
+        }
     }
 
     /// Records the session's present work as stored.

@@ -131,8 +131,11 @@ impl Segue {
     pub(super) fn schedule(&mut self, ctx: &egui::Context) {
         let now_ms = platform::now_ms();
         let dragging = ctx.input(|input| input.pointer.any_down());
+        // The address stands for the stored work until that is there.
+        let address = (!self.autosave.is_waiting())
+            .then(|| self.address.update(&self.session, dragging, now_ms));
         let waits = [
-            self.address.update(&self.session, dragging, now_ms),
+            address.flatten(),
             self.autosave.update(&self.session, &self.large_files, now_ms),
             self.session.notices().next_change_secs().map(|secs| secs * 1e3),
             // The next second of a film.

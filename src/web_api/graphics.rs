@@ -6,7 +6,7 @@
 
 use super::{SegueHandle, show_outline};
 use crate::app::View;
-use crate::platform::{now_ms, requested_backend};
+use crate::platform::{location_query, now_ms, replace_query, requested_backend};
 use eframe::WebOptions;
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use eframe::wgpu::Backends;
@@ -52,6 +52,8 @@ impl SegueHandle {
             Requested::Webgpu => self.run_on(canvas, Backends::BROWSER_WEBGPU).await,
             Requested::Fallback => {
                 self.run_on(canvas, Backends::GL).await?;
+                // Of this start alone: the address forgets it.
+                replace_query(&location_query());
                 self.tell_of_fallback()
             }
             Requested::Any => self.run_on_any(canvas).await,

@@ -159,6 +159,20 @@ onBackend("both", "WebGL 2 draws after two lost WebGPU devices within 10 s", asy
   assert.doesNotMatch(page.url(), /backend=/, "the next visit tries WebGPU again");
 });
 
+// Fails when the page waits for ever for a device that does not come.
+onBackend("both", "WebGL 2 draws where a lost WebGPU device has no successor", async ({ open }) => {
+  const { page, segue, load, evaluate } = surviving(await open("lab=blend", { ...SMALL, prepare }));
+  const { clips: [own] } = await load("own.bvh", striding({ frames: 40 }));
+  await segue("set", { a: own.id, blend_window: 23 });
+  await page.evaluate(() => {
+    GPUAdapter.prototype.requestDevice = () => new Promise(() => {});
+    window.lose("webgpu");
+  });
+  await until("WebGL 2 draws", async () => (await evaluate(() => window.segue?.stats().backend)) === "webgl2");
+  const { a, blend_window } = await segue("params");
+  assert.deepEqual({ a, blend_window }, { a: own.id, blend_window: 23 });
+});
+
 onBackend("both", "embedded page without WebGPU offers to go on with WebGL 2", async ({ open }) => {
   const { page, segue, ready } = await open("lab=blend&embed=1&blend_window=23", { ...SMALL, prepare });
   for (let loss = 0; loss < 2; loss++) {

@@ -29,9 +29,12 @@ const MIN_EXHAUSTED_BYTES = 1 << 30;
  * recover.
  */
 const REPLACE_AFTER_MS = [0, 100, 300, 1000, 3000];
+/** The longest time for which a new WebGPU device is awaited: a browser may never answer. */
+const MAX_REPLACE_MS = 30_000;
 
-/** The reason why a module without WebGL 2 does not go on. */
+/** The reasons why the app goes on with WebGL 2 in a new page. */
 const NEEDS_WEBGL2 = new Error("WebGPU was lost twice within 10 seconds.");
+const NO_ANSWER = new Error("The browser gives no new WebGPU device.");
 
 async function start() {
   // Only a cheap test precedes the start. The graphics are tested thoroughly when the start has
@@ -298,7 +301,7 @@ class RunningApp {
       if (this.stopped) break;
       this.#lostMeanwhile = false;
       last = await this.#replace().catch((reason) => reason);
-      if (last === NEEDS_WEBGL2) return this.#moveToWebgl2();
+      if (last === NEEDS_WEBGL2 || last === NO_ANSWER) return this.#moveToWebgl2(last);
       if (last) console.warn(last);
       if (!last && !this.#lostMeanwhile) break;
     }
@@ -312,15 +315,20 @@ class RunningApp {
     const fresh = old.cloneNode(false);
     old.replaceWith(fresh);
     this.#watchContext(fresh);
-    if ((await this.handle.restart(fresh)) === false) throw NEEDS_WEBGL2;
+    let timer;
+    const late = new Promise((_, reject) => {
+      timer = setTimeout(() => reject(NO_ANSWER), MAX_REPLACE_MS);
+    });
+    const restarted = await Promise.race([this.handle.restart(fresh), late]).finally(() => clearTimeout(timer));
+    if (restarted === false) throw NEEDS_WEBGL2;
     canvas().focus();
   }
 
   /** Goes on in a new page, which restores everything from the storage. */
-  async #moveToWebgl2() {
+  async #moveToWebgl2(reason) {
     // A page in a frame stores nothing.
     if (await this.handle.stored()) reloadWithWebgl2();
-    else showLost(NEEDS_WEBGL2.message, this.facts(), reloadWithWebgl2);
+    else showLost(reason.message, this.facts(), reloadWithWebgl2);
   }
 }
 
