@@ -8,7 +8,7 @@ use super::state::{ConvertState, UiState};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, RichText, Ui};
-use segue_session::convert::ConversionRow;
+use segue_session::conversion::ConversionRow;
 use segue_session::{Session, Slot};
 
 /// The width of the panel, points.

@@ -38,12 +38,9 @@ pub(crate) fn parse_up(text: &str) -> Result<UpAxis, String> {
 /// # Errors
 /// A sentence that says which are known.
 pub(crate) fn parse_root(text: &str) -> Result<ExportRoot, String> {
-    match text {
-        "as-is" => Ok(ExportRoot::AsIs),
-        "ground" => Ok(ExportRoot::Ground),
-        "in-place" => Ok(ExportRoot::InPlace),
-        _ => Err("expected as-is, ground or in-place".to_owned()),
-    }
+    ExportRoot::from_name(text).ok_or_else(|| {
+        format!("expected one of {}", ExportRoot::ALL.map(ExportRoot::name).join(", "))
+    })
 }
 
 /// Reads frames per second.

@@ -10,13 +10,11 @@ mod json;
 pub(crate) use json::is_bone_map;
 pub use json::{BoneMapError, MAX_BONE_MAP_BYTES, role_of_word, word_of_role};
 
-use crate::library::Entry;
 use segue_motion::clip::Motion;
 use segue_motion::skeleton::{Mirror, Role, Roles, Skeleton};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 /// The most rigs that are remembered.
 pub(crate) const MAX_RIGS: usize = 256;
@@ -186,17 +184,6 @@ pub(crate) fn mapped(maps: &BoneMaps, skeleton: &Skeleton, found: &Roles) -> Opt
     }
     let map = maps.get(&rig_of(skeleton)).filter(|map| !map.roles.is_empty())?;
     map.roles_for(skeleton, found)
-}
-
-/// Gives a clip that was just read or made the roles of its rig's map, if there is one.
-pub(crate) fn adopt(maps: &BoneMaps, entry: &mut Entry) {
-    let Some(motion) = &entry.motion else { return };
-    let Some(roles) = mapped(maps, motion.clip().skeleton(), motion.roles()) else { return };
-    if roles != *motion.roles() {
-        let corrected = Motion::clone(motion).with_corrected_roles(&roles);
-        entry.set_motion(Arc::new(corrected));
-    }
-    entry.roles_by_hand = Some(roles);
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! Resolution of the clips that labs use: found in the library, synthesised, made again from a
 //! recipe, or requested from the app.
 
-use crate::bone_map::adopt;
 use crate::contact_edits::corrections_of;
 use crate::document::Document;
 use crate::files::FileIntake;
@@ -112,7 +111,7 @@ impl ClipResolver<'_> {
         let maps = Arc::clone(self.document.library.bone_maps());
         self.document.library.change(&id, |entry| {
             entry.set_motion(motion);
-            adopt(&maps, entry);
+            entry.take_mapped_roles(&maps);
         });
         let made = self.document.library.get(&id).and_then(|entry| entry.motion.clone());
         made.ok_or_else(|| LabError::MissingClip { name: outside::short(&id) })

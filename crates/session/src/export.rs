@@ -136,6 +136,27 @@ pub enum ExportRoot {
     InPlace,
 }
 
+impl ExportRoot {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::AsIs, Self::Ground, Self::InPlace];
+
+    /// Returns the name on the command line and in the API.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::AsIs => "as-is",
+            Self::Ground => "ground",
+            Self::InPlace => "in-place",
+        }
+    }
+
+    /// Returns the one of a name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|root| root.name() == name)
+    }
+}
+
 /// The body in an exported file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum ExportBody {

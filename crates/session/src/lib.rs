@@ -72,6 +72,7 @@ mod clip_sets;
 mod command;
 mod compare;
 mod contact_edits;
+pub mod conversion;
 pub mod convert;
 mod document;
 pub mod export;

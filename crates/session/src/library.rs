@@ -1,6 +1,6 @@
 //! The library of clips: built in, dropped, or made in labs.
 
-use super::bone_map::{BoneMap, BoneMaps, MAX_RIGS};
+use super::bone_map::{BoneMap, BoneMaps, MAX_RIGS, mapped};
 use super::clip_facts::ClipFacts;
 use super::outside;
 use super::reading::{About, Companion, Content, LARGE_BYTES};
@@ -156,6 +156,17 @@ impl Entry {
     pub(crate) fn set_motion(&mut self, motion: Arc<Motion>) {
         self.facts = Some(Arc::new(ClipFacts::of(&motion, self.mesh.is_some())));
         self.motion = Some(motion);
+    }
+
+    /// Gives a clip that was just read or made the roles of its rig's map, if there is one.
+    pub(crate) fn take_mapped_roles(&mut self, maps: &BoneMaps) {
+        let Some(motion) = &self.motion else { return };
+        let Some(roles) = mapped(maps, motion.clip().skeleton(), motion.roles()) else { return };
+        if roles != *motion.roles() {
+            let corrected = Motion::clone(motion).with_corrected_roles(&roles);
+            self.set_motion(Arc::new(corrected));
+        }
+        self.roles_by_hand = Some(roles);
     }
 
     /// Returns the entry with a motion.

@@ -1,6 +1,6 @@
 //! The state of the panel in which many files are converted.
 
-use segue_session::convert::ConversionRow;
+use segue_session::conversion::ConversionRow;
 use segue_session::export::ExportOptions;
 use std::sync::Arc;
 

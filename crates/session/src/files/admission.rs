@@ -5,7 +5,6 @@ use super::intake::{FileIntake, LoadedFile};
 use super::messages::{notify_all_unread, notify_unread};
 use super::setup::lacks_skeleton;
 use super::skeletons::drop_used_skeletons;
-use crate::bone_map::adopt;
 use crate::document::Document;
 use crate::labs::Slot;
 use crate::library::{Arrival, Entry, Origin, SourceFile, file_id, file_stem};
@@ -154,7 +153,7 @@ impl FileIntake {
         arrival: Arrival,
     ) {
         let mut entry = entry;
-        adopt(document.library.bone_maps(), &mut entry);
+        entry.take_mapped_roles(document.library.bone_maps());
         let id = entry.id.clone();
         let known = document.library.get(&id).cloned();
         match &known {
@@ -192,7 +191,7 @@ impl FileIntake {
                 document.library.change(&known.id, |known| {
                     (known.motion, known.mesh, known.facts) =
                         (entry.motion, entry.mesh, entry.facts);
-                    adopt(&maps, known);
+                    known.take_mapped_roles(&maps);
                 });
             }
             return;
@@ -275,7 +274,7 @@ pub(super) fn refill(
                     let corrected = Motion::clone(motion).with_corrected_roles(roles);
                     entry.set_motion(Arc::new(corrected));
                 }
-                adopt(&maps, entry);
+                entry.take_mapped_roles(&maps);
             });
             // A motion that is only in memory again is no change.
             document.library_revision += u64::from(before != stored_as(document));

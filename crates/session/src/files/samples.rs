@@ -1,7 +1,6 @@
 //! Bundled takes: requested, and added to their entries of the library.
 
 use super::intake::{AwaitedSamples, FileIntake, Purpose};
-use crate::bone_map::adopt;
 use crate::command::Request;
 use crate::document::Document;
 use crate::library::Origin;
@@ -162,7 +161,7 @@ impl FileIntake {
                 entry.unread = None;
                 entry.about = Some(clip.about);
                 entry.warnings = clips.warnings;
-                adopt(&maps, entry);
+                entry.take_mapped_roles(&maps);
             });
         }
         Ok(())

@@ -212,7 +212,7 @@ impl LabInputs for CleanInputs {
             faults,
             frames: mended.frames.clone(),
             take_frames: searched.motion.clip().frames(),
-            injected: searched.put_in,
+            injected: searched.injected,
             mends: self.mends.is_on,
         };
         Ok(Outcome {

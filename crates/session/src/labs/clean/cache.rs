@@ -20,7 +20,7 @@ pub(super) struct Searched {
     /// The take with the faults that were put in.
     pub(super) motion: Arc<Motion>,
     /// The number of faults that were put in.
-    pub(super) put_in: usize,
+    pub(super) injected: usize,
     pub(super) faults: Vec<Fault>,
 }
 
@@ -79,7 +79,7 @@ enum Job {
         of: Arc<Motion>,
         broken: Broken,
         motion: Arc<Motion>,
-        put_in: usize,
+        injected: usize,
         search: Box<FaultSearch>,
     },
     Mend {
@@ -126,13 +126,13 @@ impl CleanCache {
             pending.is_wanted = true;
             return Ok(None);
         }
-        let (broken_motion, put_in) = broken.apply(motion)?;
+        let (broken_motion, injected) = broken.apply(motion)?;
         let job = Job::Search {
             of: Arc::clone(motion),
             broken,
             search: Box::new(FaultSearch::new(Arc::clone(&broken_motion))),
             motion: broken_motion,
-            put_in,
+            injected,
         };
         self.begin(job, at_once);
         let known = self.searched.iter().find(|known| is_it(&known.of, known.broken));
@@ -182,12 +182,12 @@ impl CleanCache {
     /// Does one slice. Returns the rest of the job; keeps what is done.
     fn step(&mut self, job: Job) -> Option<Job> {
         match job {
-            Job::Search { of, broken, motion, put_in, mut search } => {
+            Job::Search { of, broken, motion, injected, mut search } => {
                 if search.advance() {
-                    return Some(Job::Search { of, broken, motion, put_in, search });
+                    return Some(Job::Search { of, broken, motion, injected, search });
                 }
                 let faults = search.finish();
-                let found = Searched { of, broken, motion, put_in, faults };
+                let found = Searched { of, broken, motion, injected, faults };
                 keep(&mut self.searched, found);
             }
             Job::Mend { of, mends, mut mending } => {
