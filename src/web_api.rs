@@ -3,7 +3,7 @@
 
 mod graphics;
 
-use crate::app::api::{self, ApiError};
+use crate::app::api::{self, ApiError, ExportWords};
 use crate::app::{Event, Segue, Shared};
 use crate::outline::{Deed, Outline};
 use crate::platform::{
@@ -251,6 +251,7 @@ impl SegueHandle {
         while {
             let mut segue = self.borrow_mut()?;
             segue.poll();
+            segue.check_storage().map_err(error)?;
             segue.is_loading()
         } {
             sleep(10).await;
@@ -324,21 +325,33 @@ impl SegueHandle {
         self.change(|segue| segue.stop(name))
     }
 
-    /// Returns a motion as the bytes of a file. A GLB file has the body that `body` names:
-    /// "character" or "plain". A clip whose motion is not in memory is read first.
+    /// Returns a motion as the bytes of a file. A GLB file has the body that `body` names; `root`
+    /// names the joint with the motion over the ground; `fps` is the frame rate. A clip whose
+    /// motion is not in memory is read first.
     #[wasm_bindgen(js_name = exportClip)]
     pub async fn export_clip(
         &self,
         which: String,
         format: String,
         body: Option<String>,
+        root: Option<String>,
+        fps: Option<f64>,
     ) -> Result<Vec<u8>, JsValue> {
         self.read(&which).await?;
+        let words = ExportWords { body, root, fps };
         Ok(self
             .borrow()?
-            .export(&which, &format, body.as_deref())
+            .export(&which, &format, &words)
             .map_err(|reason| error(format!("export: {reason}")))?
             .bytes)
+    }
+
+    /// Returns the bone map of a motion as the JSON of its file. A clip whose motion is not in
+    /// memory is read first.
+    #[wasm_bindgen(js_name = boneMap)]
+    pub async fn bone_map(&self, which: String) -> Result<String, JsValue> {
+        self.read(&which).await?;
+        self.borrow()?.bone_map(&which).map_err(|reason| error(format!("boneMap: {reason}")))
     }
 
     /// Puts a result into the library. Returns the id of the new clip.

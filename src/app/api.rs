@@ -18,8 +18,10 @@ use segue_motion::clip::Motion;
 use segue_motion::math::Planar;
 use segue_motion::skeleton::Side;
 use segue_scene::pose_at;
+use segue_session::bone_map::BoneMap;
 use segue_session::export::{
-    ExportBody, ExportFormat, ExportOptions, export, file_name, plotted_of_clip, plotted_of_result,
+    ExportBody, ExportFormat, ExportOptions, ExportRoot, export, file_name, plotted_of_clip,
+    plotted_of_result,
 };
 use segue_session::metrics::MetricId;
 use segue_session::outside;
@@ -36,12 +38,42 @@ use std::sync::Arc;
 /// The name of the job of many files that are read, by which they are stopped together.
 const FILES: &str = "files";
 
+/// The longest time for which `loaded()` waits for the stored work, milliseconds.
+const MAX_LATE_MS: f64 = 30_000.0;
+
 /// A motion that a call of the API names.
 enum Subject<'a> {
     /// A clip of the library.
     Clip(&'a Arc<Motion>),
     /// The result of a pane.
     Result(&'a Pane, PaneResult<'a>),
+}
+
+/// The options of an export as a caller of the API writes them; `None` where it says nothing.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct ExportWords {
+    /// The name of the body in a GLB file; that of the character on the stage without it.
+    pub(crate) body: Option<String>,
+    /// The name of the joint that has the motion over the ground; as in the source file without it.
+    pub(crate) root: Option<String>,
+    /// Frames per second; the clip's own without it.
+    pub(crate) fps: Option<f64>,
+}
+
+impl ExportWords {
+    /// Returns them as options of the default format.
+    fn options(&self) -> Result<ExportOptions, ApiError> {
+        let body = self.body.as_deref().map_or(Ok(ExportBody::default()), |body| {
+            ExportBody::from_name(body).ok_or_else(|| ApiError::UnknownBody(body.to_owned()))
+        })?;
+        let root = self.root.as_deref().map_or(Ok(ExportRoot::default()), |root| {
+            ExportRoot::from_name(root).ok_or_else(|| ApiError::UnknownRoot(root.to_owned()))
+        })?;
+        match self.fps {
+            Some(fps) if !(1.0..=1000.0).contains(&fps) => Err(ApiError::UnfitRate(fps)),
+            fps => Ok(ExportOptions { body, root, fps, ..ExportOptions::default() }),
+        }
+    }
 }
 
 /// Returns the name of a graphics backend in the API.
@@ -154,10 +186,24 @@ impl Segue {
     /// that is being read.
     pub(crate) fn is_loading(&mut self) -> bool {
         self.is_restoring()
+            || self.is_storage_late()
             || !self.inbox.is_empty()
             || !self.downloads.is_empty()
             || !self.session.awaited_samples().is_empty()
             || self.session.is_reading_any()
+    }
+
+    /// Returns whether the stored work is still expected.
+    fn is_storage_late(&self) -> bool {
+        self.autosave.late_ms(platform::now_ms()).is_some()
+    }
+
+    /// Checks that the stored work has not been expected for too long.
+    pub(crate) fn check_storage(&self) -> Result<(), ApiError> {
+        match self.autosave.late_ms(platform::now_ms()) {
+            Some(late_ms) if late_ms > MAX_LATE_MS => Err(ApiError::StorageLate),
+            _ => Ok(()),
+        }
     }
 
     /// Has the motion of a clip read that is not in memory. Returns whether it has to be waited
@@ -326,20 +372,23 @@ impl Segue {
         Ok(main.outcome.metrics.iter().map(|metric| info(metric.id)).collect())
     }
 
-    /// Returns a motion as a file of that format. `which` is as in [`Self::pose`]; `body` names the
-    /// body in a GLB file, with `None` for that of the character on the stage.
+    /// Returns a motion as a file of that format. `which` is as in [`Self::pose`].
     pub(crate) fn export(
         &self,
         which: &str,
         format: &str,
-        body: Option<&str>,
+        words: &ExportWords,
     ) -> Result<ExportedFile, ApiError> {
         let format = ExportFormat::from_name(format)
             .ok_or_else(|| ApiError::UnknownFormat(format.to_owned()))?;
-        let body = body.map_or(Ok(ExportBody::default()), |body| {
-            ExportBody::from_name(body).ok_or_else(|| ApiError::UnknownBody(body.to_owned()))
-        })?;
-        self.export_as(which, &ExportOptions { format, body, ..ExportOptions::default() })
+        let how = ExportOptions { format, ..words.options()? };
+        self.export_as(which, &how)
+    }
+
+    /// Returns the bone map of a motion as JSON. `which` is as in [`Self::pose`].
+    pub(crate) fn bone_map(&self, which: &str) -> Result<String, ApiError> {
+        let motion = self.motion(which)?;
+        Ok(BoneMap::of(motion.clip().skeleton(), motion.roles()).to_json())
     }
 
     /// Returns a motion as a file with the options of the export dialogue.

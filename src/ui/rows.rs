@@ -22,6 +22,7 @@ use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, Ui};
 use segue_motion::transition::has_legs;
+use segue_session::outside::short;
 use segue_session::{Command, Entry, Key, Mark, PARAMS, Session, Slot, split_reference};
 use segue_text::{Message, msg};
 /// Draws the rows of the foot lock, those about reading contacts, and why the feet cannot be
@@ -156,7 +157,7 @@ pub(crate) fn clip_choice_ui<'a>(
     let found = session.library().find(chosen);
     let found = found.and_then(|entry| entries.iter().position(|other| other.id == entry.id));
     let missing = (found.is_none() && !chosen.is_empty())
-        .then(|| (usize::MAX, text::missing(split_reference(chosen).0)));
+        .then(|| (usize::MAX, text::missing(&short(split_reference(chosen).0))));
     // A clip that is missing is shown, but cannot be chosen.
     let named: Vec<(usize, Message)> =
         entries.iter().map(|entry| entry.title()).enumerate().chain(missing).collect();

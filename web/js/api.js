@@ -42,7 +42,6 @@ export function makeApi(handle, { stopped, onLost }) {
   const PANE = "\"result\", or \"result:1\" for the second pane";
   const FILE = "the name of a file, such as \"walk.bvh\"";
   const FORMAT = "\"bvh\", \"fbx\", \"glb\", \"vrma\", \"npz\", \"csv\" or \"g1\"";
-  const BODY = "\"character\", \"plain\", or nothing";
 
   return Object.freeze({
     version: handle.version(),
@@ -60,8 +59,9 @@ export function makeApi(handle, { stopped, onLost }) {
     time: () => call("time"),
     pose: async (which, seconds) => callAsync("pose", text("pose: which", which, WHICH), number("pose: seconds", seconds)),
     metrics: () => callAsync("metrics"),
-    export: async (which, format, body) =>
-      callAsync("exportClip", text("export: which", which, WHICH), text("export: format", format, FORMAT), body == null ? undefined : text("export: body", body, BODY)),
+    export: async (which, format, options) =>
+      callAsync("exportClip", text("export: which", which, WHICH), text("export: format", format, FORMAT), ...asExportOptions(options)),
+    boneMap: async (which) => JSON.parse(await callAsync("boneMap", text("boneMap: which", which, WHICH))),
     keep: (which) => call("keep", text("keep: which", which, PANE)),
     report: () => callAsync("report"),
     snapshot: () => callAsync("snapshot"),
@@ -97,9 +97,25 @@ function text(key, value, expected) {
   return value;
 }
 
-function number(key, value) {
-  if (typeof value !== "number" || !Number.isFinite(value)) throw new TypeError(`${key}: found ${named(value)}, expected seconds`);
+function number(key, value, expected = "seconds") {
+  if (typeof value !== "number" || !Number.isFinite(value)) throw new TypeError(`${key}: found ${named(value)}, expected ${expected}`);
   return value;
+}
+
+/** Returns the body, the root and the frame rate of an export. A text alone is the body. */
+function asExportOptions(options) {
+  if (options == null) return [];
+  if (typeof options === "string") return [options];
+  const EXPECTED = "an object with some of body, root and fps";
+  if (typeof options !== "object" || Array.isArray(options)) throw new TypeError(`export: options: found ${named(options)}, expected ${EXPECTED}`);
+  const { body, root, fps, ...others } = options;
+  const [unknown] = Object.keys(others);
+  if (unknown !== undefined) throw new TypeError(`export: options: found ${named(unknown)}, expected ${EXPECTED}`);
+  return [
+    body == null ? undefined : text("export: body", body, "\"character\", \"plain\", or nothing"),
+    root == null ? undefined : text("export: root", root, "\"as-is\", \"ground\", \"in-place\", or nothing"),
+    fps == null ? undefined : number("export: fps", fps, "frames per second, or nothing"),
+  ];
 }
 
 /** Returns a flat copy of keys and values. The app checks whether they fit. */

@@ -75,6 +75,17 @@ pub(crate) enum ApiError {
     /// A name of no body for export.
     #[error("found `{0}`, expected one of {names}", names = ExportBody::ALL.map(ExportBody::name).join(", "))]
     UnknownBody(String),
+    /// A name of no joint for the motion over the ground.
+    #[error("root: found `{0}`, expected one of {names}", names = ExportRoot::ALL.map(ExportRoot::name).join(", "))]
+    UnknownRoot(String),
+    /// A frame rate out of range.
+    #[error("fps: found {0}, expected 1 to 1000 frames per second")]
+    UnfitRate(f64),
+    /// A storage that does not answer.
+    #[error(
+        "loaded: the browser's storage has not answered for 30 s: stored clips are missing; close other windows of Segue and reload"
+    )]
+    StorageLate,
     /// A motion that cannot be written in the format.
     #[error(transparent)]
     Export(#[from] ExportError),

@@ -137,7 +137,7 @@ fn every_call_on_a_refused_result_rejects_with_its_sentence() {
         let name = segue.stage_name();
         assert!(
             segue.metrics().is_ok()
-                && segue.export("result", "bvh", None).is_ok()
+                && segue.export("result", "bvh", &ExportWords::default()).is_ok()
                 && segue.report(None).is_ok()
         );
         segue.set(&object(bad)).unwrap();
@@ -146,7 +146,7 @@ fn every_call_on_a_refused_result_rejects_with_its_sentence() {
         let refused = [
             segue.pose("result", 0.0).unwrap_err().to_string(),
             segue.metrics().unwrap_err().to_string(),
-            segue.export("result", "bvh", None).unwrap_err().to_string(),
+            segue.export("result", "bvh", &ExportWords::default()).unwrap_err().to_string(),
             segue.report(None).unwrap_err().to_string(),
             segue.keep("result").unwrap_err().to_string(),
         ];
@@ -162,22 +162,51 @@ fn every_call_on_a_refused_result_rejects_with_its_sentence() {
 #[test]
 fn exported_file_can_be_loaded() {
     let mut segue = open("a=walk&lab=view");
-    let file = segue.export("result", "bvh", None).unwrap();
+    let file = segue.export("result", "bvh", &ExportWords::default()).unwrap();
     assert_eq!(file.name, "walk.bvh");
     let loaded = load(&mut segue, &file.name, &file.bytes).unwrap();
     assert_eq!(loaded.clips.len(), 1);
     assert_eq!(loaded.clips[0].frames, segue.motion("walk").unwrap().clip().frames());
     assert_eq!(
-        segue.export("result", "max", None).unwrap_err().to_string(),
+        segue.export("result", "max", &ExportWords::default()).unwrap_err().to_string(),
         "found `max`, expected one of bvh, fbx, glb, vrma, npz, csv, g1"
     );
-    assert_eq!(
-        segue.export("result", "glb", Some("statue")).unwrap_err().to_string(),
-        "found `statue`, expected one of character, plain"
-    );
+    let statue = ExportWords { body: Some("statue".into()), ..ExportWords::default() };
+    let pelvis = ExportWords { root: Some("pelvis".into()), ..ExportWords::default() };
+    let never = ExportWords { fps: Some(0.0), ..ExportWords::default() };
+    for (words, problem) in [
+        (statue, "found `statue`, expected one of character, plain"),
+        (pelvis, "root: found `pelvis`, expected one of as-is, ground, in-place"),
+        (never, "fps: found 0, expected 1 to 1000 frames per second"),
+    ] {
+        assert_eq!(segue.export("result", "glb", &words).unwrap_err().to_string(), problem);
+    }
     let refused = load(&mut segue, "x.bvh", b"HIERARCHY oops").unwrap_err().to_string();
     assert!(refused.starts_with("x.bvh:1:"), "{refused}");
     assert_eq!(segue.clips().iter().filter(|clip| clip.sha256.is_some()).count(), 1);
+}
+
+#[test]
+fn exported_root_and_rate_are_those_of_the_call() {
+    let mut segue = open("a=walk&lab=view");
+    let own = segue.motion("walk").unwrap();
+    let own = own.clip();
+    let words = ExportWords { root: Some("ground".into()), fps: Some(24.0), body: None };
+    let file = segue.export("result", "bvh", &words).unwrap();
+    let loaded = load(&mut segue, "ground.bvh", &file.bytes).unwrap();
+    let read = segue.motion(&loaded.clips[0].id).unwrap();
+    assert!((read.clip().fps() - 24.0).abs() < 1e-3, "{}", read.clip().fps());
+    assert_eq!(read.clip().skeleton().len(), own.skeleton().len() + 1, "a bone on the ground");
+}
+
+#[test]
+fn bone_map_of_the_api_is_read_as_a_file() {
+    let mut segue = open("a=walk&lab=view");
+    let map = segue.bone_map("walk").unwrap();
+    let read = BoneMap::from_json(map.as_bytes()).unwrap();
+    assert!(read.roles.values().flatten().count() > 10, "{map}");
+    load(&mut segue, "bone-map.json", map.as_bytes()).unwrap();
+    assert!(segue.bone_map("nothing").is_err());
 }
 
 #[test]
@@ -191,7 +220,7 @@ fn clips_and_panes_are_exported_in_every_format() {
         for (format, mime) in
             [("bvh", "text/plain"), ("csv", "text/csv"), ("glb", "model/gltf-binary")]
         {
-            let file = segue.export(which, format, None).unwrap();
+            let file = segue.export(which, format, &ExportWords::default()).unwrap();
             assert_eq!(
                 (file.name.to_lowercase(), file.mime),
                 (format!("{}.{format}", stem.to_lowercase()), mime)
@@ -199,7 +228,9 @@ fn clips_and_panes_are_exported_in_every_format() {
             assert!(file.bytes.len() > 1000);
         }
     }
-    let table = String::from_utf8(segue.export("result:1", "csv", None).unwrap().bytes).unwrap();
+    let table =
+        String::from_utf8(segue.export("result:1", "csv", &ExportWords::default()).unwrap().bytes)
+            .unwrap();
     let header = table.lines().next().unwrap();
     assert!(
         header.ends_with(

@@ -68,7 +68,7 @@ impl LargeFile {
         Blob::new_with_u8_array_sequence(pieces).ok().map(Self::new)
     }
 
-    /// Returns its size, bytes; 0 for one in the storage, whose size its clips know.
+    /// Returns the size, bytes; 0 for a file in the storage, because its clips record the size.
     pub(crate) fn len(&self) -> u64 {
         match &self.0 {
             Held::Blob(blob) => blob.size() as u64,
@@ -82,7 +82,7 @@ impl LargeFile {
         matches!(self.0, Held::Stored(_))
     }
 
-    /// Returns what the storage is to hold; `None` for a file that it holds already.
+    /// Returns the value to store; `None` for a file that is in the storage already.
     pub(super) fn value(&self) -> Option<&JsValue> {
         match &self.0 {
             Held::Blob(blob) => Some(blob.as_ref()),
@@ -91,8 +91,8 @@ impl LargeFile {
         }
     }
 
-    /// Returns the browser's handle of it; `None` for one in the storage, and where the browser has
-    /// no room for it.
+    /// Returns the browser's handle of the file; `None` for a file in the storage, and when the
+    /// browser has no room for it.
     fn to_blob(&self) -> Option<Blob> {
         match &self.0 {
             Held::Blob(blob) => Some(blob.clone()),
@@ -178,14 +178,14 @@ struct State {
     room: u64,
 }
 
-/// The place of a worker.
+/// A worker, or room for one.
 #[derive(Default)]
 struct Slot {
     worker: Option<Worker>,
     current: Option<CurrentTask>,
 }
 
-/// The task that a worker is at.
+/// The current task of a worker.
 struct CurrentTask {
     task: u64,
     size: u64,
@@ -360,7 +360,7 @@ fn start_next(state: &Rc<RefCell<State>>) {
             if state.begun.len() >= MAX_BEGUN {
                 return;
             }
-            // Those that run come first: another one has to be started.
+            // Idle workers are preferred, because starting another one takes time.
             let free = |with_worker: bool| {
                 let is_free =
                     |slot: &Slot| slot.current.is_none() && slot.worker.is_some() == with_worker;
@@ -413,12 +413,12 @@ fn post(
         FileBytes::Large(file) => Some(file.clone()),
     };
     let file = file.ok_or(ReadError::NoRoom)?;
-    // A file of the user's may have changed or be gone by now, while the storage still has it.
+    // The user may have changed or deleted the file since, but the storage still has its bytes.
     let stored = match (&file.0, &task.setup.sha256) {
         (Held::Stored(sha256), _) | (_, Some(sha256)) => stored_place(sha256)?,
         _ => JsValue::UNDEFINED,
     };
-    // A small new file is stored as bytes, which the worker has at hand.
+    // The worker returns the bytes of a small new file, so that they can be stored.
     let is_new = task.setup.sha256.is_none() && task.setup.convert.is_none();
     let message = Object::new();
     for (key, value) in [
