@@ -41,7 +41,8 @@ impl RawMotion {
         // A unit that the user gave is not questioned.
         if options.metres_per_unit.is_none() && metres > 0.0 && !LIKELY_METRES.contains(&metres) {
             tally.add(WarningKind::UnlikelyHeight { metres }, None);
-            mendable.metres_per_unit = fitting_unit(measure);
+            mendable.metres_per_unit =
+                fitting_unit(measure).filter(|&unit| self.moves_little(unit));
         }
         let unit = measure.provenance.metres_per_unit;
         let joints = &self.joints;
@@ -50,6 +51,16 @@ impl RawMotion {
         let ways = std::iter::once((None, &mut self.root_translations)).chain(others);
         mendable.wild_rows = warn_of_ways(ways, unit, options, tally);
         mendable
+    }
+
+    /// Returns whether no joint jumps or goes far in a unit: lengths and positions of a file may be
+    /// in different ones.
+    fn moves_little(&self, unit: f64) -> bool {
+        let others = self.tracks.iter().map(|(_, way)| way);
+        std::iter::once(&self.root_translations).chain(others).all(|way| {
+            let is_near = |place: &Vec3| place.as_dvec3().length() * unit <= FAR_METRES;
+            jumps(way, unit) == Jumps::default() && way.iter().all(is_near)
+        })
     }
 }
 
@@ -180,7 +191,6 @@ fn even_out(way: &mut [Vec3], row: usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use segue_motion::skeleton::Joint;
 
     fn walk(places: &[(usize, f32)]) -> Vec<Vec3> {
         let mut way: Vec<Vec3> =
@@ -208,12 +218,9 @@ mod tests {
     /// As in the files of Bandai-Namco: a root at rest on the ground, and hips that move below it.
     #[test]
     fn positions_of_every_joint_are_checked() {
-        let joint = |name: &str, parent| Joint { name: name.into(), parent, offset: Vec3::ZERO };
         let motion = || RawMotion {
-            joints: vec![joint("root", None), joint("hips", Some(0)), joint("hand", Some(1))],
-            rotations: Vec::new(),
-            root_translations: vec![Vec3::ZERO; 10],
             tracks: vec![(1, walk(&[(4, 1e18)])), (2, walk(&[(6, 7.0), (7, 7.0)]))],
+            ..RawMotion::default()
         };
         let warned = |options: &ImportOptions, motion: &mut RawMotion| {
             let (mut tally, way) = (Tally::default(), &mut motion.tracks);
@@ -235,6 +242,14 @@ mod tests {
         let (mendable, sentences) = warned(&evened, &mut read);
         assert!(!mendable && sentences[0].contains("put between"), "{sentences:?}");
         assert!(read.tracks[0].1.iter().all(|place| place.length() < 2.0));
+    }
+
+    #[test]
+    fn unit_in_which_joints_jump_is_not_suggested() {
+        let motion = RawMotion { root_translations: walk(&[]), ..RawMotion::default() };
+        assert!(motion.moves_little(1.0) && !motion.moves_little(1e4));
+        let tracks = vec![(1, walk(&[(4, 7.0), (5, 7.0)]))];
+        assert!(!RawMotion { tracks, ..motion }.moves_little(1.0));
     }
 
     #[test]

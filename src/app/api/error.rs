@@ -1,6 +1,6 @@
 //! Errors of the page's API.
 
-use segue_session::export::{ExportBody, ExportError, ExportFormat};
+use segue_session::export::{ExportBody, ExportError, ExportFormat, ExportRoot};
 use segue_session::{CommandError, LabError, NoResult, ValueError};
 use segue_text::Message;
 

@@ -1,7 +1,8 @@
 //! Tests of conversions of many files.
 
 use super::*;
-use crate::export::ExportRoot;
+use crate::convert::TargetRig;
+use crate::export::{ExportFormat, ExportOptions, ExportRoot, export};
 use crate::reading::{Companion, Parcel, ReadSetup, Unpacker, read};
 use segue_formats::archive::{ArchiveLimits, unpack};
 use segue_formats::bvh::{WriteOptions, write};
@@ -9,7 +10,8 @@ use segue_formats::fbx::{FbxOptions, write_fbx};
 use segue_formats::gltf::{GlbOptions, write_glb, write_vrma};
 use segue_formats::numpy::write_npz;
 use segue_formats::{ImportOptions, import};
-use segue_motion::skeleton::Role;
+use segue_motion::clip::{Clip, Interpolation, resample};
+use segue_motion::skeleton::{Role, Roles};
 use segue_motion::synth::{Action, Params, synthesize};
 
 fn made(action: Action) -> Clip {

@@ -232,6 +232,15 @@ fn clip_of_a_lost_file_is_named() {
 }
 
 #[test]
+fn calls_wait_for_all_files_of_a_link() {
+    let mut session = Session::with_external_reader();
+    for index in 0..6 {
+        session.begin_reading_fetched(&format!("{index}.bvh"), Content::Here(bytes(BVH)), 1000);
+    }
+    assert!(session.is_reading_small());
+}
+
+#[test]
 fn many_files_are_one_job_that_is_stopped_at_once() {
     let mut session = Session::with_external_reader();
     session.open_together(6);

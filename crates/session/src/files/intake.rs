@@ -59,6 +59,14 @@ impl Reading {
         matches!(self.purpose, Purpose::New(_))
     }
 
+    /// Returns whether the user opened the file, in contrast to a link.
+    pub(super) fn is_by_hand(&self) -> bool {
+        matches!(
+            self.purpose,
+            Purpose::New(Arrival::ByHand(_)) | Purpose::Again(Some(Arrival::ByHand(_)))
+        )
+    }
+
     /// Returns the number of the selection that the file belongs to.
     fn batch(&self) -> Option<u32> {
         match self.purpose {

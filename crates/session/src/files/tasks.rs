@@ -200,7 +200,8 @@ impl FileIntake {
     /// Returns whether a file is being read that takes only a moment, and so has no progress bar.
     pub(crate) fn is_reading_small(&self) -> bool {
         let together = self.are_read_together();
-        self.reading.values().any(|reading| reading.is_small() && !(together && reading.is_new()))
+        let counts = |reading: &Reading| !(together && reading.is_new() && reading.is_by_hand());
+        self.reading.values().any(|reading| reading.is_small() && counts(reading))
     }
 
     /// Returns whether so many files are to join the library that they are one job.
