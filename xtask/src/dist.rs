@@ -88,14 +88,13 @@ fn app(profile: Profile, others: &[&str]) -> Command {
 }
 
 fn bindgen() -> Command {
-    cargo(&["build", "--locked", "--package=segue-bindgen"])
+    cargo(&["build", "--locked", "--profile=tool", "--package=segue-bindgen"])
 }
 
 /// Writes `dist/` from what has been compiled.
 fn assemble(profile: Profile, modules: Modules) -> Result<()> {
     let compiled = compiled(profile);
-    let tool =
-        target().join("debug").join(format!("segue-bindgen{}", std::env::consts::EXE_SUFFIX));
+    let tool = target().join("tool").join(format!("segue-bindgen{}", std::env::consts::EXE_SUFFIX));
     // Built beside it, so that a failed build leaves the old page.
     let made = root().join("dist.part");
     let _ = fs::remove_dir_all(&made);

@@ -62,7 +62,9 @@ fn edit_ui(session: &Session, _: &mut UiState, out: &mut Out, ui: &mut Ui) {
 /// Draws the choice of the body, and what retargeting did.
 fn body_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let chosen = session.params().clip_ids(Key::EditBody).first().map_or("", String::as_str);
-    if let Some(id) = clip_choice_ui(text::BODY_OF, chosen, session, ui) {
+    // Without another body it is that of A.
+    let shown = if chosen.is_empty() { session.params().text(Key::A) } else { chosen };
+    if let Some(id) = clip_choice_ui(text::BODY_OF, shown, session, ui) {
         out.set_once(Key::EditBody, List::ClipIds(vec![id]).into());
     }
     if !chosen.is_empty() && kit::button_ui(Button::new(text::OWN_BODY).outlined(), ui).clicked() {
