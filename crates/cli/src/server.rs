@@ -4,6 +4,7 @@ use crate::status::Failure;
 use percent_encoding::percent_decode_str;
 use std::fs::File;
 use std::path::{Component, Path, PathBuf};
+use std::thread;
 use tiny_http::{Header, Method, Request, Response, ResponseBox, Server};
 
 /// The folder of addresses in which the opened files are.
@@ -48,13 +49,18 @@ impl PageServer {
         self.files.iter().enumerate().map(address).collect()
     }
 
-    /// Answers until the process ends.
+    /// Answers until the process ends. A request is answered on a thread of its own: a browser reads
+    /// a long answer only when it has use for it, and meanwhile asks for other files.
     pub(crate) fn run(&self) {
-        for request in self.server.incoming_requests() {
-            let response = self.respond(&request);
-            // A browser that has left is no error.
-            request.respond(response).ok();
-        }
+        thread::scope(|scope| {
+            for request in self.server.incoming_requests() {
+                scope.spawn(move || {
+                    let response = self.respond(&request);
+                    // A browser that has left is no error.
+                    request.respond(response).ok();
+                });
+            }
+        });
     }
 
     fn respond(&self, request: &Request) -> ResponseBox {
@@ -122,6 +128,9 @@ fn media_type(path: &Path) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::io::{Read as _, Write as _};
+    use std::net::TcpStream;
+    use std::time::Duration;
 
     #[test]
     fn file_of_an_address_is_one_of_the_page_or_an_opened_one() {
@@ -136,5 +145,29 @@ mod tests {
         for other in ["/opened/1/x", "/opened/-1", "/../Cargo.toml", "/%2e%2e/Cargo.toml", "/x"] {
             assert_eq!(server.file_of(other), None, "{other}");
         }
+    }
+
+    /// As a browser asks for the module of the app, and reads it once its JavaScript is there.
+    #[test]
+    fn answer_that_nobody_reads_holds_up_no_other() {
+        let long = std::env::temp_dir().join(format!("segue-long-{}.bvh", std::process::id()));
+        std::fs::write(&long, vec![b' '; 32 << 20]).unwrap();
+        let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+        let server = PageServer::bind(0, page, vec![long.clone()]).unwrap();
+        let port = server.port;
+        let ask = move |path: &str| {
+            let mut stream = TcpStream::connect(("127.0.0.1", port)).unwrap();
+            stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
+            write!(stream, "GET {path} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n").unwrap();
+            stream
+        };
+        // It runs until the tests end.
+        thread::spawn(move || server.run());
+        let unread = ask("/opened/0/long.bvh");
+        let mut first = [0; 15];
+        ask("/main.rs").read_exact(&mut first).unwrap();
+        assert_eq!(&first, b"HTTP/1.1 200 OK");
+        drop(unread);
+        std::fs::remove_file(long).unwrap();
     }
 }
