@@ -18,8 +18,8 @@ const PARTS: [(&str, Part); 6] = [
     ("browser", browser),
 ];
 
-/// The crates below the app, and the command line beside it.
-const LIBRARIES: [&str; 8] = [
+/// The crates below the app, and the programs beside it.
+const LIBRARIES: [&str; 9] = [
     "segue-text",
     "segue-text-derive",
     "segue-motion",
@@ -27,6 +27,7 @@ const LIBRARIES: [&str; 8] = [
     "segue-formats",
     "segue-session",
     "segue-scene",
+    "segue-batch",
     "segue-cli",
 ];
 
