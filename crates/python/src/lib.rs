@@ -1,0 +1,29 @@
+//! `import segue`: motion files as `NumPy` arrays, and Segue's labs for scripts.
+//!
+//! The package is `python/segue/`; this crate is its module `_core`. Everything that computes lies
+//! below: reading and driving in `segue-batch`, labs in `segue-session`, formats and motion in the
+//! core. Here are conversions between those and Python, without the interpreter's lock wherever
+//! something takes time.
+
+mod arrays;
+mod clip;
+mod errors;
+mod load;
+mod save;
+
+use pyo3::prelude::*;
+
+/// The compiled part of `segue`.
+#[pymodule]
+mod _core {
+    #[pymodule_export]
+    use super::clip::Clip;
+    #[pymodule_export]
+    use super::load::{find_files, load_each, read_bytes};
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}
