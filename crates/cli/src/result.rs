@@ -7,7 +7,6 @@ use crate::status::{Failure, Status};
 use crate::table;
 use crate::write::Outputs;
 use segue_batch::{Driven, page_link, shown};
-use segue_motion::clean::FaultKind;
 use segue_session::export::{ExportOptions, export, plotted_of_result};
 use segue_session::metrics::Metric;
 use segue_session::{FoundFault, Outcome, PaneResult, file_stem};
@@ -175,24 +174,9 @@ impl MadeMotion {
     }
 }
 
-/// Returns the word of a kind of fault.
-const fn fault_word(kind: FaultKind) -> &'static str {
-    match kind {
-        FaultKind::Swap => "swap",
-        FaultKind::Gap => "gap",
-        FaultKind::Spike => "spike",
-        FaultKind::Jitter => "jitter",
-        FaultKind::Drift => "drift",
-        FaultKind::Ground => "ground",
-        FaultKind::Ends => "ends",
-        FaultKind::Skating => "skating",
-        FaultKind::Rate => "rate",
-    }
-}
-
 fn fault_row(found: &FoundFault, mends: bool, names: &[&str]) -> FaultRow {
     let fault = &found.fault;
-    let (kind, is_mended) = (fault_word(fault.kind), mends && found.is_chosen);
+    let (kind, is_mended) = (fault.kind.word(), mends && found.is_chosen);
     let last = fault.frames.end.saturating_sub(1);
     let joints: Vec<&str> =
         fault.joints.iter().filter_map(|&joint| names.get(joint).copied()).collect();
