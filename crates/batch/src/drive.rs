@@ -351,6 +351,16 @@ pub fn page_link(session: &Session, page: &str) -> String {
     }
 }
 
+/// Returns the lab that a link opens.
+///
+/// # Errors
+/// [`BatchError::Command`] if it cannot be opened.
+pub fn lab_of_link(link: &str) -> Result<LabId, BatchError> {
+    let mut session = Session::new();
+    session.apply(Command::OpenLink(query_of(link)))?;
+    Ok(session.params().lab())
+}
+
 /// Returns the query of a link: all behind its question mark, without a fragment.
 #[must_use]
 pub fn query_of(link: &str) -> String {

@@ -52,6 +52,9 @@ pub enum BatchError {
     /// A value or clip that does not fit.
     #[error(transparent)]
     Command(#[from] CommandError),
+    /// There is no parameter of that name.
+    #[error("`{0}` is not a parameter: docs/parameters.md has all")]
+    NoParameter(String),
     /// A file has no bytes.
     #[error(transparent)]
     File(#[from] FileError),

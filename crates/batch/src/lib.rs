@@ -23,13 +23,17 @@ mod inputs;
 mod read;
 mod samples;
 mod units;
+mod values;
 
 pub use clips::Clips;
-pub use drive::{Clip, ClipFile, Driven, Ingredients, known_clip, page_link, query_of};
+pub use drive::{
+    Clip, ClipFile, Driven, Ingredients, known_clip, lab_of_link, page_link, query_of,
+};
 pub use error::{BatchError, FileError, import_text};
 pub use inputs::{Input, Inputs, has_ending, shown};
 pub use read::{Read, Reader, bytes_of, for_each};
 pub use units::{parse_rate, parse_root, parse_unit, parse_up, unit_name, up_name};
+pub use values::value_of;
 
 /// The address of the page in links, where nobody names another: that of `segue open` and
 /// `cargo xtask serve`.

@@ -9,7 +9,10 @@ use crate::write::{Outputs, WriteArgs};
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 use clap::{Arg, ArgMatches, Args, FromArgMatches as _};
 use rayon::prelude::*;
-use segue_batch::{Clip, ClipFile, Clips, Driven, Ingredients, Input, Inputs, PAGE, known_clip};
+use segue_batch::{
+    BatchError, Clip, ClipFile, Clips, Driven, Ingredients, Input, Inputs, PAGE, known_clip,
+    value_of,
+};
 use segue_session::export::ExportOptions;
 use segue_session::{Key, Kind, LabId, ListKind, PARAMS, Param, Session, Value};
 use std::cell::LazyCell;
@@ -135,14 +138,11 @@ fn values(
         let (name, text) = pair
             .split_once('=')
             .ok_or_else(|| Failure::usage(format!("--set: found `{pair}`, expected key=value")))?;
-        let name = name.replace('-', "_");
-        let key = Key::from_name(&name).ok_or_else(|| {
-            Failure::usage(format!(
-                "--set: `{name}` is not a parameter: docs/parameters.md has all"
-            ))
-        })?;
-        let value = key.param().parse(text);
-        values.push((key, value.map_err(|error| Failure::usage(error.to_string()))?));
+        let value = value_of(name, text).map_err(|error| match error {
+            BatchError::NoParameter(_) => Failure::usage(format!("--set: {error}")),
+            other => other.into(),
+        });
+        values.push(value?);
     }
     Ok(values)
 }

@@ -95,7 +95,9 @@ impl From<BatchError> for Failure {
             BatchError::Clips { lab, expected, found } => {
                 Self::usage(format!("`segue {}` takes {expected}; here are {found}", name(lab)))
             }
-            BatchError::Command(error) => Self::usage(error.to_string()),
+            error @ (BatchError::Command(_) | BatchError::NoParameter(_)) => {
+                Self::usage(error.to_string())
+            }
             BatchError::File(error) => error.into(),
             error @ (BatchError::Import(_) | BatchError::Unusable(_)) => {
                 Self::unreadable(error.to_string())
