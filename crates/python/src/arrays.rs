@@ -10,11 +10,11 @@ use pyo3::prelude::*;
 ///
 /// # Errors
 /// `ValueError` if the shape has another number of elements.
-pub(crate) fn array<'py, T: Element, D: IntoDimension>(
-    py: Python<'py>,
+pub(crate) fn array<T: Element, D: IntoDimension>(
+    py: Python<'_>,
     values: Vec<T>,
     shape: D,
-) -> PyResult<Bound<'py, PyArray<T, D::Dim>>> {
+) -> PyResult<Bound<'_, PyArray<T, D::Dim>>> {
     let array = Array::from_shape_vec(shape, values)
         .map_err(|error| PyValueError::new_err(error.to_string()))?;
     Ok(PyArray::from_owned_array(py, array))

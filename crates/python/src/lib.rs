@@ -5,10 +5,16 @@
 //! core. Here are conversions between those and Python, without the interpreter's lock wherever
 //! something takes time.
 
+#![expect(clippy::needless_pass_by_value, reason = "arguments from Python come by value")]
+
 mod arrays;
 mod clip;
 mod errors;
+mod graph;
+mod labs;
 mod load;
+mod matching;
+mod metrics;
 mod save;
 
 use pyo3::prelude::*;
@@ -19,11 +25,20 @@ mod _core {
     #[pymodule_export]
     use super::clip::Clip;
     #[pymodule_export]
+    use super::graph::{Graph, distance_matrix, graph};
+    #[pymodule_export]
+    use super::labs::{LabResult, builtin, builtins, make, make_each, open_link, query};
+    #[pymodule_export]
     use super::load::{find_files, load_each, read_bytes};
+    #[pymodule_export]
+    use super::matching::{Matches, match_database};
+    #[pymodule_export]
+    use super::metrics::{metric_rows, metrics_of, parameter_rows};
     use pyo3::prelude::*;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("PAGE", segue_batch::PAGE)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

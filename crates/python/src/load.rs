@@ -95,11 +95,14 @@ pub(crate) fn read_bytes(
     fps: Option<f64>,
 ) -> PyResult<Vec<Clip>> {
     let options = options_of(unit.as_ref(), up.as_deref(), fps)?;
-    py.detach(|| {
-        let setup = ReadSetup { options, ..ReadSetup::default() };
-        let report = read(name, data, &setup, &mut |_| true).unwrap_or_default();
-        clips_of_report(name, report)
-    })
+    py.detach(|| clips_of_bytes(name, data, options))
+}
+
+/// Reads the clips of a file from memory.
+pub(crate) fn clips_of_bytes(name: &str, bytes: &[u8], options: ImportOptions) -> Loaded {
+    let setup = ReadSetup { options, ..ReadSetup::default() };
+    let report = read(name, bytes, &setup, &mut |_| true).unwrap_or_default();
+    clips_of_report(name, report)
 }
 
 /// Reads the clips of a file from disk.

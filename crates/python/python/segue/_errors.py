@@ -42,7 +42,7 @@ class ReadError(SegueError, ValueError):
         self.hint = hint
 
     def __str__(self) -> str:
-        return self.args[0]
+        return str(self.args[0])
 
 
 class WriteError(SegueError, ValueError):

@@ -3,12 +3,48 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
+from typing import Any, overload
 
 from . import _core
+from ._core import Clip
 from ._errors import ReadError, ReadErrors
 
+Path = str | os.PathLike[str]
 
-def load(path, *, clip=None, unit=None, up=None, fps=None, skeleton=None, errors="raise"):
+
+@overload
+def load(  # type: ignore[overload-overlap]
+    path: Path,
+    *,
+    clip: int | str | None = None,
+    unit: str | float | None = None,
+    up: str | None = None,
+    fps: float | None = None,
+    skeleton: Path | Iterable[Path] | None = None,
+    errors: str = "raise",
+) -> Clip: ...
+@overload
+def load(
+    path: Iterable[Path],
+    *,
+    clip: int | str | None = None,
+    unit: str | float | None = None,
+    up: str | None = None,
+    fps: float | None = None,
+    skeleton: Path | Iterable[Path] | None = None,
+    errors: str = "raise",
+) -> list[Clip]: ...
+def load(
+    path: Any,
+    *,
+    clip: int | str | None = None,
+    unit: str | float | None = None,
+    up: str | None = None,
+    fps: float | None = None,
+    skeleton: Path | Iterable[Path] | None = None,
+    errors: str = "raise",
+) -> Any:
     """Read motion files: one as a clip, a list of them as a list, on all cores.
 
     The format is found by the content: BVH, FBX, glTF, GLB, VRM, VRMA, ASF with AMC, C3D, TRC,
@@ -68,7 +104,15 @@ def load(path, *, clip=None, unit=None, up=None, fps=None, skeleton=None, errors
     return _settled(results, errors)
 
 
-def load_all(paths, *, unit=None, up=None, fps=None, skeleton=None, errors="raise"):
+def load_all(
+    paths: Path | Iterable[Path],
+    *,
+    unit: str | float | None = None,
+    up: str | None = None,
+    fps: float | None = None,
+    skeleton: Path | Iterable[Path] | None = None,
+    errors: str = "raise",
+) -> list[Any]:
     """Read all clips of files, folders, archives and patterns, on all cores.
 
     Parameters
@@ -88,14 +132,22 @@ def load_all(paths, *, unit=None, up=None, fps=None, skeleton=None, errors="rais
     """
     if errors not in ("raise", "return"):
         raise ValueError(f"errors: found {errors!r}, expected 'raise' or 'return'")
-    is_one = isinstance(paths, (str, bytes, os.PathLike))
-    files = _core.find_files([os.fspath(own) for own in ([paths] if is_one else paths)])
+    words: Any = [paths] if isinstance(paths, (str, bytes, os.PathLike)) else paths
+    files = _core.find_files([os.fspath(own) for own in words])
     found = _each(files, unit, up, fps, skeleton)
     results = [own for clips in found for own in ([clips] if isinstance(clips, Exception) else clips)]
     return _settled(results, errors)
 
 
-def read_bytes(data, name="clip.bvh", *, clip=None, unit=None, up=None, fps=None):
+def read_bytes(
+    data: bytes,
+    name: str = "clip.bvh",
+    *,
+    clip: int | str | None = None,
+    unit: str | float | None = None,
+    up: str | None = None,
+    fps: float | None = None,
+) -> Clip:
     """Read a motion file that is in memory.
 
     Parameters
@@ -117,14 +169,14 @@ def read_bytes(data, name="clip.bvh", *, clip=None, unit=None, up=None, fps=None
     return made
 
 
-def _each(paths, unit, up, fps, skeleton):
+def _each(paths: list[Any], unit: Any, up: Any, fps: Any, skeleton: Any) -> list[Any]:
     skeletons = skeleton if skeleton is not None else []
     if isinstance(skeletons, (str, bytes, os.PathLike)):
         skeletons = [skeletons]
     return _core.load_each(list(paths), unit=unit, up=up, fps=fps, skeletons=list(skeletons))
 
 
-def _one_of(clips, source, wanted):
+def _one_of(clips: Any, source: Any, wanted: int | str | None) -> Clip | Exception:
     """Return the clip of a file that is meant, or the exception."""
     if isinstance(clips, Exception):
         return clips
@@ -144,7 +196,7 @@ def _one_of(clips, source, wanted):
     return ReadError(f"{name}: {what}", name)
 
 
-def _settled(results, errors):
+def _settled(results: list[Any], errors: str) -> list[Any]:
     failed = [result for result in results if isinstance(result, Exception)]
     if failed and errors == "raise":
         text = f"{len(failed)} of {len(results)} files could not be read"
