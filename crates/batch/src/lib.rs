@@ -1,5 +1,5 @@
-//! Motion files on disk, and sessions without a screen: what the command line and the Python package
-//! have in common.
+//! Motion files on disk, and sessions without a screen: what the command line and the Python
+//! package have in common.
 //!
 //! # The idea
 //!
