@@ -74,7 +74,10 @@ const OUTSIDE: [&str; 12] = [
     "std::time::SystemTime",
 ];
 
-/// Names that the command line never uses: it has no screen, and needs no GPU.
+/// The programs beside the app, and what they share: they have files and threads.
+const PROGRAMS: [&str; 3] = ["crates/batch", "crates/cli", "crates/python"];
+
+/// Names that those programs never use: they have no screen, and need no GPU.
 const SCREENS: [&str; 4] = ["egui", "eframe", "wgpu", "segue_scene"];
 
 /// The folders of all Rust sources.
@@ -226,7 +229,7 @@ fn violations_are_reported() {
     assert_eq!(found("crates/cli/src/read.rs", "use std::fs;"), [""; 0]);
     assert_eq!(
         found("crates/cli/src/info.rs", "use segue_scene::Stage;"),
-        ["crates/cli/src/info.rs:1: the command line names `segue_scene`"]
+        ["crates/cli/src/info.rs:1: a program without a screen names `segue_scene`"]
     );
     assert_eq!(found("src/attic/old.rs", ""), ["src/attic/old.rs:1: `attic` has no row here"]);
     // Comments and tests may use any name, but after the tests comes code again.
@@ -473,15 +476,16 @@ fn violations(path: &Path, text: &str) -> Vec<String> {
             }
         }
     }
-    let is_library = !in_app && !path.starts_with("crates/cli");
+    let is_program = PROGRAMS.iter().any(|folder| path.starts_with(folder));
+    let is_library = !in_app && !is_program;
     for outside in OUTSIDE.iter().filter(|_| is_library) {
         for at in places(&code, outside) {
             tell(at, format!("a library names `{outside}`"));
         }
     }
-    for screen in SCREENS.iter().filter(|_| path.starts_with("crates/cli")) {
+    for screen in SCREENS.iter().filter(|_| is_program) {
         for at in places(&code, screen) {
-            tell(at, format!("the command line names `{screen}`"));
+            tell(at, format!("a program without a screen names `{screen}`"));
         }
     }
     found.sort();

@@ -9,17 +9,18 @@ use crate::shell::{self, Result, cargo, command, fail, root};
 use crate::{compare, dist, server, tools};
 
 /// The parts, in an order that fails early and lets each reuse what the one before has built.
-const PARTS: [(&str, Part); 6] = [
+const PARTS: [(&str, Part); 7] = [
     ("lint", lint),
     ("core", core),
     ("oracles", oracles),
+    ("python", python),
     ("app", app),
     ("web", web),
     ("browser", browser),
 ];
 
-/// The crates below the app, and the command line beside it.
-const LIBRARIES: [&str; 8] = [
+/// The crates below the app, and the programs beside it.
+const LIBRARIES: [&str; 9] = [
     "segue-text",
     "segue-text-derive",
     "segue-motion",
@@ -27,6 +28,7 @@ const LIBRARIES: [&str; 8] = [
     "segue-formats",
     "segue-session",
     "segue-scene",
+    "segue-batch",
     "segue-cli",
 ];
 
@@ -124,13 +126,43 @@ fn tests_without_ui() -> Command {
 fn oracles(report: &mut Report) {
     report.step("exported files in three.js, bvhio and NumPy", || {
         tools::browser_packages()?;
-        let python = tools::python("bvhio==1.5.4")?;
+        let python = tools::python("bvhio", &["bvhio==1.5.4"])?;
         shell::run(tests_without_ui().arg("--test=exchange"))?;
         let files = shell::target().join("tmp/exchange");
         shell::run(command("node", &["tests/browser/read_back.mjs"]).arg(&files))?;
         shell::run(command(python, &["crates/formats/tests/oracles/read_back.py"]).arg(&files))?;
-        let numpy = tools::python("numpy==1.26.4")?;
+        let numpy = tools::python("numpy", &["numpy==1.26.4"])?;
         shell::run(command(numpy, &["crates/formats/tests/oracles/read_back_npz.py"]).arg(&files))
+    });
+}
+
+fn python(report: &mut Report) {
+    report.step("import segue", || {
+        let package = root().join("crates/python");
+        let listed = fs::read_to_string(package.join("tests/requirements.txt"))?;
+        let is_package = |line: &&str| !line.is_empty() && !line.starts_with('#');
+        let packages: Vec<&str> = listed.lines().map(str::trim).filter(is_package).collect();
+        let python = tools::python("segue", &packages)?;
+        // By the profile of the tests: what lies below the libraries is built already, and the
+        // wheel that users get takes minutes to optimise.
+        let wheels = shell::target().join("wheels");
+        fs::create_dir_all(&wheels)?;
+        for old in fs::read_dir(&wheels)? {
+            fs::remove_file(old?.path())?;
+        }
+        let build = ["-m", "maturin", "build", "--quiet", "--locked", "--profile=dev", "--out"];
+        let mut maturin = command(&python, &build);
+        shell::build_as_in_ci(&mut maturin);
+        shell::run(maturin.arg(&wheels).current_dir(&package))?;
+        let wheel = fs::read_dir(&wheels)?.next().ok_or("maturin has made no wheel")??.path();
+        let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
+        shell::run(command(&python, &install).args(["--no-deps", "--force-reinstall"]).arg(wheel))?;
+        // What the command line writes is what the package makes.
+        shell::run(&mut cargo(&["build", "--quiet", "--locked", "--package=segue-cli"]))?;
+        let program = format!("debug/segue{}", std::env::consts::EXE_SUFFIX);
+        let mut tests = command(&python, &["-m", "pytest", "--quiet", "-p", "no:cacheprovider"]);
+        tests.arg("tests").current_dir(&package);
+        shell::run(tests.env("SEGUE_PROGRAM", shell::target().join(program)))
     });
 }
 

@@ -26,10 +26,11 @@ cargo xtask serve --dist
     Only writes the deployable folder dist/, with a smaller module for browsers with WebGPU, each file precompressed beside itself (.br and .gz).
 
 cargo xtask test [PART …]
-    Everything that must pass. Parts: lint core oracles app web browser; all of them unless some are named.
+    Everything that must pass. Parts: lint core oracles python app web browser; all of them unless some are named.
     lint        rustfmt, clippy for the core alone, for the whole app and for the web
     core        the tests of the libraries and the command line, and documentation examples, built without any UI
     oracles     exported files, read back by npm's three and PyPI's bvhio: the same motion?
+    python      `import segue`: a wheel, and its tests against NumPy, SciPy and other readers
     app         the tests of the app, pictures of the UI among them
     web         the release build that `serve` makes (where Trunk is installed, it must make the same page), and the one that is deployed
     browser     that build in Chromium, on WebGL2 and on WebGPU

@@ -40,10 +40,15 @@ pub fn command(program: impl AsRef<OsStr>, args: &[&str]) -> Command {
 /// both take time.
 pub fn cargo(args: &[&str]) -> Command {
     let mut cargo = command(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()), args);
-    if std::env::var_os("CI").is_some() {
-        cargo.env("CARGO_INCREMENTAL", "0").env("CARGO_PROFILE_DEV_DEBUG", "0");
-    }
+    build_as_in_ci(&mut cargo);
     cargo
+}
+
+/// Has a command that calls cargo build as [`cargo`] does, so that both use the same libraries.
+pub fn build_as_in_ci(command: &mut Command) {
+    if std::env::var_os("CI").is_some() {
+        command.env("CARGO_INCREMENTAL", "0").env("CARGO_PROFILE_DEV_DEBUG", "0");
+    }
 }
 
 /// Runs a command to the end; anything but success is an error that shows the command.

@@ -77,26 +77,25 @@ pub fn browser_packages() -> Result<()> {
     })
 }
 
-/// Finds or installs a Python package of an exact version, and returns the path of the Python that
-/// has it.
-pub fn python(package: &str) -> Result<PathBuf> {
-    let folder = target().join("python").join(package);
+/// Finds or installs Python packages of exact versions, and returns the path of the Python that has
+/// them, in an environment of this name.
+pub fn python(name: &str, packages: &[&str]) -> Result<PathBuf> {
+    let folder = target().join("python").join(name);
     let bin = folder.join(if cfg!(windows) { "Scripts" } else { "bin" });
     let python = bin.join("python");
-    // Written last, so that an incomplete installation is repeated.
+    // Written last, so that an incomplete installation is repeated, and one of other packages too.
     let done = folder.join("installed");
-    if !done.exists() {
+    let list = packages.join("\n");
+    if fs::read_to_string(&done).ok().as_deref() != Some(&list) {
         // Debian packages the module separately, and without it half of `venv` still seems to work.
         if output("python3", &["-c", "import ensurepip, venv"]).is_none() {
             apt(&["python3", "python3-venv"])?;
         }
-        step(format!("installing {package} for Python (seconds)"), || {
+        step(format!("installing {} for Python (seconds)", packages.join(", ")), || {
             run(command("python3", &["-m", "venv", "--clear"]).arg(&folder))?;
-            run(&mut command(
-                &python,
-                &["-m", "pip", "install", "--quiet", "--disable-pip-version-check", package],
-            ))?;
-            Ok(fs::write(&done, "")?)
+            let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
+            run(command(&python, &install).args(packages))?;
+            Ok(fs::write(&done, &list)?)
         })?;
     }
     Ok(python)

@@ -1,13 +1,12 @@
 //! `segue convert`: any motion file as another.
 
-use crate::info::error_text;
-use crate::inputs::{Input, Inputs, shown};
 use crate::progress;
-use crate::read::{ReadArgs, Reader};
+use crate::read::ReadArgs;
 use crate::status::{Failure, Status};
 use crate::write::{Outputs, WriteArgs};
 use clap::Args;
 use rayon::prelude::*;
+use segue_batch::{Input, Inputs, Read, import_text, shown};
 use segue_session::convert::{ConvertOptions, TargetRig, convert_to_bytes};
 use segue_session::reading::{ReadClip, ReadFile, ReadReport};
 use serde_json::{Value as Json, json};
@@ -67,7 +66,7 @@ pub(crate) fn run(args: &ConvertArgs) -> Result<Status, Failure> {
     let out = args.output.as_path();
     let is_file = args.write.is_file(out);
     let export = args.write.options(is_file.then_some(out))?;
-    let reader = Reader::new(&inputs.files, &args.read)?;
+    let reader = args.read.reader(&inputs.files)?;
     let rig = args.body.as_deref().map(|path| body_of(path, &args.read)).transpose()?;
     let options = ConvertOptions { export, rig };
     let mut outputs = Outputs::new(out, is_file, &inputs.files);
@@ -134,9 +133,9 @@ fn body_of(path: &Path, args: &ReadArgs) -> Result<TargetRig, Failure> {
     let input =
         Input { path: path.to_owned(), name: shown(path), relative: name.into(), is_named: true };
     let files = std::slice::from_ref(&input);
-    let report = match Reader::new(files, args)?.read(&input) {
+    let report = match args.reader(files)?.read(&input) {
         Some(Ok(report)) => report,
-        Some(Err(reason)) => return Err(Failure::unreadable(reason)),
+        Some(Err(reason)) => return Err(reason.into()),
         None => ReadReport::default(),
     };
     for file in report.files {
@@ -146,18 +145,14 @@ fn body_of(path: &Path, args: &ReadArgs) -> Result<TargetRig, Failure> {
                     return Ok(TargetRig::of(&clip.motion));
                 }
             }
-            Err(error) => return Err(Failure::unreadable(error_text(&error))),
+            Err(error) => return Err(Failure::unreadable(import_text(&error))),
         }
     }
     Err(Failure::unreadable(format!("{} has no body", shown(path))))
 }
 
 /// Converts the clips of a file, or of all files of an archive.
-fn convert(
-    input: &Input,
-    read: Result<ReadReport, String>,
-    options: &ConvertOptions,
-) -> Vec<Converted> {
+fn convert(input: &Input, read: Read, options: &ConvertOptions) -> Vec<Converted> {
     let failed = |source: &str, reason: String| Converted {
         source: source.to_owned(),
         relative: PathBuf::new(),
@@ -166,7 +161,7 @@ fn convert(
     };
     let report = match read {
         Ok(report) => report,
-        Err(reason) => return vec![failed(&input.name, reason)],
+        Err(reason) => return vec![failed(&input.name, reason.to_string())],
     };
     let mut notes: Vec<String> = report.notes.iter().map(ToString::to_string).collect();
     let mut made = Vec::new();
@@ -175,7 +170,7 @@ fn convert(
         let read = match result {
             Ok(read) => read,
             Err(error) => {
-                made.push(failed(&name, error_text(&error)));
+                made.push(failed(&name, import_text(&error)));
                 continue;
             }
         };

@@ -1,11 +1,10 @@
 //! `segue info`: what files contain.
 
-use crate::inputs::Inputs;
 use crate::numbers;
-use crate::read::{Read, ReadArgs, Reader, for_each};
+use crate::read::{ReadArgs, for_each};
 use crate::status::{Failure, Status};
-use crate::units::{unit_name, up_name};
 use clap::Args;
+use segue_batch::{Inputs, Read, import_text, unit_name, up_name};
 use segue_formats::ImportError;
 use segue_motion::skeleton::Role;
 use segue_session::bone_map::rig_of;
@@ -53,7 +52,7 @@ struct Described {
 /// [`Failure`] if there is no file, or the output cannot be written.
 pub(crate) fn run(args: &InfoArgs) -> Result<Status, Failure> {
     let inputs = Inputs::of(&args.files)?;
-    let reader = Reader::new(&inputs.files, &args.read)?;
+    let reader = args.read.reader(&inputs.files)?;
     let described = for_each(&inputs.files, "reading", |input| {
         Some(describe(&input.name, reader.read(input)?, !args.no_numbers))
     });
@@ -83,8 +82,8 @@ fn describe(name: &str, read: Read, measures: bool) -> Vec<Described> {
     let report = match read {
         Ok(report) => report,
         Err(reason) => {
-            let json = json!({ "file": name, "error": { "text": reason } });
-            return vec![Described { json, text: reason, is_unreadable: true }];
+            let json = json!({ "file": name, "error": { "text": reason.to_string() } });
+            return vec![Described { json, text: reason.to_string(), is_unreadable: true }];
         }
     };
     let notes = report.notes.iter().map(|note| Described {
@@ -103,7 +102,7 @@ fn describe_file(file: ReadFile, measures: bool) -> Described {
         Ok(read) => read,
         Err(error) => {
             json["error"] = error_as_json(&error);
-            return Described { json, text: error_text(&error), is_unreadable: true };
+            return Described { json, text: import_text(&error), is_unreadable: true };
         }
     };
     let mut lines = vec![name.clone(), format!("  kind      {}, {}", kind.name(), in_words(size))];
@@ -175,14 +174,6 @@ fn describe_clip(clip: ReadClip, measures: bool) -> (Json, Vec<String>) {
         lines.push(format!("  numbers   {}", numbers::on_one_line(&metrics)));
     }
     (json, lines)
-}
-
-/// Returns an error as the reader says it, with its advice.
-pub(crate) fn error_text(error: &ImportError) -> String {
-    match &error.hint {
-        Some(hint) => format!("{error} ({hint})"),
-        None => error.to_string(),
-    }
 }
 
 /// Returns an error with its place as JSON.

@@ -1,20 +1,8 @@
 //! The commands that make a result by a lab: one for each lab, and `retarget`. Their options are
 //! the rows of the table of parameters.
 
+use segue_batch::Clips;
 use segue_session::choices::{LabId, Selected as _};
-
-/// The clips that a command takes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Clips {
-    /// None.
-    None,
-    /// Each clip gives a result of its own.
-    Each,
-    /// Clips for the lab's slots, A and B; further ones where the lab takes them.
-    Slots,
-    /// Any number, as one list.
-    List,
-}
 
 /// A command that makes results.
 #[derive(Debug)]
@@ -23,7 +11,6 @@ pub(crate) struct LabCommand {
     pub(crate) name: &'static str,
     /// The word of its lab in links.
     pub(crate) lab: &'static str,
-    pub(crate) clips: Clips,
     /// Whether it puts clips on the body of a file.
     pub(crate) takes_body: bool,
     /// A sentence about it.
@@ -37,7 +24,6 @@ pub(crate) static LAB_COMMANDS: &[LabCommand] = &[
     LabCommand {
         name: "clean",
         lab: "clean",
-        clips: Clips::Each,
         takes_body: false,
         about: "Mends spikes, gaps, flips, jitter, drift, ground and foot skating",
         examples: "\
@@ -48,7 +34,6 @@ pub(crate) static LAB_COMMANDS: &[LabCommand] = &[
     LabCommand {
         name: "blend",
         lab: "blend",
-        clips: Clips::Slots,
         takes_body: false,
         about: "Dissolves one clip into another at their best match",
         examples: "\
@@ -59,7 +44,6 @@ pub(crate) static LAB_COMMANDS: &[LabCommand] = &[
     LabCommand {
         name: "transition",
         lab: "transition",
-        clips: Clips::Slots,
         takes_body: false,
         about: "Inertializes, dead-blends or cuts from one clip to another",
         examples: "\
@@ -69,7 +53,6 @@ pub(crate) static LAB_COMMANDS: &[LabCommand] = &[
     LabCommand {
         name: "speed",
         lab: "speed",
-        clips: Clips::Slots,
         takes_body: false,
         about: "Makes a gait of any speed from a walk and a run",
         examples: "\
@@ -78,7 +61,6 @@ pub(crate) static LAB_COMMANDS: &[LabCommand] = &[
     LabCommand {
         name: "loop",
         lab: "loop",
-        clips: Clips::Each,
         takes_body: false,
         about: "Makes a part of a clip a cycle without a seam",
         examples: "\
@@ -88,7 +70,6 @@ pub(crate) static LAB_COMMANDS: &[LabCommand] = &[
     LabCommand {
         name: "layers",
         lab: "layers",
-        clips: Clips::Slots,
         takes_body: false,
         about: "Puts a part of one body over another, or adds a difference",
         examples: "\
@@ -97,7 +78,6 @@ pub(crate) static LAB_COMMANDS: &[LabCommand] = &[
     LabCommand {
         name: "register",
         lab: "register",
-        clips: Clips::Slots,
         takes_body: false,
         about: "Time-warps clips onto each other and blends two to eight",
         examples: "\
@@ -107,7 +87,6 @@ pub(crate) static LAB_COMMANDS: &[LabCommand] = &[
     LabCommand {
         name: "retarget",
         lab: "edit",
-        clips: Clips::Each,
         takes_body: true,
         about: "Puts clips on another body, with feet and hands where they belong",
         examples: "\
@@ -117,7 +96,6 @@ pub(crate) static LAB_COMMANDS: &[LabCommand] = &[
     LabCommand {
         name: "path",
         lab: "path",
-        clips: Clips::Each,
         takes_body: false,
         about: "Moves a clip along an edited path",
         examples: "\
@@ -126,7 +104,6 @@ pub(crate) static LAB_COMMANDS: &[LabCommand] = &[
     LabCommand {
         name: "graph walk",
         lab: "graph",
-        clips: Clips::List,
         takes_body: false,
         about: "Builds a motion graph of clips and walks through it",
         examples: "\
@@ -136,7 +113,6 @@ pub(crate) static LAB_COMMANDS: &[LabCommand] = &[
     LabCommand {
         name: "match bench",
         lab: "match",
-        clips: Clips::List,
         takes_body: false,
         about: "Drives a character by motion matching through recorded input, and measures it",
         examples: "\
@@ -146,7 +122,6 @@ pub(crate) static LAB_COMMANDS: &[LabCommand] = &[
     LabCommand {
         name: "in-place",
         lab: "in_place",
-        clips: Clips::Each,
         takes_body: false,
         about: "Removes the root motion of a clip, or rebuilds it from planted feet",
         examples: "\
@@ -156,7 +131,6 @@ pub(crate) static LAB_COMMANDS: &[LabCommand] = &[
     LabCommand {
         name: "edit",
         lab: "edit",
-        clips: Clips::Each,
         takes_body: false,
         about: "Trims, mirrors, reverses, resamples, scales, turns and moves clips",
         examples: "\
@@ -165,7 +139,6 @@ pub(crate) static LAB_COMMANDS: &[LabCommand] = &[
     LabCommand {
         name: "view",
         lab: "view",
-        clips: Clips::Each,
         takes_body: false,
         about: "Locks the feet of a clip, or puts it elsewhere on the ground",
         examples: "\
@@ -174,7 +147,6 @@ pub(crate) static LAB_COMMANDS: &[LabCommand] = &[
     LabCommand {
         name: "make",
         lab: "make",
-        clips: Clips::None,
         takes_body: false,
         about: "Synthesises a walk, run, start, stop, turn or jump",
         examples: "\
@@ -191,6 +163,11 @@ impl LabCommand {
     /// Returns its lab.
     pub(crate) fn lab_id(&self) -> Option<LabId> {
         LabId::from_word(self.lab)
+    }
+
+    /// Returns the clips that it takes.
+    pub(crate) fn clips(&self) -> Clips {
+        self.lab_id().map_or(Clips::None, Clips::of)
     }
 
     /// Returns its examples for the help.

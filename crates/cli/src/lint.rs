@@ -9,11 +9,11 @@ pub(crate) use finding::size as fault_size;
 
 use self::checks::{Rule, rules};
 use self::finding::{Checked, Severity, check_file};
-use crate::inputs::Inputs;
-use crate::read::{ReadArgs, Reader, for_each};
+use crate::read::{ReadArgs, for_each};
 use crate::status::{Failure, Status};
 use crate::table;
 use clap::Args;
+use segue_batch::Inputs;
 use serde_json::json;
 use std::ffi::OsString;
 use std::fs;
@@ -69,11 +69,11 @@ pub(crate) fn run(args: &LintArgs) -> Result<Status, Failure> {
     let rules = rules(args.fail_on.as_deref())
         .map_err(|reason| Failure::usage(format!("--fail-on: {reason}")))?;
     let inputs = Inputs::of(&args.files)?;
-    let reader = Reader::new(&inputs.files, &args.read)?;
+    let reader = args.read.reader(&inputs.files)?;
     let checked = for_each(&inputs.files, "checking", |input| {
         let bytes = match reader.bytes(input)? {
             Ok(bytes) => bytes,
-            Err(reason) => return Some(vec![Checked::unreadable(&input.name, reason)]),
+            Err(reason) => return Some(vec![Checked::unreadable(&input.name, reason.to_string())]),
         };
         let report = reader.read_bytes(input, &bytes);
         let is_alone = report.is_one_file();

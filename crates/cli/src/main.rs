@@ -3,9 +3,7 @@
 //! `segue --help` lists the commands; the crate's README has the tour.
 
 mod convert;
-mod drive;
 mod info;
-mod inputs;
 mod labs;
 mod lint;
 mod make;
@@ -14,11 +12,9 @@ mod open;
 mod progress;
 mod read;
 mod result;
-mod samples;
 mod server;
 mod status;
 mod table;
-mod units;
 mod write;
 
 use clap::{ArgMatches, Args as _, Command, FromArgMatches, ValueEnum};

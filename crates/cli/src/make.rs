@@ -1,22 +1,23 @@
 //! The commands that make results by a lab: their options, and what they print and write.
 
-use crate::drive::{Clip, ClipFile, Driven, Ingredients, known_clip};
-use crate::inputs::{Input, Inputs, shown};
-use crate::labs::{Clips, LabCommand};
+use crate::labs::LabCommand;
 use crate::progress;
-use crate::read::{ReadArgs, bytes_of};
+use crate::read::ReadArgs;
 use crate::result::{Made, collect, tell};
 use crate::status::{Failure, Status};
 use crate::write::{Outputs, WriteArgs};
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 use clap::{Arg, ArgMatches, Args, FromArgMatches as _};
 use rayon::prelude::*;
+use segue_batch::{
+    BatchError, Clip, ClipFile, Clips, Driven, Ingredients, Input, Inputs, PAGE, known_clip,
+    value_of,
+};
 use segue_session::export::ExportOptions;
-use segue_session::{Key, Kind, ListKind, PARAMS, Param, Session, Value};
+use segue_session::{Key, Kind, LabId, ListKind, PARAMS, Param, Session, Value};
 use std::cell::LazyCell;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 /// The number of clips whose results are made before they are written, for each core.
 const CLIPS_PER_CORE: usize = 8;
@@ -45,7 +46,7 @@ pub(crate) struct MakeArgs {
     #[arg(long)]
     print_link: bool,
     /// The address of the page in printed links
-    #[arg(long, value_name = "URL", default_value = "http://127.0.0.1:8080/")]
+    #[arg(long, value_name = "URL", default_value = PAGE)]
     page: String,
     /// Prints JSON: a list with an object for each result
     #[arg(long)]
@@ -65,7 +66,7 @@ pub(crate) fn parser(command: &'static LabCommand) -> clap::Command {
     let mut parser = MakeArgs::augment_args(clap::Command::new(name))
         .about(command.about)
         .after_help(command.examples_help());
-    if command.clips == Clips::None {
+    if command.clips() == Clips::None {
         parser = parser.mut_arg("clips", |arg| arg.hide(true));
     }
     if command.takes_body {
@@ -137,14 +138,11 @@ fn values(
         let (name, text) = pair
             .split_once('=')
             .ok_or_else(|| Failure::usage(format!("--set: found `{pair}`, expected key=value")))?;
-        let name = name.replace('-', "_");
-        let key = Key::from_name(&name).ok_or_else(|| {
-            Failure::usage(format!(
-                "--set: `{name}` is not a parameter: docs/parameters.md has all"
-            ))
-        })?;
-        let value = key.param().parse(text);
-        values.push((key, value.map_err(|error| Failure::usage(error.to_string()))?));
+        let value = value_of(name, text).map_err(|error| match error {
+            BatchError::NoParameter(_) => Failure::usage(format!("--set: {error}")),
+            other => other.into(),
+        });
+        values.push(value?);
     }
     Ok(values)
 }
@@ -194,18 +192,15 @@ pub(crate) fn run(command: &'static LabCommand, matches: &ArgMatches) -> Result<
     let is_file = out.is_some_and(|out| args.write.is_file(out));
     let export = out.map(|out| args.write.options(is_file.then_some(out))).transpose()?;
     let mut outputs = out.map(|out| Outputs::new(out, is_file, &files));
-    let load = |path: &Path| -> Result<ClipFile, Failure> {
-        let bytes = bytes_of(path, args.read.options().max_bytes).map_err(Failure::unreadable)?;
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        Ok(ClipFile { name, bytes: Arc::from(bytes) })
-    };
-    let skeletons =
-        args.read.skeletons().iter().map(|path| load(path)).collect::<Result<Vec<_>, _>>()?;
+    let lab = command.lab_id().ok_or_else(|| Failure::usage("it has no lab"))?;
+    let load = |path: &PathBuf| ClipFile::load(path, args.read.options().max_bytes);
+    let skeletons = args.read.skeletons().iter().map(load).collect::<Result<Vec<_>, _>>()?;
     let body = command.takes_body.then(|| matches.get_one::<PathBuf>(BODY)).flatten();
-    let body = body.map(|path| load(path)).transpose()?;
+    let body = body.map(|path| load(path).map(Clip::File)).transpose()?;
     let jobs = jobs(command, args.link.is_some(), sources);
     let context = Context {
         command,
+        lab,
         link: args.link.as_deref(),
         skeletons: &skeletons,
         body: body.as_ref(),
@@ -274,7 +269,7 @@ fn sources(words: &[OsString]) -> Result<(Vec<Source>, Vec<String>), Failure> {
 
 /// Returns the runs: one for each clip where each gives a result of its own, otherwise one.
 fn jobs(command: &LabCommand, has_link: bool, sources: Vec<Source>) -> Vec<Job> {
-    if command.clips != Clips::Each || has_link || sources.is_empty() {
+    if command.clips() != Clips::Each || has_link || sources.is_empty() {
         return vec![Job { clips: sources, relative: None }];
     }
     let job = |source: Source| {
@@ -290,9 +285,10 @@ fn jobs(command: &LabCommand, has_link: bool, sources: Vec<Source>) -> Vec<Job> 
 /// All that the runs have in common.
 struct Context<'a> {
     command: &'static LabCommand,
+    lab: LabId,
     link: Option<&'a str>,
     skeletons: &'a [ClipFile],
-    body: Option<&'a ClipFile>,
+    body: Option<&'a Clip>,
     values: &'a [Assigned],
     read: &'a ReadArgs,
     export: Option<&'a ExportOptions>,
@@ -304,21 +300,17 @@ impl Context<'_> {
         let max_bytes = self.read.options().max_bytes;
         let clips = job.clips.iter().map(|source| match source {
             Source::Known(id) => Ok(Clip::Known(id.clone())),
-            Source::File(file) => {
-                let bytes = bytes_of(&file.path, max_bytes).map_err(Failure::unreadable)?;
-                let name = shown(Path::new(file.path.file_name().unwrap_or_default()));
-                Ok(Clip::File(ClipFile { name, bytes: Arc::from(bytes) }))
-            }
+            Source::File(file) => Ok(Clip::File(ClipFile::load(&file.path, max_bytes)?)),
         });
         let clips = clips.collect::<Result<Vec<_>, Failure>>()?;
         let mut driven = Driven::new(&Ingredients {
-            command: self.command,
             link: self.link,
             skeletons: self.skeletons,
             clips,
             body: self.body,
             values: self.values,
             options: self.read.options(),
+            ..Ingredients::of(self.lab)
         })?;
         let mut all = Vec::new();
         for variant in self.variants(&driven) {
@@ -349,7 +341,7 @@ impl Context<'_> {
     /// Returns the states of one session that are asked for: each clip of a file, each scenario of
     /// recorded input; otherwise the one that is set.
     fn variants(&self, driven: &Driven) -> Vec<Variant> {
-        if self.command.clips == Clips::Each && self.link.is_none() && !driven.ids.is_empty() {
+        if self.command.clips() == Clips::Each && self.link.is_none() && !driven.ids.is_empty() {
             let several = driven.ids.len() > 1;
             let name = |id: &String| {
                 let entry = driven.session.library().get(id);

@@ -1,11 +1,10 @@
 //! `segue open`: the page with files loaded, in the browser.
 
-use crate::drive::query_of;
-use crate::inputs::Inputs;
 use crate::server::PageServer;
 use crate::status::{Failure, Status};
 use clap::Args;
 use percent_encoding::{NON_ALPHANUMERIC, utf8_percent_encode};
+use segue_batch::{Inputs, query_of};
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};

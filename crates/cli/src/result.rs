@@ -1,14 +1,12 @@
 //! Results of labs: what is printed of them, and their files.
 
-use crate::drive::Driven;
 use crate::info::rounded;
-use crate::inputs::shown;
 use crate::lint::fault_size;
 use crate::numbers;
 use crate::status::{Failure, Status};
 use crate::table;
 use crate::write::Outputs;
-use segue_motion::clean::FaultKind;
+use segue_batch::{Driven, page_link, shown};
 use segue_session::export::{ExportOptions, export, plotted_of_result};
 use segue_session::metrics::Metric;
 use segue_session::{FoundFault, Outcome, PaneResult, file_stem};
@@ -68,12 +66,7 @@ pub(crate) fn collect(
     options: Option<&ExportOptions>,
     page: &str,
 ) -> Vec<Made> {
-    let query = match driven.session.query_for_others() {
-        // The page shows a first visitor something else than all defaults.
-        empty if empty.is_empty() => format!("lab={}", driven.session.params().lab().word()),
-        query => query,
-    };
-    let link = format!("{page}?{query}");
+    let link = page_link(&driven.session, page);
     let mut notes = driven.all_notes();
     let made = driven.results().into_iter().map(|(variant, result)| {
         let name = variant.or_else(|| name.map(str::to_owned));
@@ -181,24 +174,9 @@ impl MadeMotion {
     }
 }
 
-/// Returns the word of a kind of fault.
-const fn fault_word(kind: FaultKind) -> &'static str {
-    match kind {
-        FaultKind::Swap => "swap",
-        FaultKind::Gap => "gap",
-        FaultKind::Spike => "spike",
-        FaultKind::Jitter => "jitter",
-        FaultKind::Drift => "drift",
-        FaultKind::Ground => "ground",
-        FaultKind::Ends => "ends",
-        FaultKind::Skating => "skating",
-        FaultKind::Rate => "rate",
-    }
-}
-
 fn fault_row(found: &FoundFault, mends: bool, names: &[&str]) -> FaultRow {
     let fault = &found.fault;
-    let (kind, is_mended) = (fault_word(fault.kind), mends && found.is_chosen);
+    let (kind, is_mended) = (fault.kind.word(), mends && found.is_chosen);
     let last = fault.frames.end.saturating_sub(1);
     let joints: Vec<&str> =
         fault.joints.iter().filter_map(|&joint| names.get(joint).copied()).collect();

@@ -1,5 +1,7 @@
 //! How a run ends: the exit codes, and the errors that end it.
 
+use crate::labs::command_of;
+use segue_batch::{BatchError, FileError};
 use std::fmt;
 use std::io;
 use std::process::ExitCode;
@@ -71,5 +73,35 @@ impl From<io::Error> for Failure {
             return Self { status: Status::Fine, text: String::new() };
         }
         Self::unreadable(format!("the output cannot be written: {error}"))
+    }
+}
+
+impl From<FileError> for Failure {
+    fn from(error: FileError) -> Self {
+        Self::unreadable(error.to_string())
+    }
+}
+
+impl From<BatchError> for Failure {
+    fn from(error: BatchError) -> Self {
+        let name = |lab: segue_session::LabId| {
+            command_of(lab.word()).map_or(lab.word(), |command| command.name)
+        };
+        match error {
+            BatchError::OtherLab(lab) => Self::usage(format!(
+                "the link opens another lab: use `segue {} --link …`",
+                name(lab)
+            )),
+            BatchError::Clips { lab, expected, found } => {
+                Self::usage(format!("`segue {}` takes {expected}; here are {found}", name(lab)))
+            }
+            error @ (BatchError::Command(_) | BatchError::NoParameter(_)) => {
+                Self::usage(error.to_string())
+            }
+            BatchError::File(error) => error.into(),
+            error @ (BatchError::Import(_) | BatchError::Unusable(_)) => {
+                Self::unreadable(error.to_string())
+            }
+        }
     }
 }

@@ -1,10 +1,9 @@
 //! The options of writing files, and the places where they are written.
 
-use crate::inputs::{Input, shown};
 use crate::status::Failure;
-use crate::units::{parse_rate, parse_root, parse_unit, parse_up};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
+use segue_batch::{Input, parse_rate, parse_root, parse_unit, parse_up, shown};
 use segue_motion::clip::UpAxis;
 use segue_session::export::{ExportBody, ExportFormat, ExportOptions, ExportRoot, file_name};
 use std::collections::BTreeSet;
@@ -49,10 +48,7 @@ impl WriteArgs {
     /// # Errors
     /// [`Failure`] if neither the options nor the ending say the format.
     pub(crate) fn options(&self, out: Option<&Path>) -> Result<ExportOptions, Failure> {
-        let ending = || {
-            let ending = out?.extension()?.to_str()?.to_lowercase();
-            ExportFormat::from_name(&ending).filter(|format| format.ending() == ending)
-        };
+        let ending = || ExportFormat::from_ending(out?.extension()?.to_str()?);
         let names = ExportFormat::ALL.map(ExportFormat::name).join(", ");
         let format = self.to.or_else(ending).ok_or_else(|| {
             Failure::usage(format!(

@@ -42,7 +42,7 @@ impl RawMotion {
         if options.metres_per_unit.is_none() && metres > 0.0 && !LIKELY_METRES.contains(&metres) {
             tally.add(WarningKind::UnlikelyHeight { metres }, None);
             mendable.metres_per_unit =
-                fitting_unit(measure).filter(|&unit| self.moves_little(unit));
+                fitting_unit(measure);
         }
         let unit = measure.provenance.metres_per_unit;
         let joints = &self.joints;
@@ -51,16 +51,6 @@ impl RawMotion {
         let ways = std::iter::once((None, &mut self.root_translations)).chain(others);
         mendable.wild_rows = warn_of_ways(ways, unit, options, tally);
         mendable
-    }
-
-    /// Returns whether no joint jumps or goes far in a unit: lengths and positions of a file may be
-    /// in different ones.
-    fn moves_little(&self, unit: f64) -> bool {
-        let others = self.tracks.iter().map(|(_, way)| way);
-        std::iter::once(&self.root_translations).chain(others).all(|way| {
-            let is_near = |place: &Vec3| place.as_dvec3().length() * unit <= FAR_METRES;
-            jumps(way, unit) == Jumps::default() && way.iter().all(is_near)
-        })
     }
 }
 
@@ -242,14 +232,6 @@ mod tests {
         let (mendable, sentences) = warned(&evened, &mut read);
         assert!(!mendable && sentences[0].contains("put between"), "{sentences:?}");
         assert!(read.tracks[0].1.iter().all(|place| place.length() < 2.0));
-    }
-
-    #[test]
-    fn unit_in_which_joints_jump_is_not_suggested() {
-        let motion = RawMotion { root_translations: walk(&[]), ..RawMotion::default() };
-        assert!(motion.moves_little(1.0) && !motion.moves_little(1e4));
-        let tracks = vec![(1, walk(&[(4, 7.0), (5, 7.0)]))];
-        assert!(!RawMotion { tracks, ..motion }.moves_little(1.0));
     }
 
     #[test]

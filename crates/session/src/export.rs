@@ -87,6 +87,13 @@ impl ExportFormat {
         Self::ALL.into_iter().find(|format| format.name() == name)
     }
 
+    /// Returns the format of a file by its ending, in capitals or not.
+    #[must_use]
+    pub fn from_ending(ending: &str) -> Option<Self> {
+        let ending = ending.to_lowercase();
+        Self::from_name(&ending).filter(|format| format.ending() == ending)
+    }
+
     /// Returns the media type.
     #[must_use]
     pub const fn mime(self) -> &'static str {

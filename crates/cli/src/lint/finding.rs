@@ -1,7 +1,8 @@
 //! The findings of the checks in a file.
 
 use super::checks::{Rule, Source, unit_of};
-use crate::info::{error_text, rounded};
+use crate::info::rounded;
+use segue_batch::import_text;
 use segue_formats::FileKind;
 use segue_motion::clean::{Fault, SizeUnit, find_faults};
 use segue_motion::clip::Motion;
@@ -90,7 +91,7 @@ pub(super) fn check_file(file: ReadFile, bytes: Option<&[u8]>, rules: &[Rule]) -
         Ok(read) => read,
         Err(error) => {
             let (line, column) = (Some(error.line), Some(error.column));
-            let error = Some(Unreadable { text: error_text(&error), line, column });
+            let error = Some(Unreadable { text: import_text(&error), line, column });
             return Checked { file: name, clips: Vec::new(), findings: Vec::new(), error };
         }
     };

@@ -41,6 +41,22 @@ impl FaultKind {
         Self::Skating,
         Self::Rate,
     ];
+
+    /// Returns the word in reports.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Swap => "swap",
+            Self::Gap => "gap",
+            Self::Spike => "spike",
+            Self::Jitter => "jitter",
+            Self::Drift => "drift",
+            Self::Ground => "ground",
+            Self::Ends => "ends",
+            Self::Skating => "skating",
+            Self::Rate => "rate",
+        }
+    }
 }
 
 /// How a fault is mended, with the numbers that the mend needs.
@@ -126,6 +142,21 @@ pub enum SizeUnit {
     CentimetresPerSecond,
     /// Frames per second.
     FramesPerSecond,
+}
+
+impl SizeUnit {
+    /// Returns the unit as it is written after a number.
+    #[must_use]
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Degrees => "°",
+            Self::Centimetres => "cm",
+            Self::Frames => "frames",
+            Self::DegreesPerSecond => "°/s",
+            Self::CentimetresPerSecond => "cm/s",
+            Self::FramesPerSecond => "fps",
+        }
+    }
 }
 
 impl Fault {

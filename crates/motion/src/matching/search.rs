@@ -8,11 +8,13 @@
 
 mod boxes;
 mod build;
+mod nearest;
 mod scan;
 mod tree;
 
 pub use boxes::{BoxIndex, BoxMasks};
 pub use build::BoxBuilder;
+pub use nearest::scan_nearest;
 pub use scan::scan;
 pub use tree::TreeIndex;
 

@@ -2,12 +2,12 @@
 
 use super::Session;
 use crate::command::CommandError;
-use crate::labs::{Answer, ClipEdit, Slot, edit_params};
+use crate::labs::{Answer, ClipEdit, Outcome, Slot, edit_params};
 use crate::labs::{lab_of, recipe_id, recipe_name, recipe_params};
 use crate::library::{Entry, Origin};
 use crate::notice::Level;
 use crate::pane::NoResult;
-use crate::params::Params;
+use crate::params::{Key, Params};
 use segue_text::msg;
 use std::sync::Arc;
 
@@ -23,17 +23,11 @@ impl Session {
             ));
         }
         let is_whole = !outcome.awaits_feet() && !self.is_driven();
-        let fps = [Slot::A, Slot::B].map(|slot| {
-            let facts = self.document.slot(slot).and_then(|entry| entry.facts.as_ref());
-            facts.map_or(1.0, |facts| facts.fps)
-        });
         let known = CommandError::NotPossible("this clip is in the library already");
         if lab_of(params.lab()).is_clip_as_it_is(&params) {
             return Err(known);
         }
-        let id = recipe_id(&params, &outcome, fps).ok_or(CommandError::NotPossible(
-            "what was found lies beyond what a link can say: use shorter clips",
-        ))?;
+        let id = self.recipe_of(&params, &outcome)?;
         if self.document.library.find(&id).is_some() {
             return Err(known);
         }
@@ -47,6 +41,33 @@ impl Session {
         });
         self.say(Level::Info, said);
         Ok(())
+    }
+
+    /// Returns the id by which links name a pane's result as a clip, whether or not the library has
+    /// it: its recipe, or the id of the clip that it is unchanged.
+    ///
+    /// # Errors
+    /// [`CommandError`] if there is no result, or no link can say how it is made.
+    pub fn result_id(&self, pane: usize) -> Result<String, CommandError> {
+        let made = self.panes.get(pane)?.recipe()?;
+        let params = self.with_recording(made.params.clone());
+        if lab_of(params.lab()).is_clip_as_it_is(&params) {
+            return Ok(params.text(Key::A).to_owned());
+        }
+        let id = self.recipe_of(&params, made.outcome)?;
+        readable_recipe(&id)?;
+        Ok(id)
+    }
+
+    /// Returns the recipe of a result of the clips in the slots.
+    fn recipe_of(&self, params: &Params, outcome: &Outcome) -> Result<String, CommandError> {
+        let fps = [Slot::A, Slot::B].map(|slot| {
+            let facts = self.document.slot(slot).and_then(|entry| entry.facts.as_ref());
+            facts.map_or(1.0, |facts| facts.fps)
+        });
+        recipe_id(params, outcome, fps).ok_or(CommandError::NotPossible(
+            "what was found lies beyond what a link can say: use shorter clips",
+        ))
     }
 
     /// Adds a clip with one edit to the library, and puts it into a slot.

@@ -11,8 +11,10 @@ fn join(session: &mut Session, a: &str, b: &str) -> String {
     session.apply(Command::Set(values)).unwrap();
     settle(session);
     assert_eq!(session.panes()[0].problem, None, "{}", session.query());
+    let id = session.result_id(0).unwrap();
     session.apply(Command::Keep(0)).unwrap();
-    session.library().entries().last().unwrap().id.clone()
+    assert_eq!(session.library().entries().last().unwrap().id, id);
+    id
 }
 
 fn motion(session: &Session, id: &str) -> Arc<Motion> {

@@ -187,3 +187,32 @@ fn search_of_an_invalid_query_finds_nothing() {
         0
     );
 }
+
+#[test]
+fn nearest_frames_are_those_of_least_cost() {
+    let field = field(3, 700, 5);
+    let candidates = field.candidates();
+    let dims = field.features.layout().dims();
+    let weights = vec![1.0; dims];
+    for (turn, filter) in filters().into_iter().enumerate() {
+        let row = field.features.row(turn * 101).unwrap();
+        let query = Query { row, weights: &weights, filter };
+        let admitted = field.valid.iter().map(|frame| *frame as usize);
+        let mut hits: Vec<Hit> = admitted
+            .filter(|frame| filter.admits(field.tags[*frame]))
+            .map(|frame| Hit { frame, cost: query.cost(field.features.row(frame).unwrap()) })
+            .collect();
+        // Duplicated frames have equal costs: the earlier one is first.
+        hits.sort_by(|a, b| a.cost.total_cmp(&b.cost).then(a.frame.cmp(&b.frame)));
+        for count in [0, 1, 7, 10_000] {
+            let found = scan_nearest(&candidates, &query, count);
+            assert_eq!(found, hits[..count.min(hits.len())], "{turn} {count}");
+        }
+        assert_eq!(
+            scan_nearest(&candidates, &query, 1).first(),
+            scan(&candidates, &query).best.as_ref()
+        );
+    }
+    let broken = Query { row: &[f32::NAN; 27], weights: &weights, filter: TagFilter::default() };
+    assert!(scan_nearest(&candidates, &broken, 3).is_empty());
+}

@@ -1,4 +1,4 @@
-//! Units, axes and rates on the command line.
+//! Units, axes and rates in words.
 
 use segue_motion::clip::UpAxis;
 use segue_session::export::ExportRoot;
@@ -11,7 +11,7 @@ const UNITS: [(&str, f64); 5] =
 ///
 /// # Errors
 /// A sentence that says which are known.
-pub(crate) fn parse_unit(text: &str) -> Result<f64, String> {
+pub fn parse_unit(text: &str) -> Result<f64, String> {
     if let Some((_, metres)) = UNITS.iter().find(|(name, _)| *name == text) {
         return Ok(*metres);
     }
@@ -25,7 +25,7 @@ pub(crate) fn parse_unit(text: &str) -> Result<f64, String> {
 ///
 /// # Errors
 /// A sentence that says which are known.
-pub(crate) fn parse_up(text: &str) -> Result<UpAxis, String> {
+pub fn parse_up(text: &str) -> Result<UpAxis, String> {
     match text {
         "y" | "Y" => Ok(UpAxis::Y),
         "z" | "Z" => Ok(UpAxis::Z),
@@ -37,7 +37,7 @@ pub(crate) fn parse_up(text: &str) -> Result<UpAxis, String> {
 ///
 /// # Errors
 /// A sentence that says which are known.
-pub(crate) fn parse_root(text: &str) -> Result<ExportRoot, String> {
+pub fn parse_root(text: &str) -> Result<ExportRoot, String> {
     ExportRoot::from_name(text).ok_or_else(|| {
         format!("expected one of {}", ExportRoot::ALL.map(ExportRoot::name).join(", "))
     })
@@ -47,7 +47,7 @@ pub(crate) fn parse_root(text: &str) -> Result<ExportRoot, String> {
 ///
 /// # Errors
 /// A sentence that says what is possible.
-pub(crate) fn parse_rate(text: &str) -> Result<f64, String> {
+pub fn parse_rate(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(fps) if (1.0..=1_000.0).contains(&fps) => Ok(fps),
         _ => Err("expected 1 to 1000 frames per second".to_owned()),
@@ -55,13 +55,15 @@ pub(crate) fn parse_rate(text: &str) -> Result<f64, String> {
 }
 
 /// Returns the name of a unit of length, or metres per unit.
-pub(crate) fn unit_name(metres_per_unit: f64) -> String {
+#[must_use]
+pub fn unit_name(metres_per_unit: f64) -> String {
     let known = UNITS.iter().find(|(_, metres)| (metres / metres_per_unit - 1.0).abs() < 1e-6);
     known.map_or_else(|| format!("{metres_per_unit} m"), |(name, _)| (*name).to_owned())
 }
 
 /// Returns the name of an up axis.
-pub(crate) const fn up_name(up: UpAxis) -> &'static str {
+#[must_use]
+pub const fn up_name(up: UpAxis) -> &'static str {
     match up {
         UpAxis::Y => "y",
         UpAxis::Z => "z",

@@ -1,6 +1,6 @@
-//! The files that a command line names: files, folders with all below them, and patterns.
+//! The files that some words name: files, folders with all below them, and patterns.
 
-use crate::status::Failure;
+use crate::error::BatchError;
 use glob::MatchOptions;
 use segue_formats::{ARCHIVE_ENDINGS, MOTION_ENDINGS};
 use std::collections::BTreeSet;
@@ -10,25 +10,25 @@ use walkdir::{DirEntry, WalkDir};
 
 /// A file to read.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Input {
+pub struct Input {
     /// The path by which it is opened.
-    pub(crate) path: PathBuf,
+    pub path: PathBuf,
     /// The name in messages and reports: the path with `/` between folders.
-    pub(crate) name: String,
+    pub name: String,
     /// The path below the folder that was named; the file's own name where it was named itself.
-    pub(crate) relative: PathBuf,
+    pub relative: PathBuf,
     /// Whether it was named itself. A file that was found in a folder and holds no motion is left
     /// out.
-    pub(crate) is_named: bool,
+    pub is_named: bool,
 }
 
-/// The files of a command line, in its order; those of a folder sorted by path.
+/// The files that some words name, in the order of the words; those of a folder sorted by path.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Inputs {
+pub struct Inputs {
     /// The files, each once.
-    pub(crate) files: Vec<Input>,
+    pub files: Vec<Input>,
     /// The words that lead to no file, a sentence each.
-    pub(crate) problems: Vec<String>,
+    pub problems: Vec<String>,
     seen: BTreeSet<PathBuf>,
 }
 
@@ -36,20 +36,20 @@ impl Inputs {
     /// Returns the files that some words name.
     ///
     /// # Errors
-    /// [`Failure`] if they name no file at all.
-    pub(crate) fn of(words: &[OsString]) -> Result<Self, Failure> {
+    /// [`BatchError::Unusable`] if they name no file at all.
+    pub fn of(words: &[OsString]) -> Result<Self, BatchError> {
         let mut inputs = Self::default();
         for word in words {
             inputs.add(word);
         }
         if inputs.files.is_empty() {
-            return Err(Failure::unreadable(inputs.problems.join("\n")));
+            return Err(BatchError::Unusable(inputs.problems.join("\n")));
         }
         Ok(inputs)
     }
 
     /// Adds the files of a word.
-    pub(crate) fn add(&mut self, word: &OsString) {
+    pub fn add(&mut self, word: &OsString) {
         let path = Path::new(word);
         if path.is_dir() {
             return self.add_folder(path);
@@ -120,7 +120,8 @@ impl Inputs {
 }
 
 /// Returns a path for messages, with `/` between folders.
-pub(crate) fn shown(path: &Path) -> String {
+#[must_use]
+pub fn shown(path: &Path) -> String {
     let text = path.to_string_lossy();
     if std::path::MAIN_SEPARATOR == '/' { text.into_owned() } else { text.replace('\\', "/") }
 }
@@ -132,7 +133,7 @@ fn is_motion_file(path: &Path) -> bool {
 }
 
 /// Returns whether a path has an ending, and the ending is as asked for.
-pub(crate) fn has_ending(path: &Path, is_it: impl FnOnce(&str) -> bool) -> bool {
+pub fn has_ending(path: &Path, is_it: impl FnOnce(&str) -> bool) -> bool {
     path.extension().and_then(|ending| ending.to_str()).is_some_and(is_it)
 }
 
@@ -142,7 +143,8 @@ mod tests {
 
     /// Returns an empty folder of its own below the system's temporary one.
     fn folder(name: &str) -> PathBuf {
-        let folder = std::env::temp_dir().join(format!("segue-cli-{}-{name}", std::process::id()));
+        let folder =
+            std::env::temp_dir().join(format!("segue-batch-{}-{name}", std::process::id()));
         std::fs::remove_dir_all(&folder).ok();
         std::fs::create_dir_all(folder.join("b/.hidden")).unwrap();
         folder

@@ -1,0 +1,147 @@
+//! Reading of files on all cores, by the code that reads them in the page.
+
+use crate::error::{BatchError, FileError};
+use crate::inputs::{Input, has_ending, shown};
+use rayon::prelude::*;
+use segue_formats::{FileKind, ImportOptions, kind_of};
+use segue_session::reading::{Companion, ReadReport, ReadSetup, read};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// A file that was read, or the reason why it was not.
+pub type Read = Result<ReadReport, FileError>;
+
+/// Reads files, with the skeletons that they need.
+#[derive(Debug)]
+pub struct Reader {
+    options: ImportOptions,
+    /// The skeletons that were named.
+    named: Vec<Companion>,
+    /// The ASF files beside AMC files, by folder.
+    beside: BTreeMap<PathBuf, Vec<Companion>>,
+}
+
+impl Reader {
+    /// Returns a reader of some files, after reading the skeletons that are named: ASF files of AMC
+    /// files, and SMPL models of NPZ files. ASF files in the folder of an AMC file are found by
+    /// themselves.
+    ///
+    /// # Errors
+    /// [`BatchError`] if a skeleton that is named cannot be read.
+    pub fn new(
+        inputs: &[Input],
+        options: ImportOptions,
+        skeletons: &[PathBuf],
+    ) -> Result<Self, BatchError> {
+        let named = skeletons.iter().map(|path| named_skeleton(path, &options));
+        let named = named.collect::<Result<Vec<_>, _>>()?;
+        let mut beside = BTreeMap::new();
+        for input in inputs {
+            let folder = folder_of(input);
+            if has_ending(&input.path, |own| own.eq_ignore_ascii_case("amc"))
+                && !beside.contains_key(folder)
+            {
+                beside.insert(folder.to_owned(), skeletons_in(folder));
+            }
+        }
+        Ok(Self { options, named, beside })
+    }
+
+    /// Returns the bytes of a file, or the reason why there are none. `None` for a file of a folder
+    /// that is left out: a skeleton of others, or no motion at all.
+    #[must_use]
+    pub fn bytes(&self, input: &Input) -> Option<Result<Vec<u8>, FileError>> {
+        let is_asf = has_ending(&input.path, |own| own.eq_ignore_ascii_case("asf"));
+        if !input.is_named && is_asf && self.beside.contains_key(folder_of(input)) {
+            return None;
+        }
+        let bytes = bytes_of(&input.path, self.options.max_bytes);
+        let is_motion =
+            |bytes: &[u8]| input.is_named || kind_of(&input.name, bytes) != FileKind::Unknown;
+        bytes.as_ref().map_or(true, |bytes| is_motion(bytes)).then_some(bytes)
+    }
+
+    /// Reads a file, or all motion files of an archive; `None` as for [`bytes`](Self::bytes).
+    #[must_use]
+    pub fn read(&self, input: &Input) -> Option<Read> {
+        Some(self.bytes(input)?.map(|bytes| self.read_bytes(input, &bytes)))
+    }
+
+    /// Reads a file whose bytes are known.
+    #[must_use]
+    pub fn read_bytes(&self, input: &Input, bytes: &[u8]) -> ReadReport {
+        let beside = self.beside.get(folder_of(input)).into_iter().flatten();
+        let setup = ReadSetup {
+            options: self.options,
+            companions: self.named.iter().chain(beside).cloned().collect(),
+            ..ReadSetup::default()
+        };
+        read(&input.name, bytes, &setup, &mut |_| true).unwrap_or_default()
+    }
+}
+
+/// Does something with every file on all cores, and calls `done` after each. The results are in the
+/// order of the files, without those for which there is none.
+pub fn for_each<T: Send>(
+    files: &[Input],
+    work: impl Fn(&Input) -> Option<T> + Sync,
+    done: impl Fn() + Sync,
+) -> Vec<T> {
+    let made: Vec<Option<T>> = files
+        .par_iter()
+        .map(|input| {
+            let made = work(input);
+            done();
+            made
+        })
+        .collect();
+    made.into_iter().flatten().collect()
+}
+
+/// Returns the folder of a file; the empty path for the current one.
+fn folder_of(input: &Input) -> &Path {
+    input.path.parent().unwrap_or(Path::new(""))
+}
+
+/// Returns the bytes of a file of at most `max_bytes`.
+///
+/// # Errors
+/// [`FileError`] with the file's name.
+pub fn bytes_of(path: &Path, max_bytes: usize) -> Result<Vec<u8>, FileError> {
+    let size = fs::metadata(path).map(|about| about.len());
+    if let Ok(size) = size.as_ref()
+        && *size > max_bytes as u64
+    {
+        return Err(FileError::TooLarge { name: shown(path), bytes: *size, max_bytes });
+    }
+    let failed = |error| FileError::System { name: shown(path), path: path.to_owned(), error };
+    fs::read(path).map_err(failed)
+}
+
+/// Reads a skeleton that was named.
+fn named_skeleton(path: &Path, options: &ImportOptions) -> Result<Companion, BatchError> {
+    let (name, bytes) = (shown(path), bytes_of(path, options.max_bytes)?);
+    match kind_of(&name, &bytes) {
+        FileKind::Asf => Ok(Companion::new(&name, &bytes)),
+        _ => Ok(Companion::of_model(&name, &bytes, options)?),
+    }
+}
+
+/// Returns the ASF files of a folder, sorted by name. One that cannot be read is missed when a
+/// motion needs it.
+fn skeletons_in(folder: &Path) -> Vec<Companion> {
+    let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let mut paths: Vec<PathBuf> = fs::read_dir(here)
+        .into_iter()
+        .flatten()
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(|path| has_ending(path, |own| own.eq_ignore_ascii_case("asf")))
+        .collect();
+    paths.sort();
+    let read = |path: PathBuf| {
+        let name = path.file_name()?.to_string_lossy().into_owned();
+        Some(Companion::new(&name, &fs::read(&path).ok()?))
+    };
+    paths.into_iter().filter_map(read).collect()
+}

@@ -1,0 +1,484 @@
+//! Clips: a motion with where it comes from, as arrays.
+
+use crate::arrays::{array, components, fixed_array, wxyz};
+use crate::errors::write_error;
+use crate::load::clips_of_bytes;
+use crate::save::SaveOptions;
+use glam::{Quat, Vec3};
+use numpy::{
+    PyArray1, PyArray2, PyArray3, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods as _,
+};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyBytes, PyDict};
+use rayon::prelude::*;
+use segue_batch::{unit_name, up_name};
+use segue_formats::ImportOptions;
+use segue_formats::numpy::write_npz;
+use segue_motion::clip::Motion;
+use segue_motion::skeleton::{Joint, Role, Side, Skeleton, WorldPose};
+use segue_motion::skin::Character;
+use segue_session::reading::ReadFile;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// The number of frames whose kinematics one core computes at a time.
+const FRAMES_PER_PART: usize = 256;
+
+/// The origin of a clip: what a session needs to have it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Origin {
+    /// Its id in links; `None` if no link can say it.
+    pub(crate) id: Option<String>,
+    /// The files that the id names.
+    pub(crate) files: Vec<Arc<ReadFile>>,
+}
+
+/// A motion on a skeleton: rotations of joints, and the way of the first joint, frame by frame.
+///
+/// Units are metres and seconds. The world is right-handed with Y up; quaternions are in the order
+/// w x y z. Arrays of attributes are read-only, and made once; `copy()` them to change them.
+#[pyclass(module = "segue", frozen, subclass)]
+pub(crate) struct Clip {
+    pub(crate) motion: Arc<Motion>,
+    /// The character whose mesh a GLB file gets.
+    pub(crate) character: Option<Arc<Character>>,
+    pub(crate) origin: Origin,
+    /// What was odd about the file, one sentence each.
+    warnings: Vec<String>,
+    offsets: PyOnceLock<Py<PyArray2<f32>>>,
+    parents: PyOnceLock<Py<PyArray1<i32>>>,
+    root: PyOnceLock<Py<PyArray2<f32>>>,
+    rotations: PyOnceLock<Py<PyArray3<f32>>>,
+}
+
+impl Clip {
+    /// Returns a clip.
+    pub(crate) fn new(
+        motion: Arc<Motion>,
+        character: Option<Arc<Character>>,
+        origin: Origin,
+        warnings: Vec<String>,
+    ) -> Self {
+        Self {
+            motion,
+            character,
+            origin,
+            warnings,
+            offsets: PyOnceLock::new(),
+            parents: PyOnceLock::new(),
+            root: PyOnceLock::new(),
+            rotations: PyOnceLock::new(),
+        }
+    }
+
+    /// Returns the world pose of every frame, converted by `take` into a part of `out` that is
+    /// `joints × width` long.
+    fn world<T: Send + Copy + Default>(
+        &self,
+        take: impl Fn(&WorldPose, &mut [T]) + Sync,
+    ) -> Vec<T> {
+        let clip = self.motion.clip();
+        let joints = clip.skeleton().len();
+        let mut out = vec![T::default(); clip.frames() * joints];
+        let parts = out.par_chunks_mut((FRAMES_PER_PART * joints).max(1)).enumerate();
+        parts.for_each(|(part, out)| {
+            let mut pose = WorldPose::default();
+            for (frame, out) in (part * FRAMES_PER_PART..).zip(out.chunks_mut(joints)) {
+                clip.world_pose_into(frame, &mut pose);
+                take(&pose, out);
+            }
+        });
+        out
+    }
+}
+
+impl Clip {
+    /// Returns the clip of an NPZ file that is in memory alone, and would have this clip: links name
+    /// it by that file, and `save` writes the same.
+    fn of_npz(clip: &segue_motion::clip::Clip) -> PyResult<Self> {
+        let name = format!("{}.npz", clip.name());
+        let mut clips = clips_of_bytes(&name, &write_npz(clip), ImportOptions::default())?;
+        clips.pop().ok_or_else(|| write_error("it has no frames"))
+    }
+}
+
+/// Checks the shape of an array.
+fn expect_shape(name: &str, found: &[usize], expected: &[usize]) -> PyResult<()> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(PyValueError::new_err(format!("{name}: found shape {found:?}, expected {expected:?}")))
+}
+
+/// Returns vectors of three finite numbers each.
+fn vectors(name: &str, values: impl Iterator<Item = f32>) -> PyResult<Vec<Vec3>> {
+    let values: Vec<f32> = values.collect();
+    if values.iter().any(|value| !value.is_finite()) {
+        return Err(PyValueError::new_err(format!("{name}: expected finite numbers")));
+    }
+    Ok(values.chunks_exact(3).map(Vec3::from_slice).collect())
+}
+
+/// Returns unit quaternions of numbers in the order w x y z.
+fn unit_quaternions(values: impl Iterator<Item = f32>) -> PyResult<Vec<Quat>> {
+    let values: Vec<f32> = values.collect();
+    let of_four = |four: &[f32]| {
+        let [w, x, y, z] = *four else {
+            return Quat::IDENTITY;
+        };
+        Quat::from_xyzw(x, y, z, w)
+    };
+    let quats: Vec<Quat> = values.chunks_exact(4).map(of_four).collect();
+    // Single precision keeps a length to 1e-6; a length that is off by more is another thing.
+    if !quats.iter().all(|quat| (quat.length() - 1.0).abs() < 1e-3) {
+        return Err(PyValueError::new_err("rotations: expected unit quaternions, w x y z"));
+    }
+    Ok(quats.into_iter().map(|quat| quat / quat.length()).collect())
+}
+
+#[pymethods]
+impl Clip {
+    /// The name of the clip.
+    #[getter]
+    fn name(&self) -> &str {
+        self.motion.clip().name()
+    }
+
+    /// Frames per second.
+    #[getter]
+    fn fps(&self) -> f64 {
+        self.motion.clip().fps()
+    }
+
+    /// The number of frames; `len(clip)` is the same.
+    #[getter]
+    fn frames(&self) -> usize {
+        self.motion.clip().frames()
+    }
+
+    /// The time from the first frame to the last, seconds.
+    #[getter]
+    fn duration(&self) -> f64 {
+        self.motion.clip().duration_secs()
+    }
+
+    /// The names of the joints, parents before children. Joints of the file above the hips are
+    /// folded into the first one.
+    #[getter]
+    fn names(&self) -> Vec<&str> {
+        let joints = self.motion.clip().skeleton().joints();
+        joints.iter().map(|joint| joint.name.as_str()).collect()
+    }
+
+    /// The index of each joint's parent, -1 for the first: int32, shape (joints,).
+    #[getter]
+    fn parents<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i32>>> {
+        let made = self.parents.get_or_try_init(py, || {
+            let joints = self.motion.clip().skeleton().joints();
+            let parents =
+                joints.iter().map(|joint| joint.parent.map_or(-1, |parent| parent as i32));
+            fixed_array(py, parents.collect(), joints.len())
+        })?;
+        Ok(made.bind(py).clone())
+    }
+
+    /// The place of each joint in its parent at rest, metres: float32, shape (joints, 3).
+    #[getter]
+    fn offsets<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let made = self.offsets.get_or_try_init(py, || {
+            let joints = self.motion.clip().skeleton().joints();
+            let offsets = joints.iter().map(|joint| joint.offset).collect();
+            fixed_array(py, components(offsets), [joints.len(), 3])
+        })?;
+        Ok(made.bind(py).clone())
+    }
+
+    /// The place of the first joint in the world, metres, Y up: float32, shape (frames, 3).
+    #[getter]
+    fn root<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let made = self.root.get_or_try_init(py, || {
+            let root = self.motion.clip().root_translations().to_vec();
+            let frames = root.len();
+            fixed_array(py, components(root), [frames, 3])
+        })?;
+        Ok(made.bind(py).clone())
+    }
+
+    /// The rotation of each joint in its parent, quaternions w x y z: float32, shape (frames,
+    /// joints, 4).
+    #[getter]
+    fn rotations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f32>>> {
+        let made = self.rotations.get_or_try_init(py, || {
+            let clip = self.motion.clip();
+            let values =
+                py.detach(|| wxyz((0..clip.frames()).flat_map(|frame| clip.rotations(frame))));
+            fixed_array(py, values, [clip.frames(), clip.skeleton().len(), 4])
+        })?;
+        Ok(made.bind(py).clone())
+    }
+
+    /// The places of joints that move in their parents, by the joint's index: a dictionary of
+    /// float32, shape (frames, 3), metres. All other joints stay at their offsets.
+    #[getter]
+    fn translations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let tracks = PyDict::new(py);
+        for track in self.motion.clip().translations() {
+            let frames = track.values.len();
+            tracks.set_item(
+                track.joint,
+                fixed_array(py, components(track.values.clone()), [frames, 3])?,
+            )?;
+        }
+        Ok(tracks)
+    }
+
+    /// Return the places of all joints in the world.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray of float32, shape (frames, joints, 3)
+    ///     Metres, Y up. Computed on all cores, without the interpreter's lock.
+    fn global_positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f32>>> {
+        let clip = self.motion.clip();
+        let positions = py.detach(|| self.world(|pose, out| out.copy_from_slice(&pose.positions)));
+        array(py, components(positions), [clip.frames(), clip.skeleton().len(), 3])
+    }
+
+    /// Return the rotations of all joints in the world.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray of float32, shape (frames, joints, 4)
+    ///     Quaternions w x y z.
+    fn global_rotations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f32>>> {
+        let clip = self.motion.clip();
+        let rotations =
+            py.detach(|| wxyz(self.world(|pose, out| out.copy_from_slice(&pose.rotations)).iter()));
+        array(py, rotations, [clip.frames(), clip.skeleton().len(), 4])
+    }
+
+    /// The names of the joints that have a function in the body, by that function: "hips", "spine",
+    /// "head", "left thigh", "left shin", "left foot" and so on.
+    #[getter]
+    fn roles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let roles = PyDict::new(py);
+        let joints = self.motion.clip().skeleton().joints();
+        for role in Role::ALL {
+            let joint = self.motion.roles().get(role).and_then(|joint| joints.get(joint));
+            if let Some(joint) = joint {
+                roles.set_item(role.name(), &joint.name)?;
+            }
+        }
+        Ok(roles)
+    }
+
+    /// Return the frames in which each foot is on the ground.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray of bool, shape (frames, 2)
+    ///     Left foot, right foot.
+    fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<bool>>> {
+        let frames = self.motion.clip().frames();
+        let planted = py.detach(|| {
+            let contacts = self.motion.contacts();
+            let of_frame = |frame: usize| Side::BOTH.map(|side| contacts.planted(side, frame));
+            (0..frames).flat_map(of_frame).collect::<Vec<bool>>()
+        });
+        array(py, planted, [frames, 2])
+    }
+
+    /// The height of the body at rest, metres.
+    #[getter]
+    fn body_height(&self) -> f32 {
+        self.motion.body_height()
+    }
+
+    /// Whether its file has a mesh on its skeleton.
+    #[getter]
+    fn has_mesh(&self) -> bool {
+        self.character.is_some()
+    }
+
+    /// The unit of length of its file: "mm", "cm", "m", "in", "ft", or metres per unit.
+    #[getter]
+    fn unit(&self) -> String {
+        unit_name(self.motion.clip().provenance().metres_per_unit)
+    }
+
+    /// The up axis of its file: "y" or "z".
+    #[getter]
+    fn up(&self) -> &'static str {
+        up_name(self.motion.clip().provenance().up)
+    }
+
+    /// The name of the clip in links; None where no link can say how it was made.
+    #[getter]
+    fn id(&self) -> Option<&str> {
+        self.origin.id.as_deref()
+    }
+
+    /// What was odd about its file, one sentence each.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.warnings.clone()
+    }
+
+    /// Write the clip as a file.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : path
+    ///     Its ending says the format, if nothing else does.
+    /// format : {"bvh", "fbx", "glb", "vrma", "npz", "csv", "g1"}, optional
+    /// unit : {"mm", "cm", "m", "in", "ft"} or float, optional
+    ///     The unit of length in BVH and FBX, or metres per unit. That of the clip's file where it
+    ///     is not given, centimetres in FBX.
+    /// up : {"y", "z"}, optional
+    ///     The up axis in BVH and FBX. That of the clip's file where it is not given, Y in FBX.
+    /// fps : float, optional
+    ///     Frames per second; the motion is interpolated.
+    /// root : {"as-is", "ground", "in-place"}, optional
+    ///     Which joint has the motion over the ground: that of the file, a root bone on the ground,
+    ///     or none.
+    /// body : {"character", "plain"}, optional
+    ///     The mesh in a GLB file: that of the clip's own file, or a plain body.
+    ///
+    /// Returns
+    /// -------
+    /// pathlib.Path
+    ///     The path.
+    ///
+    /// Raises
+    /// ------
+    /// `WriteError`
+    ///     The format cannot hold the motion.
+    #[pyo3(signature = (path, *, format=None, unit=None, up=None, fps=None, root=None, body=None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
+    fn save(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        format: Option<String>,
+        unit: Option<Bound<'_, PyAny>>,
+        up: Option<String>,
+        fps: Option<f64>,
+        root: Option<String>,
+        body: Option<String>,
+    ) -> PyResult<PathBuf> {
+        let options = SaveOptions { format, unit, up, fps, root, body }.read(Some(&path))?;
+        let bytes = py.detach(|| crate::save::bytes_of(self, &options))?;
+        py.detach(|| std::fs::write(&path, bytes))?;
+        Ok(path)
+    }
+
+    /// Return the bytes of the file that `save` writes.
+    ///
+    /// Parameters
+    /// ----------
+    /// format : {"bvh", "fbx", "glb", "vrma", "npz", "csv", "g1"}
+    /// unit, up, fps, root, body
+    ///     As in `save`.
+    ///
+    /// Returns
+    /// -------
+    /// bytes
+    #[pyo3(signature = (format, *, unit=None, up=None, fps=None, root=None, body=None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords in Python")]
+    fn to_bytes(
+        &self,
+        py: Python<'_>,
+        format: String,
+        unit: Option<Bound<'_, PyAny>>,
+        up: Option<String>,
+        fps: Option<f64>,
+        root: Option<String>,
+        body: Option<String>,
+    ) -> PyResult<Py<PyBytes>> {
+        let options = SaveOptions { format: Some(format), unit, up, fps, root, body }.read(None)?;
+        let bytes = py.detach(|| crate::save::bytes_of(self, &options))?;
+        Ok(PyBytes::new(py, &bytes).unbind())
+    }
+
+    /// Return the rotations as those of `SciPy`.
+    ///
+    /// Returns
+    /// -------
+    /// scipy.spatial.transform.Rotation
+    ///     frames × joints rotations in the parent, one after the other: those of frame f are
+    ///     `[f * joints : (f + 1) * joints]`.
+    fn as_scipy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let clip = self.motion.clip();
+        let rotations = (0..clip.frames()).flat_map(|frame| clip.rotations(frame));
+        let xyzw: Vec<f32> = rotations.flat_map(Quat::to_array).collect();
+        let count = xyzw.len() / 4;
+        let quats = array(py, xyzw, [count, 4])?;
+        let class = py.import("scipy.spatial.transform")?.getattr("Rotation")?;
+        class.call_method1("from_quat", (quats,))
+    }
+
+    /// Return the clip as that of an NPZ file, which links name in place of how it was made.
+    ///
+    /// Parameters
+    /// ----------
+    /// name : str, optional
+    ///     The file's name without its ending. That of the clip where none is given.
+    ///
+    /// Returns
+    /// -------
+    /// Clip
+    ///     The same motion. Its link names the file that `save(f"{name}.npz")` writes.
+    #[pyo3(signature = (name=None))]
+    fn as_file(&self, py: Python<'_>, name: Option<String>) -> PyResult<Self> {
+        let name = name.unwrap_or_else(|| self.motion.clip().name().to_owned());
+        py.detach(|| Self::of_npz(&self.motion.clip().as_ref().clone().with_name(name)))
+    }
+
+    /// Return a clip of arrays; see `segue.from_arrays`.
+    #[staticmethod]
+    #[pyo3(name = "_of_arrays", signature = (names, parents, offsets, rotations, root, fps, name))]
+    fn of_arrays(
+        names: Vec<String>,
+        parents: Vec<i64>,
+        offsets: PyReadonlyArray2<'_, f32>,
+        rotations: PyReadonlyArray3<'_, f32>,
+        root: PyReadonlyArray2<'_, f32>,
+        fps: f64,
+        name: &str,
+    ) -> PyResult<Self> {
+        let joints = names.len();
+        let frames = root.shape().first().copied().unwrap_or_default();
+        expect_shape("parents", &[parents.len()], &[joints])?;
+        expect_shape("offsets", offsets.shape(), &[joints, 3])?;
+        expect_shape("root", root.shape(), &[frames, 3])?;
+        expect_shape("rotations", rotations.shape(), &[frames, joints, 4])?;
+        let offsets = vectors("offsets", offsets.as_array().iter().copied())?;
+        let root = vectors("root", root.as_array().iter().copied())?;
+        let rotations = unit_quaternions(rotations.as_array().iter().copied())?;
+        let joints = names.into_iter().zip(parents).zip(offsets).map(|((name, parent), offset)| {
+            let parent = usize::try_from(parent).ok();
+            Joint { name, parent, offset, end_site: None, channels: Vec::new() }
+        });
+        let invalid = |reason: String| PyValueError::new_err(reason);
+        let skeleton = Skeleton::new(joints.collect()).map_err(|no| invalid(no.to_string()))?;
+        let clip = segue_motion::clip::Clip::new(name, Arc::new(skeleton), fps, rotations, root);
+        Self::of_npz(&clip.map_err(|no| invalid(no.to_string()))?)
+    }
+
+    fn __len__(&self) -> usize {
+        self.motion.clip().frames()
+    }
+
+    fn __repr__(&self) -> String {
+        let clip = self.motion.clip();
+        format!(
+            "<segue.Clip {:?}: {} frames at {} fps, {} joints>",
+            clip.name(),
+            clip.frames(),
+            clip.fps(),
+            clip.skeleton().len()
+        )
+    }
+}
