@@ -95,8 +95,8 @@ impl Clip {
 }
 
 impl Clip {
-    /// Returns the clip of an NPZ file that is in memory alone, and would have this clip: links name
-    /// it by that file, and `save` writes the same.
+    /// Returns the clip of an NPZ file that is in memory alone, and holds this clip: links name it
+    /// by that file, and `save` writes the same.
     fn of_npz(clip: &segue_motion::clip::Clip) -> PyResult<Self> {
         let name = format!("{}.npz", clip.name());
         let mut clips = clips_of_bytes(&name, &write_npz(clip), ImportOptions::default())?;
