@@ -49,8 +49,8 @@ impl PageServer {
         self.files.iter().enumerate().map(address).collect()
     }
 
-    /// Answers until the process ends. A request is answered on a thread of its own: a browser reads
-    /// a long answer only when it has use for it, and meanwhile asks for other files.
+    /// Answers until the process ends. A request is answered on a thread of its own: a browser
+    /// reads a long answer only when it has use for it, and meanwhile asks for other files.
     pub(crate) fn run(&self) {
         thread::scope(|scope| {
             for request in self.server.incoming_requests() {

@@ -41,8 +41,7 @@ impl RawMotion {
         // A unit that the user gave is not questioned.
         if options.metres_per_unit.is_none() && metres > 0.0 && !LIKELY_METRES.contains(&metres) {
             tally.add(WarningKind::UnlikelyHeight { metres }, None);
-            mendable.metres_per_unit =
-                fitting_unit(measure);
+            mendable.metres_per_unit = fitting_unit(measure);
         }
         let unit = measure.provenance.metres_per_unit;
         let joints = &self.joints;
