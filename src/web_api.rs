@@ -354,6 +354,12 @@ impl SegueHandle {
         self.borrow()?.bone_map(&which).map_err(|reason| error(format!("boneMap: {reason}")))
     }
 
+    /// Applies a bone map, the JSON of its file, to all clips that it fits.
+    #[wasm_bindgen(js_name = setBoneMap)]
+    pub fn set_bone_map(&self, json: &str) -> Result<(), JsValue> {
+        self.change(|segue| segue.set_bone_map(json))
+    }
+
     /// Puts a result into the library. Returns the id of the new clip.
     pub fn keep(&self, which: &str) -> Result<String, JsValue> {
         let kept =

@@ -391,6 +391,12 @@ impl Segue {
         Ok(BoneMap::of(motion.clip().skeleton(), motion.roles()).to_json())
     }
 
+    /// Applies a bone map, the JSON of its file, to all clips that it fits.
+    pub(crate) fn set_bone_map(&mut self, json: &str) -> Result<(), ApiError> {
+        let map = BoneMap::from_json(json.as_bytes()).map_err(CommandError::from)?;
+        Ok(self.apply(Command::File(FileCommand::ApplyBoneMap(map)))?)
+    }
+
     /// Returns a motion as a file with the options of the export dialogue.
     pub(crate) fn export_as(
         &self,

@@ -75,7 +75,7 @@ onOneBackend("call with an argument of a wrong type names it", async ({ open }) 
     const { segue } = window;
     const calls = [
       () => segue.pose({}, 0), () => segue.pose({ length: -1 }, 0), () => segue.pose(null), () => segue.pose("walk", "soon"), () => segue.pose("walk", NaN),
-      () => segue.export({}, "bvh"), () => segue.export("walk", 7), () => segue.export("walk", "glb", 7), () => segue.export("walk", "glb", { body: {} }), () => segue.export("walk", "glb", { bodies: 1 }), () => segue.export("walk", "glb", { fps: "many" }), () => segue.keep(), () => segue.keep(Symbol("x")),
+      () => segue.export({}, "bvh"), () => segue.export("walk", 7), () => segue.export("walk", "glb", 7), () => segue.export("walk", "glb", { body: {} }), () => segue.export("walk", "glb", { bodies: 1 }), () => segue.export("walk", "glb", { fps: "many" }), () => segue.setBoneMap("map"), () => segue.keep(), () => segue.keep(Symbol("x")),
       () => segue.seek("soon"), () => segue.stop([]), () => segue.load({}, new Uint8Array(1)), () => segue.load("x.bvh", "text"),
       () => segue.set(circle), () => segue.set([1]), () => segue.set(null), () => segue.set({ blend_window: null }), () => segue.set({ a: 10n }),
       () => segue.on("change"), () => segue.on({}, () => {}),
@@ -86,7 +86,7 @@ onOneBackend("call with an argument of a wrong type names it", async ({ open }) 
   });
   const expected = [
     "pose: which: found an object", "pose: which: found an object", "pose: which: found null", "pose: seconds: found `soon`", "pose: seconds: found NaN",
-    "export: which: found an object", "export: format: found 7", "export: options: found 7", "export: body: found an object", "export: options: found `bodies`", "export: fps: found `many`", "keep: which: found nothing", "keep: which: found a symbol",
+    "export: which: found an object", "export: format: found 7", "export: options: found 7", "export: body: found an object", "export: options: found `bodies`", "export: fps: found `many`", "setBoneMap: found `map`", "keep: which: found nothing", "keep: which: found a symbol",
     "seek: seconds: found `soon`", "stop: name: found a list", "load: name: found an object", "load: bytes: found `text`",
     "set: circle: found an object", "set: found a list", "set: found null", "set: blend_window: found null", "set: a: found a bigint",
     "on: listener: found nothing", "on: event: found an object",

@@ -62,6 +62,7 @@ export function makeApi(handle, { stopped, onLost }) {
     export: async (which, format, options) =>
       callAsync("exportClip", text("export: which", which, WHICH), text("export: format", format, FORMAT), ...asExportOptions(options)),
     boneMap: async (which) => JSON.parse(await callAsync("boneMap", text("boneMap: which", which, WHICH))),
+    setBoneMap: async (map) => callAsync("setBoneMap", asBoneMap(map)),
     keep: (which) => call("keep", text("keep: which", which, PANE)),
     report: () => callAsync("report"),
     snapshot: () => callAsync("snapshot"),
@@ -100,6 +101,17 @@ function text(key, value, expected) {
 function number(key, value, expected = "seconds") {
   if (typeof value !== "number" || !Number.isFinite(value)) throw new TypeError(`${key}: found ${named(value)}, expected ${expected}`);
   return value;
+}
+
+/** Returns a bone map as the text of its file. The app checks its contents. */
+function asBoneMap(map) {
+  const EXPECTED = "an object as boneMap() returns it";
+  if (typeof map !== "object" || map === null || Array.isArray(map)) throw new TypeError(`setBoneMap: found ${named(map)}, expected ${EXPECTED}`);
+  try {
+    return JSON.stringify(map);
+  } catch {
+    throw new TypeError(`setBoneMap: found an object that is no JSON, expected ${EXPECTED}`);
+  }
 }
 
 /** Returns the body, the root and the frame rate of an export. A text alone is the body. */
