@@ -101,6 +101,7 @@
 //! "Interactive Control of Avatars Animated with Human Motion Data", 2002, section 4.1 (the
 //! exponential weights).
 
+mod all_pairs;
 mod build;
 mod candidates;
 mod distances;
@@ -117,9 +118,10 @@ mod tiles;
 mod walk;
 mod weights;
 
+pub use all_pairs::{AllPairs, AllSweep, PausedAllSweep};
 pub use build::{Construction, GraphOptions, Jump, MotionGraph, Stretch, Way};
 pub use candidates::{Candidate, CandidateSearch, Candidates};
-pub use distances::{AllPairs, AllSweep, CountedTo, FrameDistances, PausedAllSweep};
+pub use distances::{CountedTo, FrameDistances};
 pub use error::GraphError;
 pub use follow::{FollowSearch, FollowedWalk, GroundPath, follow};
 pub use frames::{FrameSet, JoltSearch, Place};

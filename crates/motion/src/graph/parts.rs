@@ -1,6 +1,6 @@
 //! Parts of clips, of which the matrix of all distances is tiled.
 
-use super::distances::level_m;
+use super::all_pairs::level_m;
 use super::{FrameSet, GraphError, Place};
 use crate::registration::{DistanceMatrix, PairTerms, PointClouds};
 use std::ops::Range;

@@ -1,7 +1,8 @@
 //! Tiles of the matrix of all distances, each of which is computed by itself.
 
+use super::all_pairs::level_m;
 use super::candidates::{Picker, is_minimum};
-use super::distances::{count_cells, level_m};
+use super::distances::count_cells;
 use super::{Candidate, Construction, DistanceOverview, FrameSet, GraphError, GraphOptions, Place};
 use crate::registration::{PointClouds, ROWS_PER_SUM, RowTerms};
 use serde::{Deserialize, Serialize};
