@@ -55,9 +55,6 @@ const INEXACT: [&str; 22] = [
     "exp2", "exp_m1", "ln", "ln_1p", "log", "log2", "log10", "powf", "hypot", "slerp",
 ];
 
-/// Lines that call methods of these names of other types.
-const EXACT_METHODS: [&str; 1] = ["product.turned(axis, angles.sin_cos())"];
-
 /// Names that the libraries never use: screens, the browser, files, clock and threads.
 const OUTSIDE: [&str; 12] = [
     "egui",
@@ -525,7 +522,7 @@ fn inexact(path: &Path, text: &str) -> Vec<String> {
     let mut found = Vec::new();
     for (index, line) in code(text).lines().enumerate() {
         for method in INEXACT {
-            if line.contains(&format!(".{method}(")) && !EXACT_METHODS.contains(&line.trim()) {
+            if line.contains(&format!(".{method}(")) {
                 let (path, line) = (path.display(), index + 1);
                 found.push(format!("{path}:{line}: `{method}` differs between machines: use libm"));
             }

@@ -72,7 +72,7 @@ impl Turns {
             while left > 0 {
                 let turns = run.axes.iter().zip(half_angles.by_ref());
                 let product = turns.fold(Product::IDENTITY, |product, (&axis, angles)| {
-                    product.turned(axis, angles.sin_cos())
+                    product.turned(axis, angles.sines_and_cosines())
                 });
                 let four = product.rotations();
                 if left >= LANES {
@@ -119,7 +119,7 @@ impl HalfAngles {
 
     /// Returns sines and cosines, to within 1e-7, the precision of `f32`.
     #[inline]
-    fn sin_cos(&self) -> (Vec4, Vec4) {
+    fn sines_and_cosines(&self) -> (Vec4, Vec4) {
         // Adding this rounds to an integer in single precision, for magnitudes below 2²².
         const ROUND: Vec4 = Vec4::splat(12_582_912.0);
         let (x, quarters) = (Vec4::from_array(self.rests), Vec4::from_array(self.quarters));
@@ -191,11 +191,11 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn sin_cos_is_accurate() {
+    fn sines_and_cosines_are_accurate() {
         for degrees in (-80_000..80_000).map(|step| f64::from(step) * 0.037_1) {
             let mut half_angles = HalfAngles::default();
             half_angles.set([degrees; LANES]);
-            let (sin, cos) = half_angles.sin_cos();
+            let (sin, cos) = half_angles.sines_and_cosines();
             assert!(sin == Vec4::splat(sin.x) && cos == Vec4::splat(cos.x));
             let (sin, cos) = (sin.x, cos.x);
             let (expected_sin, expected_cos) = (0.5 * degrees.to_radians()).sin_cos();
