@@ -68,7 +68,7 @@ pub(crate) use icon::{Icon, paint_icon, paint_logo};
 pub(crate) use matrix::{Matrix, MatrixMark, TILE, Tile, matrix_ui, tiles_id};
 pub(crate) use menu::{
     MenuItem, choice_row_ui, helped_choice_row_ui, menu_item_ui, menu_line_ui, menu_ui,
-    switches_menu_ui, until_choice,
+    popup_returning_keyboard_ui, switches_menu_ui, until_choice,
 };
 pub(crate) use metrics::{GridRoom, Metric, MetricGrid, Rank, metric_cell_ui, metric_row_ui};
 pub(crate) use notice::{

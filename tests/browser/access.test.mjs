@@ -105,6 +105,9 @@ onOneBackend("dialogs, refusals, the presenter and Chinese are elements as the p
   await sound("explanation");
   await page.keyboard.press("Escape");
   await closed("the explanation");
+  const number = await focused(page);
+  assert.equal(number.what, "button");
+  assert.match(number.name, /^Pose jump/, "the number has the keyboard again");
 
   await press(button("More ways to share"));
   await press(page.getByRole("menuitem", { name: "Convert many files…" }));

@@ -50,10 +50,8 @@ fn popup_ui<R>(
     closes: PopupCloseBehavior,
     content: impl FnOnce(&mut Ui) -> R,
 ) -> Option<InnerResponse<R>> {
-    let id = Popup::default_response_id(opener);
-    let was_open = Popup::is_id_open(&opener.ctx, id);
     let menu = Popup::menu(opener).align(align).gap(space::XS).close_behavior(closes);
-    let shown = menu.show(|ui| {
+    let content = |ui: &mut Ui| {
         ui.spacing_mut().item_spacing.y = 1.0;
         ui.set_min_width(opener.rect.width().max(150.0 * theme_of(ui).scale()));
         if closes == PopupCloseBehavior::CloseOnClick {
@@ -61,10 +59,21 @@ fn popup_ui<R>(
         } else {
             content(ui)
         }
-    });
+    };
+    popup_returning_keyboard_ui(opener, menu, content)
+}
+
+/// Shows a popup of a widget. When keys have closed it, they go on at the widget.
+pub(crate) fn popup_returning_keyboard_ui<R>(
+    opener: &Response,
+    popup: Popup<'_>,
+    content: impl FnOnce(&mut Ui) -> R,
+) -> Option<InnerResponse<R>> {
+    let id = Popup::default_response_id(opener);
+    let was_open = Popup::is_id_open(&opener.ctx, id);
+    let shown = popup.show(content);
     let is_closed = was_open && !Popup::is_id_open(&opener.ctx, id);
     if is_closed && !opener.ctx.input(|input| input.pointer.any_click()) {
-        // Keys have closed it, and go on from where they opened it.
         opener.request_focus();
     }
     shown

@@ -4,6 +4,7 @@ use super::assistive::{describe, set_role};
 use super::button::{Button, button_ui, icon_button_ui};
 use super::chip::Mood;
 use super::icon::{Icon, paint_icon};
+use super::menu::popup_returning_keyboard_ui;
 use super::paint::{
     PointerKind, Run, focus_ring, full_width, line_of, paragraph, pointer_in_use, put,
 };
@@ -135,15 +136,15 @@ pub(crate) fn notices_ui(
     let theme = theme_of(ui);
     let screen = ui.ctx().content_rect();
     let width = (380.0 * theme.scale()).min(screen.width() - 2.0 * space::L);
-    let list = Popup::menu(&opener)
+    let popup = Popup::menu(&opener)
         .align(RectAlign::BOTTOM_START)
         .gap(space::XS)
-        .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
-        .show(|ui| {
-            set_role(Role::List, words::NOTICES, ui);
-            ui.set_width(width);
-            notice_list_ui(notices, 0.6 * screen.height(), ui)
-        });
+        .close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    let list = popup_returning_keyboard_ui(&opener, popup, |ui| {
+        set_role(Role::List, words::NOTICES, ui);
+        ui.set_width(width);
+        notice_list_ui(notices, 0.6 * screen.height(), ui)
+    });
     list.map_or_else(NoticesResponse::default, |list| NoticesResponse {
         is_open: true,
         ..list.inner

@@ -32,16 +32,16 @@ pub(super) fn explanation_ui(
     ui: &Ui,
 ) {
     let width = 300.0 * theme_of(ui).scale();
-    Popup::from_toggle_button_response(opener)
+    let popup = Popup::from_toggle_button_response(opener)
         .align(RectAlign::TOP_START)
         .gap(space::S)
         .width(width)
-        .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
-        .show(|ui| {
-            ui.set_max_width(width);
-            kit::set_role(Role::Dialog, Word::new(of.row.label), ui);
-            content_ui(of, session, out, ui);
-        });
+        .close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    kit::popup_returning_keyboard_ui(opener, popup, |ui| {
+        ui.set_max_width(width);
+        kit::set_role(Role::Dialog, Word::new(of.row.label), ui);
+        content_ui(of, session, out, ui);
+    });
 }
 
 fn content_ui(of: &Explained<'_>, session: &Session, out: &mut Out, ui: &mut Ui) {

@@ -204,6 +204,10 @@ fn press_on_a_number_explains_it_and_shows_its_frame() {
         harness.key_press(Keyboard::Escape);
         harness.run_steps(3);
         assert!(harness.query_by_label(mean.good).is_none());
+        let focused = harness.get_all_by_role(Role::Button);
+        let mut focused = focused.filter(|node| node.accesskit_node().is_focused());
+        let label = focused.next().and_then(|node| node.accesskit_node().label());
+        assert!(label.is_some_and(|label| label.starts_with(mean.label)), "keys go on there");
     }
 }
 
