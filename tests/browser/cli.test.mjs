@@ -11,7 +11,7 @@ import { onOneBackend } from "./harness.mjs";
 import { striding, until } from "./help.mjs";
 
 /** The program, which `cargo xtask test browser` has built; otherwise cargo builds it. */
-const SEGUE = process.env.SEGUE_CLI ? [process.env.SEGUE_CLI] : ["cargo", "run", "--quiet", "--package", "segue-cli", "--"];
+const SEGUE = process.env.SEGUE_PROGRAM ? [process.env.SEGUE_PROGRAM] : ["cargo", "run", "--quiet", "--package", "segue-cli", "--"];
 
 const COMMANDS = [
   ["view", "run"],

@@ -157,13 +157,18 @@ fn python(report: &mut Report) {
         let wheel = fs::read_dir(&wheels)?.next().ok_or("maturin has made no wheel")??.path();
         let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
         shell::run(command(&python, &install).args(["--no-deps", "--force-reinstall"]).arg(wheel))?;
-        // What the command line writes is what the package makes.
-        shell::run(&mut cargo(&["build", "--quiet", "--locked", "--package=segue-cli"]))?;
-        let program = format!("debug/segue{}", std::env::consts::EXE_SUFFIX);
+        // The tests compare files of the package with those of the command line.
+        let program = command_line()?;
         let mut tests = command(&python, &["-m", "pytest", "--quiet", "-p", "no:cacheprovider"]);
         tests.arg("tests").current_dir(&package);
-        shell::run(tests.env("SEGUE_PROGRAM", shell::target().join(program)))
+        shell::run(tests.env("SEGUE_PROGRAM", program))
     });
+}
+
+/// Builds the command line, and returns its path.
+fn command_line() -> Result<PathBuf> {
+    shell::run(&mut cargo(&["build", "--quiet", "--locked", "--package=segue-cli"]))?;
+    Ok(shell::target().join(format!("debug/segue{}", std::env::consts::EXE_SUFFIX)))
 }
 
 fn app(report: &mut Report) {
@@ -191,8 +196,7 @@ fn browser(report: &mut Report) {
     report.step("browser tests", || {
         let chromium = tools::chromium()?;
         tools::browser_packages()?;
-        // The command line as its own tests have it, so that it is not built twice.
-        shell::run(tests_without_ui().arg("--no-run"))?;
+        let program = command_line()?;
         let server = server::Server::bind(0, dist::folder())?;
         let address = server.address();
         std::thread::spawn(move || server.run());
@@ -201,10 +205,7 @@ fn browser(report: &mut Report) {
         let mut node = command("node", &["--test", "--test-reporter=spec", "--test-concurrency=1"]);
         node.current_dir(root().join("tests/browser"))
             .env("SEGUE_URL", address)
-            .env(
-                "SEGUE_CLI",
-                shell::target().join("debug/segue").with_extension(std::env::consts::EXE_EXTENSION),
-            )
+            .env("SEGUE_PROGRAM", program)
             .env("CHROMIUM", chromium);
         shell::run(&mut node)
     });

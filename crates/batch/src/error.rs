@@ -28,7 +28,7 @@ pub enum FileError {
         name: String,
         /// The path by which it was opened.
         path: PathBuf,
-        /// What the system says.
+        /// The message of the operating system.
         error: io::Error,
     },
 }

@@ -45,7 +45,7 @@ pub(crate) struct Clip {
     /// The character whose mesh a GLB file gets.
     pub(crate) character: Option<Arc<Character>>,
     pub(crate) origin: Origin,
-    /// What was odd about the file, one sentence each.
+    /// The warnings of the reader, one sentence each.
     warnings: Vec<String>,
     offsets: PyOnceLock<Py<PyArray2<f32>>>,
     parents: PyOnceLock<Py<PyArray1<i32>>>,
@@ -320,7 +320,7 @@ impl Clip {
         self.origin.id.as_deref()
     }
 
-    /// What was odd about its file, one sentence each.
+    /// The warnings of the reader, one sentence each.
     #[getter]
     fn warnings(&self) -> Vec<String> {
         self.warnings.clone()
