@@ -8,7 +8,7 @@ use segue_formats::FileKind;
 use segue_session::conversion::{Conversion, ConversionRow, ConvertedFile};
 use segue_session::convert::{ConvertOptions, TargetRig};
 use segue_session::export::ExportOptions;
-use segue_session::reading::{Companion, Content, ReadReport, ReadSetup, ReadTask};
+use segue_session::reading::{Content, ReadReport, ReadSetup, ReadTask, SkeletonFile};
 use segue_session::{Command, FileCommand, Level, Origin, Session, Slot};
 use segue_text::{Message, ToMessage as _, msg};
 use std::collections::VecDeque;
@@ -100,7 +100,7 @@ impl Converter {
             if has_motions {
                 let models = take_models(&mut report);
                 is_model = !models.is_empty() && report.files.is_empty();
-                run.setup.companions.extend(models);
+                run.setup.skeleton_files.extend(models);
             }
             report
         });
@@ -195,7 +195,7 @@ impl Converter {
 
     /// Returns the queued skeleton files, and removes them from the queue if there are motions that
     /// need them.
-    fn take_skeletons(&mut self) -> Vec<Companion> {
+    fn take_skeletons(&mut self) -> Vec<SkeletonFile> {
         let has_motions = self
             .waiting
             .iter()
@@ -204,7 +204,7 @@ impl Converter {
         if has_motions {
             self.waiting.retain(|item| match item {
                 Item::File { name, bytes: FileBytes::Here(bytes) } if is_skeleton(name) => {
-                    found.push(Companion::new(name, bytes));
+                    found.push(SkeletonFile::new(name, bytes));
                     false
                 }
                 _ => true,
@@ -231,11 +231,11 @@ impl Item {
 }
 
 /// Takes the body models out of a report, to be used for the motions that follow.
-fn take_models(report: &mut ReadReport) -> Vec<Companion> {
+fn take_models(report: &mut ReadReport) -> Vec<SkeletonFile> {
     let mut found = Vec::new();
     report.files.retain(|file| {
         let read = file.result.as_ref().ok().filter(|_| file.kind == FileKind::SmplModel);
-        let model = read.and_then(|read| read.companion.as_deref());
+        let model = read.and_then(|read| read.skeleton_file.as_deref());
         found.extend(model.cloned());
         model.is_none()
     });
@@ -288,7 +288,7 @@ impl Segue {
         };
         let options = ConvertOptions { export: *how, rig };
         let mut setup = self.session.setup_for_conversion(&options);
-        setup.companions.extend(self.converter.take_skeletons());
+        setup.skeleton_files.extend(self.converter.take_skeletons());
         // Bodies before the motions that need them, the others in their order.
         self.converter.waiting.make_contiguous().sort_by_key(|item| !item.has_name_of_model());
         let all = self.converter.waiting.len();

@@ -67,7 +67,7 @@ function compare(page) {
     const text = new TextDecoder().decode(buffer);
     const theirs = await best(1, () => new BVHLoader().parse(text));
     // The worker's program (web/js/reader.js).
-    const setup = JSON.stringify({ options: { metres_per_unit: null, up: null, fps: null, max_bytes: 512 << 20, drop_t_pose: true }, roles: {}, companions: [] });
+    const setup = JSON.stringify({ options: { metres_per_unit: null, up: null, fps: null, max_bytes: 512 << 20, drop_t_pose: true }, roles: {}, skeleton_files: [] });
     const { default: init, readFile } = await import(new URL("./read/reader.js", document.querySelector("link[rel=modulepreload][href$='boot.js']").href));
     await init();
     const bytes = new Uint8Array(buffer);

@@ -4,7 +4,7 @@ use crate::error::{BatchError, FileError};
 use crate::inputs::{Input, has_ending, shown};
 use rayon::prelude::*;
 use segue_formats::{FileKind, ImportOptions, kind_of};
-use segue_session::reading::{Companion, ReadReport, ReadSetup, read};
+use segue_session::reading::{ReadReport, ReadSetup, SkeletonFile, read};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -17,9 +17,9 @@ pub type Read = Result<ReadReport, FileError>;
 pub struct Reader {
     options: ImportOptions,
     /// The skeletons that were named.
-    named: Vec<Companion>,
+    named: Vec<SkeletonFile>,
     /// The ASF files beside AMC files, by folder.
-    beside: BTreeMap<PathBuf, Vec<Companion>>,
+    beside: BTreeMap<PathBuf, Vec<SkeletonFile>>,
 }
 
 impl Reader {
@@ -74,7 +74,7 @@ impl Reader {
         let beside = self.beside.get(folder_of(input)).into_iter().flatten();
         let setup = ReadSetup {
             options: self.options,
-            companions: self.named.iter().chain(beside).cloned().collect(),
+            skeleton_files: self.named.iter().chain(beside).cloned().collect(),
             ..ReadSetup::default()
         };
         read(&input.name, bytes, &setup, &mut |_| true).unwrap_or_default()
@@ -120,17 +120,17 @@ pub fn bytes_of(path: &Path, max_bytes: usize) -> Result<Vec<u8>, FileError> {
 }
 
 /// Reads a skeleton that was named.
-fn named_skeleton(path: &Path, options: &ImportOptions) -> Result<Companion, BatchError> {
+fn named_skeleton(path: &Path, options: &ImportOptions) -> Result<SkeletonFile, BatchError> {
     let (name, bytes) = (shown(path), bytes_of(path, options.max_bytes)?);
     match kind_of(&name, &bytes) {
-        FileKind::Asf => Ok(Companion::new(&name, &bytes)),
-        _ => Ok(Companion::of_model(&name, &bytes, options)?),
+        FileKind::Asf => Ok(SkeletonFile::new(&name, &bytes)),
+        _ => Ok(SkeletonFile::of_model(&name, &bytes, options)?),
     }
 }
 
 /// Returns the ASF files of a folder, sorted by name. One that cannot be read is missed when a
 /// motion needs it.
-fn skeletons_in(folder: &Path) -> Vec<Companion> {
+fn skeletons_in(folder: &Path) -> Vec<SkeletonFile> {
     let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let mut paths: Vec<PathBuf> = fs::read_dir(here)
         .into_iter()
@@ -141,7 +141,7 @@ fn skeletons_in(folder: &Path) -> Vec<Companion> {
     paths.sort();
     let read = |path: PathBuf| {
         let name = path.file_name()?.to_string_lossy().into_owned();
-        Some(Companion::new(&name, &fs::read(&path).ok()?))
+        Some(SkeletonFile::new(&name, &fs::read(&path).ok()?))
     };
     paths.into_iter().filter_map(read).collect()
 }

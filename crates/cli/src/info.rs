@@ -106,7 +106,7 @@ fn describe_file(file: ReadFile, measures: bool) -> Described {
         }
     };
     let mut lines = vec![name.clone(), format!("  kind      {}, {}", kind.name(), in_words(size))];
-    if let Some(skeleton) = &read.companion {
+    if let Some(skeleton) = &read.skeleton_file {
         json["skeleton"] = Json::from(skeleton.name.clone());
         lines.push(format!("  skeleton  {}", skeleton.name));
     }

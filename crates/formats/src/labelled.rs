@@ -184,7 +184,7 @@ impl RawMotion {
             joints: fit.joints,
             rotations: fit.rotations,
             root_translations: fit.root_translations,
-            tracks: Vec::new(),
+            ..Self::default()
         }
     }
 }

@@ -414,7 +414,7 @@ mod tests {
             rotations: vec![Quat::IDENTITY; joints.len()],
             joints,
             root_translations: vec![map(root)],
-            tracks: vec![],
+            ..RawMotion::default()
         }
     }
 

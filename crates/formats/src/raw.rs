@@ -20,6 +20,30 @@ pub(super) struct RawMotion {
     pub(super) rotations: Vec<Quat>,
     pub(super) root_translations: Vec<Vec3>,
     pub(super) tracks: Vec<(usize, Vec<Vec3>)>,
+    pub(super) wild_angles: WildAngles,
+}
+
+/// Angles that no body reaches. What is left of one after whole turns is noise.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct WildAngles {
+    /// The rows with such an angle.
+    pub(super) rows: usize,
+    /// The largest of them, degrees.
+    pub(super) degrees: f64,
+}
+
+impl WildAngles {
+    /// The largest angle that causes no warning, degrees: a hundred turns. Angles of a recording
+    /// may go on counting where a dancer spins.
+    pub(super) const LIKELY_DEGREES: f64 = 36_000.0;
+
+    /// Adds a row by its largest angle, degrees.
+    pub(super) fn add_row(&mut self, degrees: f64) {
+        if degrees > Self::LIKELY_DEGREES {
+            self.rows += 1;
+            self.degrees = self.degrees.max(degrees);
+        }
+    }
 }
 
 /// An error converting a motion to a clip. The readers rule out both cases.

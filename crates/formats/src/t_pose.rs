@@ -34,7 +34,7 @@ mod tests {
                 })
                 .collect(),
             root_translations: vec![Vec3::ZERO; 20],
-            tracks: vec![],
+            ..RawMotion::default()
         }
     }
 

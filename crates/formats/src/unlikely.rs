@@ -41,7 +41,10 @@ impl RawMotion {
         // A unit that the user gave is not questioned.
         if options.metres_per_unit.is_none() && metres > 0.0 && !LIKELY_METRES.contains(&metres) {
             tally.add(WarningKind::UnlikelyHeight { metres }, None);
-            mendable.metres_per_unit = fitting_unit(measure);
+            mendable.metres_per_unit = fitting_unit(measure).filter(|unit| self.steps_fit(*unit));
+        }
+        for _ in 0..self.wild_angles.rows {
+            tally.add(WarningKind::WildAngles { degrees: self.wild_angles.degrees }, None);
         }
         let unit = measure.provenance.metres_per_unit;
         let joints = &self.joints;
@@ -50,6 +53,20 @@ impl RawMotion {
         let ways = std::iter::once((None, &mut self.root_translations)).chain(others);
         mendable.wild_rows = warn_of_ways(ways, unit, options, tally);
         mendable
+    }
+
+    /// Returns whether half of the steps from frame to frame are at most [`JUMP_METRES`] in a unit,
+    /// metres. If not, the lengths of bones and the positions disagree, and no unit fits both.
+    fn steps_fit(&self, metres_per_unit: f64) -> bool {
+        let tracks = self.tracks.iter().map(|(_, way)| way);
+        std::iter::once(&self.root_translations).chain(tracks).all(|way| {
+            let step = |pair: &[Vec3]| match pair {
+                [a, b] => (b.as_dvec3() - a.as_dvec3()).length() * metres_per_unit,
+                _ => 0.0,
+            };
+            let short = way.windows(2).filter(|pair| step(pair) <= JUMP_METRES).count();
+            2 * short >= way.len().saturating_sub(1)
+        })
     }
 }
 
@@ -231,6 +248,15 @@ mod tests {
         let (mendable, sentences) = warned(&evened, &mut read);
         assert!(!mendable && sentences[0].contains("put between"), "{sentences:?}");
         assert!(read.tracks[0].1.iter().all(|place| place.length() < 2.0));
+    }
+
+    #[test]
+    fn steps_fit_a_unit_that_keeps_most_of_them_short() {
+        let of = |root: Vec<Vec3>| RawMotion { root_translations: root, ..RawMotion::default() };
+        // Steps of 5 cm, in centimetres; one row is wild.
+        let steps = of(walk(&[(4, 1e18)]));
+        assert!(steps.steps_fit(1.0) && steps.steps_fit(90.0) && !steps.steps_fit(110.0));
+        assert!(of(Vec::new()).steps_fit(1e9) && of(vec![Vec3::ONE]).steps_fit(1e9));
     }
 
     #[test]

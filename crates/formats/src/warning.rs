@@ -173,6 +173,11 @@ pub enum WarningKind {
         /// Whether these positions were replaced by positions between their neighbours.
         evened: bool,
     },
+    /// Rows with an angle of more than a hundred turns.
+    WildAngles {
+        /// The largest angle, degrees.
+        degrees: f64,
+    },
     /// A joint that jumps from one frame to the next and stays there.
     Jumps {
         /// The joint, or the one that jumps farthest of several; `None` for the root.

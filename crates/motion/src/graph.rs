@@ -104,6 +104,7 @@
 mod all_pairs;
 mod build;
 mod candidates;
+mod cells;
 mod distances;
 mod error;
 mod export;

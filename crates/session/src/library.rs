@@ -3,7 +3,7 @@
 use super::bone_map::{BoneMap, BoneMaps, MAX_RIGS, mapped};
 use super::clip_facts::ClipFacts;
 use super::outside;
-use super::reading::{About, Companion, Content, LARGE_BYTES};
+use super::reading::{About, Content, LARGE_BYTES, SkeletonFile};
 use super::samples::Sample;
 use segue_formats::{FileKind, ImportOptions};
 use segue_motion::clip::Motion;
@@ -65,7 +65,7 @@ pub struct SourceFile {
     /// Its format.
     pub kind: FileKind,
     /// The skeleton file that it was read with.
-    pub companion: Option<Box<Companion>>,
+    pub skeleton_file: Option<Box<SkeletonFile>>,
     /// The index of the clip in the file.
     pub index: usize,
     /// The options that the user set: unit, up axis and frame rate.
@@ -82,8 +82,8 @@ impl SourceFile {
     /// Returns whether it was read in the same way as another file: the same clip of the same bytes
     /// with the same options and the same skeleton.
     pub(crate) fn is_read_like(&self, other: &Self) -> bool {
-        (&self.sha256, self.index, self.options, &self.companion)
-            == (&other.sha256, other.index, other.options, &other.companion)
+        (&self.sha256, self.index, self.options, &self.skeleton_file)
+            == (&other.sha256, other.index, other.options, &other.skeleton_file)
     }
 }
 
@@ -238,7 +238,7 @@ impl Entry {
     #[must_use]
     pub fn awaits_skeleton(&self) -> bool {
         let motion_alone =
-            |file: &SourceFile| file.kind == FileKind::Amc && file.companion.is_none();
+            |file: &SourceFile| file.kind == FileKind::Amc && file.skeleton_file.is_none();
         self.facts.is_none() && matches!(&self.origin, Origin::File(file) if motion_alone(file))
     }
 
@@ -483,7 +483,7 @@ mod tests {
             content: Content::Here(Arc::from([])),
             size: 0,
             kind: FileKind::Bvh,
-            companion: None,
+            skeleton_file: None,
             index: 0,
             options: ImportOptions::default(),
         };

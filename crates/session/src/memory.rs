@@ -193,7 +193,7 @@ mod tests {
                 content: Content::Here(vec![0; size].into()),
                 size: size as u64,
                 kind: FileKind::Bvh,
-                companion: None,
+                skeleton_file: None,
                 index: 0,
                 options: ImportOptions::default(),
             };

@@ -66,7 +66,7 @@ pub struct ReadSetup {
     #[serde(default)]
     pub bone_maps: Arc<BoneMaps>,
     /// Files that it may depend on: skeletons for the motion of another file.
-    pub companions: Vec<Companion>,
+    pub skeleton_files: Vec<SkeletonFile>,
     /// SHA-256 of the file's bytes, if it is known already; lower-case hexadecimal.
     #[serde(default)]
     pub sha256: Option<String>,
@@ -77,7 +77,7 @@ pub struct ReadSetup {
 
 /// A small file that others depend on: the skeleton of a motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Companion {
+pub struct SkeletonFile {
     /// The file's name.
     pub name: String,
     /// SHA-256 of the file's bytes, lower-case hexadecimal.
@@ -135,7 +135,7 @@ pub struct ReadClips {
     /// The oddities, one sentence each.
     pub warnings: Vec<Message>,
     /// The skeleton file that was used.
-    pub companion: Option<Box<Companion>>,
+    pub skeleton_file: Option<Box<SkeletonFile>>,
     /// Whether there are no clips because the skeleton file is missing.
     pub awaits_skeleton: bool,
 }
@@ -199,8 +199,9 @@ pub fn read(
             .map(|bytes| (vec![(without_gz(name).to_owned(), bytes)], Vec::new())),
         kind => {
             // Only motions depend on them.
-            let companions = if kind.takes_skeleton() { setup.companions.as_slice() } else { &[] };
-            let skeletons = Skeletons::of(companions, &setup.options);
+            let skeleton_files =
+                if kind.takes_skeleton() { setup.skeleton_files.as_slice() } else { &[] };
+            let skeletons = Skeletons::of(skeleton_files, &setup.options);
             let sha256 = setup.sha256.as_deref();
             let file = SingleFile { name, bytes, kind, sha256 };
             let file = file.read(setup, &skeletons, &|_| None, progress)?;
@@ -234,15 +235,15 @@ fn read_several(
 ) -> Option<ReadReport> {
     let kinds: Vec<FileKind> = files.iter().map(|(name, bytes)| kind_of(name, bytes)).collect();
     let own = files.iter().zip(&kinds).filter(|(_, kind)| kind.is_skeleton());
-    let mut companions: Vec<Companion> = own
+    let mut skeleton_files: Vec<SkeletonFile> = own
         .map(|((name, bytes), kind)| match kind {
-            FileKind::SmplModel => Companion::of_model(name, bytes, &setup.options)
-                .unwrap_or_else(|_| Companion::new(name, &[])),
-            _ => Companion::new(name, bytes),
+            FileKind::SmplModel => SkeletonFile::of_model(name, bytes, &setup.options)
+                .unwrap_or_else(|_| SkeletonFile::new(name, &[])),
+            _ => SkeletonFile::new(name, bytes),
         })
         .collect();
-    companions.extend(setup.companions.iter().cloned());
-    let skeletons = Skeletons::of(&companions, &setup.options);
+    skeleton_files.extend(setup.skeleton_files.iter().cloned());
+    let skeletons = Skeletons::of(&skeleton_files, &setup.options);
     let beside = |path: &str| {
         let found = files.iter().find(|(name, _)| name.ends_with(path));
         found.map(|(_, bytes)| Arc::from(bytes.as_slice()))
@@ -269,7 +270,9 @@ fn read_several(
     // A skeleton that a motion uses is not imported by itself.
     let used: Vec<String> = (read.iter())
         .filter(|(_, file)| !file.kind.is_skeleton())
-        .filter_map(|(_, file)| Some(file.result.as_ref().ok()?.companion.as_ref()?.sha256.clone()))
+        .filter_map(|(_, file)| {
+            Some(file.result.as_ref().ok()?.skeleton_file.as_ref()?.sha256.clone())
+        })
         .collect();
     read.retain(|(_, file)| !used.contains(&file.sha256));
     for (index, file) in read.iter_mut().filter(|_| setup.convert.is_none()) {
@@ -290,19 +293,19 @@ fn converted(file: ReadFile, setup: &ReadSetup) -> Vec<ReadFile> {
 /// The skeleton files that can be read.
 struct Skeletons<'a> {
     /// Those of AMC files.
-    acclaim: Vec<(&'a Companion, AcclaimSkeleton)>,
+    acclaim: Vec<(&'a SkeletonFile, AcclaimSkeleton)>,
     /// Those of `NumPy` files.
-    models: Vec<(&'a Companion, SmplModel)>,
+    models: Vec<(&'a SkeletonFile, SmplModel)>,
 }
 
 impl<'a> Skeletons<'a> {
-    fn of(companions: &'a [Companion], options: &ImportOptions) -> Self {
+    fn of(skeleton_files: &'a [SkeletonFile], options: &ImportOptions) -> Self {
         let (models, others): (Vec<_>, Vec<_>) =
-            companions.iter().partition(|companion| companion.is_model);
-        let acclaim = |own: &'a Companion| {
+            skeleton_files.iter().partition(|skeleton_file| skeleton_file.is_model);
+        let acclaim = |own: &'a SkeletonFile| {
             Some((own, acclaim::read_skeleton(&own.name, &own.bytes, options).ok()?))
         };
-        let model = |own: &'a Companion| {
+        let model = |own: &'a SkeletonFile| {
             Some((own, numpy::read_model(&own.name, &own.bytes, options).ok()?))
         };
         Self {
@@ -329,7 +332,7 @@ impl SingleFile<'_> {
         progress: &mut dyn FnMut(usize) -> bool,
     ) -> Option<ReadFile> {
         let Self { name, bytes, kind, .. } = *self;
-        let (mut companion, mut warnings) = (None, Vec::new());
+        let (mut skeleton_file, mut warnings) = (None, Vec::new());
         let imported = match kind {
             FileKind::Amc => {
                 let skeletons = skeletons.acclaim.as_slice();
@@ -344,7 +347,7 @@ impl SingleFile<'_> {
                         None
                     }),
                     Some((own, skeleton)) => {
-                        companion = Some(Box::new(Companion::clone(own)));
+                        skeleton_file = Some(Box::new(SkeletonFile::clone(own)));
                         if !acclaim::goes_by_name(name, &own.name) {
                             warnings.push(msg!("it is on the skeleton of {file}", file = own.name));
                         }
@@ -371,7 +374,7 @@ impl SingleFile<'_> {
                 let read = numpy::read_with_models(name, bytes, &models, &setup.options);
                 read.map(|(file, used)| {
                     if let Some((own, _)) = used.and_then(|index| skeletons.models.get(index)) {
-                        companion = Some(Box::new(Companion::clone(own)));
+                        skeleton_file = Some(Box::new(SkeletonFile::clone(own)));
                         warnings.push(msg!("its bones are those of {file}", file = own.name));
                     }
                     Some(file)
@@ -380,13 +383,13 @@ impl SingleFile<'_> {
             FileKind::SmplModel => {
                 numpy::read_model(name, bytes, &setup.options).and_then(|model| {
                     let sha256 = self.sha256.map_or_else(|| sha256_hex(bytes), str::to_owned);
-                    companion = Some(Box::new(Companion::of_joints(name, sha256, &model)));
+                    skeleton_file = Some(Box::new(SkeletonFile::of_joints(name, sha256, &model)));
                     numpy::model_clip(&model, &setup.options).map(Some)
                 })
             }
             _ => {
                 if kind == FileKind::Asf {
-                    companion = Some(Box::new(Companion::new(name, bytes)));
+                    skeleton_file = Some(Box::new(SkeletonFile::new(name, bytes)));
                 }
                 match import_with_progress(name, bytes, &setup.options, progress) {
                     Ok(None) => return None,
@@ -405,7 +408,7 @@ impl SingleFile<'_> {
                 let awaits_skeleton = imported.is_none();
                 let clips = ReadClips::of(imported.unwrap_or_default(), setup);
                 warnings.extend(clips.warnings.iter().cloned());
-                ReadClips { warnings, companion, awaits_skeleton, ..clips }
+                ReadClips { warnings, skeleton_file, awaits_skeleton, ..clips }
             }),
         })
     }
@@ -416,7 +419,7 @@ impl SingleFile<'_> {
 fn mismatch(
     name: &str,
     bytes: &[u8],
-    skeletons: &[(&Companion, AcclaimSkeleton)],
+    skeletons: &[(&SkeletonFile, AcclaimSkeleton)],
 ) -> Option<Message> {
     let fits =
         skeletons.iter().map(|(own, skeleton)| (own, acclaim::matching_bones(bytes, skeleton)));
@@ -442,7 +445,7 @@ impl ReadClips {
     }
 }
 
-impl Companion {
+impl SkeletonFile {
     /// Returns the report on a file that was just read.
     #[must_use]
     pub fn new(name: &str, bytes: &[u8]) -> Self {

@@ -4,7 +4,7 @@
 use super::bone_map::{BoneMap, MAX_RIGS};
 use super::clip_facts::ClipFacts;
 use super::library::{Entry, Origin};
-use super::reading::{About, Companion};
+use super::reading::{About, SkeletonFile};
 use segue_formats::{FileKind, ImportOptions};
 use segue_motion::skeleton::Roles;
 use segue_text::Message;
@@ -112,9 +112,9 @@ pub struct SavedFile {
     /// Its format.
     #[serde(default = "bvh")]
     pub kind: FileKind,
-    /// The skeleton file that it is read with.
-    #[serde(default)]
-    pub companion: Option<Box<Companion>>,
+    /// The skeleton file that it is read with, by the name that earlier versions stored it by.
+    #[serde(default, rename = "companion")]
+    pub skeleton_file: Option<Box<SkeletonFile>>,
     /// The index of the clip in the file.
     pub index: usize,
     /// The options of reading it.
@@ -134,7 +134,7 @@ impl From<&Entry> for SavedEntry {
                 sha256: file.sha256.clone(),
                 size: file.size,
                 kind: file.kind,
-                companion: file.companion.clone(),
+                skeleton_file: file.skeleton_file.clone(),
                 index: file.index,
                 options: file.options,
             }),
@@ -170,7 +170,7 @@ mod tests {
                 sha256: sha256.to_owned(),
                 size: 1,
                 kind: FileKind::Bvh,
-                companion: None,
+                skeleton_file: None,
                 index: 0,
                 options: ImportOptions::default(),
             }),
@@ -208,5 +208,15 @@ mod tests {
         // Two windows write in turn: neither loses the other's clips.
         let theirs = there.with_others_of(&here, &["y~22".to_owned()].into());
         assert!(names(&theirs).contains(&"x~11 of t=1"));
+    }
+
+    #[test]
+    fn saved_skeleton_file_keeps_its_stored_name() {
+        let mut state = saved("t=1", &["01_01.amc~11"]);
+        let file = state.entries[0].file.as_mut().unwrap();
+        file.skeleton_file = Some(Box::new(SkeletonFile::new("01.asf", b":root")));
+        let record = serde_json::to_value(&state).unwrap();
+        assert_eq!(record["entries"][0]["file"]["companion"]["name"], "01.asf");
+        assert_eq!(serde_json::from_value::<Saved>(record).unwrap(), state);
     }
 }

@@ -276,7 +276,7 @@ fn clip_without_a_motion_has_a_status() {
         content: Content::Outside("1".into()),
         size: 9 << 20,
         kind: FileKind::Bvh,
-        companion: None,
+        skeleton_file: None,
         index: 0,
         options: ImportOptions::default(),
     };

@@ -4,7 +4,7 @@ use super::guard::{guarded, parallel_map};
 use segue_formats::archive::{self, ArchiveLimits};
 use segue_formats::{FileKind, ImportOptions, kind_of};
 use segue_motion::skeleton::Skeleton;
-use segue_session::reading::{Companion, ReadReport, ReadSetup, read};
+use segue_session::reading::{ReadReport, ReadSetup, SkeletonFile, read};
 use segue_session::{Command, Request, Session};
 use segue_text::msg;
 use std::collections::BTreeMap;
@@ -19,7 +19,7 @@ pub struct MotionFile {
     pub path: String,
     content: FileContent,
     /// The skeleton files beside it; for an AMC only.
-    skeletons: Vec<Companion>,
+    skeletons: Vec<SkeletonFile>,
 }
 
 #[derive(Debug)]
@@ -95,7 +95,7 @@ impl Motions {
     /// A sentence if the folder cannot be read.
     pub fn of_folder(folder: &Path) -> Result<Self, String> {
         let mut motions = Self::default();
-        let mut skeletons: BTreeMap<String, Vec<Companion>> = BTreeMap::new();
+        let mut skeletons: BTreeMap<String, Vec<SkeletonFile>> = BTreeMap::new();
         for path in files_below(folder)? {
             let name =
                 path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().replace('\\', "/");
@@ -106,7 +106,7 @@ impl Motions {
             let skeletons = skeletons.entry(folder_of(&name).to_owned()).or_default();
             match ending.as_str() {
                 "asf" => match fs::read(&path) {
-                    Ok(bytes) => skeletons.push(Companion::new(file_name(&name), &bytes)),
+                    Ok(bytes) => skeletons.push(SkeletonFile::new(file_name(&name), &bytes)),
                     Err(error) => motions.refused.push((name, error.to_string())),
                 },
                 "zip" => motions.unpack(&path, &name),
@@ -145,7 +145,7 @@ impl Motions {
                 path: format!("{name}/{}", file.path),
                 content: FileContent::Unpacked(file.bytes.into()),
                 skeletons: beside
-                    .map(|file| Companion::new(file_name(&file.path), &file.bytes))
+                    .map(|file| SkeletonFile::new(file_name(&file.path), &file.bytes))
                     .collect(),
             });
         }
@@ -241,7 +241,7 @@ impl MotionFile {
     fn skeletons_of_clips(&self) -> Result<Vec<Arc<Skeleton>>, String> {
         let setup = ReadSetup {
             options: ImportOptions::default(),
-            companions: self.skeletons.clone(),
+            skeleton_files: self.skeletons.clone(),
             ..ReadSetup::default()
         };
         let report: ReadReport =

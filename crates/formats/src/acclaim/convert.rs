@@ -79,10 +79,12 @@ impl<'s> Converter<'s> {
             self.raw.reserve(rows)?;
             self.room += rows;
         }
+        let mut largest: f64 = 0.0;
         let mut tracks = self.raw.tracks.iter_mut().peekable();
         for (joint, motor) in self.skeleton.motors.iter().enumerate() {
             let own = values.get(motor.first_value..).unwrap_or_default();
-            let turn = turn(motor, own, self.radians);
+            let (turn, angle) = turn(motor, own, self.radians);
+            largest = largest.max(angle);
             let rotation = if joint == 0 {
                 self.orientation * turn
             } else {
@@ -107,6 +109,7 @@ impl<'s> Converter<'s> {
                 track.push(place());
             }
         }
+        self.raw.wild_angles.add_row(largest.to_degrees());
         Ok(())
     }
 
@@ -121,14 +124,16 @@ fn value(motor: &Motor, own: &[f64], dof: Dof) -> f64 {
     place.and_then(|place| own.get(place).copied()).unwrap_or_default()
 }
 
-/// Returns M, the product of a bone's rotations about fixed axes.
-fn turn(motor: &Motor, own: &[f64], radians: bool) -> DQuat {
+/// Returns M, the product of a bone's rotations about fixed axes, and its largest angle, radians.
+fn turn(motor: &Motor, own: &[f64], radians: bool) -> (DQuat, f64) {
     let turns = motor.dofs.iter().zip(own).filter_map(|(dof, &value)| {
         let angle = if radians { value } else { value.to_radians() };
         match dof {
-            Dof::Turn(axis) => Some(DQuat::from_axis_angle(DVec3::AXES[*axis], angle)),
+            Dof::Turn(axis) => Some((DVec3::AXES[*axis], angle)),
             _ => None,
         }
     });
-    turns.fold(DQuat::IDENTITY, |before, turn| turn * before)
+    turns.fold((DQuat::IDENTITY, 0.0), |(before, largest), (axis, angle)| {
+        (DQuat::from_axis_angle(axis, angle) * before, largest.max(angle.abs()))
+    })
 }

@@ -183,7 +183,10 @@ impl RowSink for Converter {
         let value = |column: usize| values.get(column).copied().unwrap_or_default();
         for character in &mut self.characters {
             let raw = &mut character.raw;
-            character.turns.rotations_into(values, &mut raw.rotations);
+            if character.turns.rotations_into(values, &mut raw.rotations) {
+                // A position may be as large: the row is looked at again.
+                raw.wild_angles.add_row(character.turns.largest(values));
+            }
             for (track, place) in raw.translations_mut().zip(&character.places) {
                 track.push(vec3(place.map(|source| match source {
                     Source::Column(column) => value(column),

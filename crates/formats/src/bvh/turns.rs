@@ -1,5 +1,6 @@
 //! Rotations from angles about axes, for four joints at once.
 
+use crate::raw::WildAngles;
 use glam::{Mat4, Quat, Vec4};
 
 /// The number of joints that are computed at once: the lanes of [`Vec4`].
@@ -50,13 +51,14 @@ impl Turns {
     }
 
     /// Appends the rotation of each joint in a row of values, degrees: the product `R₀ · R₁ · …` of
-    /// its rotations.
+    /// its rotations. Returns whether some value may be larger than an angle is likely to be.
     // Not inlined, and small: browsers optimise a function only between calls, and small ones
     // sooner.
     #[inline(never)]
-    pub(super) fn rotations_into(&mut self, row: &[f64], rotations: &mut Vec<Quat>) {
+    pub(super) fn rotations_into(&mut self, row: &[f64], rotations: &mut Vec<Quat>) -> bool {
+        let is_likely = row.iter().all(|angle| angle.abs() <= WildAngles::LIKELY_DEGREES);
         let reduced;
-        let row = if row.iter().all(|angle| angle.abs() < 1e9) {
+        let row = if is_likely || row.iter().all(|angle| angle.abs() < 1e9) {
             row
         } else {
             reduced = without_whole_turns(row);
@@ -83,6 +85,14 @@ impl Turns {
                 left = left.saturating_sub(LANES);
             }
         }
+        !is_likely
+    }
+
+    /// Returns the largest angle of a row, degrees.
+    #[cold]
+    pub(super) fn largest(&self, row: &[f64]) -> f64 {
+        let columns = self.columns.iter().flatten();
+        columns.filter_map(|column| row.get(*column)).fold(0.0, |most, angle| most.max(angle.abs()))
     }
 }
 

@@ -185,7 +185,7 @@ impl Reader<'_> {
             joints: character.joints.clone(),
             rotations: vec![Quat::IDENTITY; character.joints.len()],
             root_translations: character.joints.iter().take(1).map(|root| root.offset).collect(),
-            tracks: Vec::new(),
+            ..RawMotion::default()
         };
         let takes = self.takes(character);
         let given_fps = self.options.fps.filter(|fps| fps.is_finite() && *fps > 0.0);

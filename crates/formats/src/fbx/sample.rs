@@ -84,7 +84,7 @@ impl Sampler<'_> {
             joints: joints.clone(),
             rotations: Vec::with_capacity(frames * joints.len()),
             root_translations: Vec::with_capacity(frames),
-            tracks: Vec::new(),
+            ..RawMotion::default()
         };
         let mut tracks: Vec<Option<Vec<Vec3>>> = vec![None; joints.len()];
         let above = self.above(take, rate.start_secs);

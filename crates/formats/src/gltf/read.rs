@@ -239,7 +239,7 @@ impl Context<'_> {
                 .map(|root| root.offset)
                 .into_iter()
                 .collect(),
-            tracks: Vec::new(),
+            ..RawMotion::default()
         };
         let metres_per_unit = self.unit(&rest, tally);
         if let Some(mesh) = &mut skin {
@@ -322,7 +322,7 @@ impl Context<'_> {
                 character.joints.first().map_or(Vec3::ZERO, |root| root.offset);
                 frames
             ],
-            tracks: Vec::new(),
+            ..RawMotion::default()
         };
         let (secs, same_secs) = (|frame: usize| start_secs + frame as f64 / fps, SAME_FRAME / fps);
         for (joint, &node) in character.nodes.iter().enumerate() {

@@ -83,6 +83,7 @@ pub(super) fn read(bundle: &Bundle<'_>, tally: &mut Tally) -> Result<OwnClip, Fa
         rotations: turns,
         root_translations: root,
         tracks: tracks(bundle, count, frames, tally)?,
+        ..RawMotion::default()
     };
     let provenance = bundle.number(&["metres_per_unit"]).filter(|unit| *unit > 0.0);
     let z_up = bundle.number(&["z_up"]).is_some_and(|flag| flag != 0.0);

@@ -73,7 +73,7 @@ impl Robot {
             rotations: Vec::with_capacity(poses.len() * self.joints.len()),
             root_translations: poses.iter().map(|pose| pose.place.as_vec3()).collect::<Vec<Vec3>>(),
             joints: self.joints,
-            tracks: Vec::new(),
+            ..RawMotion::default()
         };
         for pose in poses {
             raw.rotations.push(pose.turn.as_quat());

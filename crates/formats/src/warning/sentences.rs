@@ -7,10 +7,15 @@ use std::fmt;
 
 /// Formats a length of any magnitude with its unit.
 fn length(metres: f64) -> String {
-    match metres {
-        0.1..10.0 => format!("{metres:.1} m"),
-        10.0..1e6 => format!("{metres:.0} m"),
-        _ => format!("{metres:.1e} m"),
+    format!("{} m", brief(metres))
+}
+
+/// Returns a number with few digits.
+fn brief(number: f64) -> String {
+    match number {
+        0.1..10.0 => format!("{number:.1}"),
+        10.0..1e6 => format!("{number:.0}"),
+        _ => format!("{number:.1e}"),
     }
 }
 
@@ -268,6 +273,10 @@ impl ToMessage for ImportWarning {
             WarningKind::WildRows { joint: Some(joint), metres, evened: true } => msg!(
                 "{count, plural, one {# row} other {# rows}} with a joint that is away for that row alone, `{joint}` by {metres}; put between its neighbours",
                 metres = length(*metres)
+            ),
+            WarningKind::WildAngles { degrees } => msg!(
+                "{count, plural, one {# row} other {# rows}} with an angle of more than a hundred turns, up to {angle}°",
+                angle = brief(*degrees)
             ),
             WarningKind::Jumps { joint: None, metres } => {
                 msg!(

@@ -487,3 +487,13 @@ fn reading_reports_progress_and_stops() {
     assert!(read_motion("a.amc", text.as_bytes(), &skeleton, &small).is_err());
     assert!(read_skeleton("a.asf", ASF.as_bytes(), &small).is_err());
 }
+
+#[test]
+fn angles_of_many_turns_are_told() {
+    let (clip, warnings) = clip_of(ASF, amc(4).replacen("shin 11.5", "shin 1e20", 1));
+    assert_eq!(
+        warnings,
+        ["1 row with an angle of more than a hundred turns, up to 1.0e20°"].map(str::to_owned)
+    );
+    assert!((0..4).flat_map(|frame| clip.rotations(frame)).all(|turn| turn.is_finite()));
+}

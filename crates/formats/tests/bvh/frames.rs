@@ -282,3 +282,22 @@ fn large_files_report_progress_and_have_a_limit() {
         "at most 1 MB"
     );
 }
+
+#[test]
+fn angles_of_many_turns_are_told() {
+    let told = |angle: &str| {
+        let (found, warnings) = one(chain(4).replace("8.5 9.5\n2.5", &format!("8.5 {angle}\n2.5")));
+        assert!((0..4).flat_map(|frame| found.clip.rotations(frame)).all(|turn| turn.is_finite()));
+        warnings
+    };
+    for (angle, shown) in [("1e20", "1.0e20"), ("-99999", "99999")] {
+        assert_eq!(
+            told(angle),
+            [format!("1 row with an angle of more than a hundred turns, up to {shown}°")]
+        );
+    }
+    assert_eq!(told("35999"), [""; 0]);
+    // A position may be as large: a walk in millimetres.
+    let (_, warnings) = one(chain(4).replace("\n0.5 90.5", "\n40000 90.5"));
+    assert!(warnings.iter().all(|warning| !warning.contains("turns")), "{warnings:?}");
+}

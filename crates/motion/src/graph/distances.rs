@@ -1,6 +1,6 @@
 //! Distances between all windows of a set of clips.
 
-use super::tiles::row_start;
+use super::cells::{count_cells, row_start};
 use super::{DistanceTile, FrameSet, Place};
 use crate::registration::{DistanceMatrix, ROWS_PER_SUM, SymmetricDistances};
 use std::sync::Arc;
@@ -254,15 +254,4 @@ impl FrameDistances {
 /// Returns the index of the block of clips a ≤ b.
 pub(super) fn block_of(clips: usize, a: usize, b: usize) -> usize {
     (a * clips + b).saturating_sub(a * (a + 1) / 2)
-}
-
-/// Adds distances, metres, to the counts of a histogram whose last range is open.
-pub(super) fn count_cells(cells: &[f32], cm_per_m: f64, bin_cm: f64, counts: &mut [u32]) {
-    let Some(last) = counts.len().checked_sub(1) else {
-        return;
-    };
-    let scale = if bin_cm > 0.0 { (cm_per_m / bin_cm) as f32 } else { f32::MAX };
-    for &distance in cells {
-        counts[((distance * scale) as usize).min(last)] += 1;
-    }
 }

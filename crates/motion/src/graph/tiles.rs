@@ -2,7 +2,7 @@
 
 use super::all_pairs::level_m;
 use super::candidates::{Picker, is_minimum};
-use super::distances::count_cells;
+use super::cells::{count_cells, row_start};
 use super::{Candidate, Construction, DistanceOverview, FrameSet, GraphError, GraphOptions, Place};
 use crate::registration::{PointClouds, ROWS_PER_SUM, RowTerms};
 use serde::{Deserialize, Serialize};
@@ -260,17 +260,5 @@ impl TileView {
         }
         let (first, cells) = self.row(row);
         cells.get(column - first).copied()
-    }
-}
-
-/// Returns the offset of a row, from `first` on: of a clip with itself, each row begins on the
-/// diagonal. `width` is the number of columns.
-pub(super) fn row_start(is_itself: bool, width: usize, first: usize, row: usize) -> usize {
-    let rows = row - first;
-    if is_itself {
-        let rows = rows.min(width.saturating_sub(first));
-        rows * (width - first) - rows * rows.saturating_sub(1) / 2
-    } else {
-        rows * width
     }
 }

@@ -3,7 +3,7 @@
 use super::*;
 use crate::convert::TargetRig;
 use crate::export::{ExportFormat, ExportOptions, ExportRoot, export};
-use crate::reading::{Companion, Parcel, ReadSetup, Unpacker, read};
+use crate::reading::{Parcel, ReadSetup, SkeletonFile, Unpacker, read};
 use segue_formats::archive::{ArchiveLimits, unpack};
 use segue_formats::bvh::{WriteOptions, write};
 use segue_formats::fbx::{FbxOptions, write_fbx};
@@ -194,7 +194,7 @@ fn motion_without_its_skeleton_tells_what_it_needs() {
     assert!(reason.contains("ASF"), "{reason}");
     let setup = ReadSetup {
         convert: Some(Box::new(options(ExportFormat::Bvh))),
-        companions: vec![Companion::new("small.asf", asf)],
+        skeleton_files: vec![SkeletonFile::new("small.asf", asf)],
         ..ReadSetup::default()
     };
     let mut both = Conversion::new(options(ExportFormat::Bvh));

@@ -43,7 +43,7 @@ impl FileIntake {
         let (mut names, mut t_poses, mut failures) = (Vec::new(), 0, Vec::new());
         let brings_skeleton = |file: &ReadFile| {
             file.kind.is_skeleton()
-                || file.result.as_ref().is_ok_and(|read| read.companion.is_some())
+                || file.result.as_ref().is_ok_and(|read| read.skeleton_file.is_some())
         };
         let skeleton_arrived = report.files.iter().any(brings_skeleton)
             || lacks_skeleton(&document.library, &report, setup);
@@ -184,7 +184,9 @@ impl FileIntake {
         let (Origin::File(had), Origin::File(has)) = (&known.origin, &entry.origin) else {
             return;
         };
-        if known.is_known() && (has.companion.is_none() || has.companion == had.companion) {
+        if known.is_known()
+            && (has.skeleton_file.is_none() || has.skeleton_file == had.skeleton_file)
+        {
             // Its motion is at hand now, if it was read as the library has it.
             if known.motion.is_none() && had.is_read_like(has) && known.roles_by_hand.is_none() {
                 let maps = Arc::clone(document.library.bone_maps());
@@ -262,7 +264,7 @@ pub(super) fn refill(
                 if file.options != *options {
                     return;
                 }
-                file.companion = new_file.companion;
+                file.skeleton_file = new_file.skeleton_file;
                 // A motion whose skeleton was not found keeps waiting.
                 (entry.motion, entry.mesh, entry.facts) = (new.motion, new.mesh, new.facts);
                 entry.about = new.about;
@@ -300,7 +302,7 @@ fn file_entries(
         content: file
             .unpacked
             .map_or_else(|| content.clone(), |bytes| Content::Here(Arc::from(bytes))),
-        companion: read.companion,
+        skeleton_file: read.skeleton_file,
         index: 0,
         options: *options,
     };

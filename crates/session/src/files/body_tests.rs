@@ -74,6 +74,6 @@ fn model_alone_is_no_motion() {
     // Its mesh is not kept with the work.
     let entry = session.library().get(&loaded.ids[0]).unwrap();
     let Origin::File(file) = &entry.origin else { panic!("{entry:?}") };
-    let small = file.companion.as_ref().unwrap();
+    let small = file.skeleton_file.as_ref().unwrap();
     assert!(small.bytes.len() * 3 < MODEL.len() && small.sha256 == file.sha256);
 }

@@ -20,17 +20,35 @@ fn with_wild_row(text: &str) -> String {
     text.replace(rows[first + 40], &format!("1e20 {rest}"))
 }
 
-fn with_size(text: &str, factor: f64) -> String {
+fn scaled(number: &str, factor: f64) -> String {
+    (number.parse::<f64>().unwrap() * factor).to_string()
+}
+
+/// Returns the file with bones of other lengths.
+fn with_bones(text: &str, factor: f64) -> String {
     let offset = |line: &str| {
         let (head, numbers) = line.split_once("OFFSET ")?;
-        let numbers: Vec<String> = numbers
-            .split_whitespace()
-            .map(|n| (n.parse::<f64>().unwrap() * factor).to_string())
-            .collect();
+        let numbers: Vec<String> =
+            numbers.split_whitespace().map(|number| scaled(number, factor)).collect();
         Some(format!("{head}OFFSET {}", numbers.join(" ")))
     };
     let lines: Vec<String> =
         text.lines().map(|line| offset(line).unwrap_or_else(|| line.to_owned())).collect();
+    lines.join("\n")
+}
+
+/// Returns the file in another unit: other lengths of bones, and other positions of the root.
+fn with_size(text: &str, factor: f64) -> String {
+    let text = with_bones(text, factor);
+    let row = |line: &str| {
+        let numbers: Vec<&str> = line.split_whitespace().collect();
+        numbers.first()?.parse::<f64>().ok()?;
+        let (root, others) = numbers.split_at(3);
+        let root: Vec<String> = root.iter().map(|number| scaled(number, factor)).collect();
+        Some(format!("{} {}", root.join(" "), others.join(" ")))
+    };
+    let lines: Vec<String> =
+        text.lines().map(|line| row(line).unwrap_or_else(|| line.to_owned())).collect();
     lines.join("\n")
 }
 
@@ -83,6 +101,15 @@ fn clip_in_a_wrong_unit_or_with_a_wild_row_is_corrected_by_its_notice() {
     // A person of a usual size at a usual speed causes no such notice.
     let loaded = Session::new().load("x.bvh", bytes(&text)).unwrap();
     assert_eq!(loaded.warnings, []);
+}
+
+#[test]
+fn unit_is_not_corrected_where_bones_and_positions_disagree() {
+    let mut session = Session::new();
+    let loaded = session.load("x.bvh", bytes(&with_bones(&walk_bvh(), 1e-4))).unwrap();
+    assert!(loaded.warnings.iter().any(|warning| warning.to_string().contains("m tall")));
+    let notices = session.notices().list();
+    assert!(notices.iter().all(|notice| notice.corrections.is_empty()), "its walk would be 55 km");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The options, roles and skeleton files by which a file is read, from the library.
 
 use crate::library::{Library, Origin, SourceFile};
-use crate::reading::{Companion, Content, ReadFile, ReadReport, ReadSetup};
+use crate::reading::{Content, ReadFile, ReadReport, ReadSetup, SkeletonFile};
 use segue_formats::FileKind;
 use segue_motion::skeleton::Roles;
 use std::collections::BTreeMap;
@@ -13,9 +13,9 @@ pub(super) fn setup_of(library: &Library, file: &SourceFile) -> ReadSetup {
         options: file.options,
         roles: roles_by_hand(library, file),
         bone_maps: Arc::clone(library.bone_maps()),
-        companions: match &file.companion {
-            Some(companion) => vec![Companion::clone(companion)],
-            None if file.kind.takes_skeleton() => companions(library),
+        skeleton_files: match &file.skeleton_file {
+            Some(skeleton_file) => vec![SkeletonFile::clone(skeleton_file)],
+            None if file.kind.takes_skeleton() => skeleton_files(library),
             None => Vec::new(),
         },
         sha256: Some(file.sha256.clone()),
@@ -26,7 +26,7 @@ pub(super) fn setup_of(library: &Library, file: &SourceFile) -> ReadSetup {
 /// Returns the setup for reading a new file.
 pub(crate) fn setup_for_new(library: &Library) -> ReadSetup {
     ReadSetup {
-        companions: companions(library),
+        skeleton_files: skeleton_files(library),
         bone_maps: Arc::clone(library.bone_maps()),
         ..ReadSetup::default()
     }
@@ -44,17 +44,17 @@ fn roles_by_hand(library: &Library, file: &SourceFile) -> BTreeMap<usize, Roles>
 }
 
 /// Returns the known skeleton files: those in the library, and those that its motions were read
-/// with. A skeleton file is its own companion, a body model in a small form; earlier versions have
+/// with. A skeleton file is named as its own, a body model in a small form; earlier versions have
 /// stored ASF files without one.
-pub(super) fn companions(library: &Library) -> Vec<Companion> {
-    let mut all: Vec<Companion> = Vec::new();
+pub(super) fn skeleton_files(library: &Library) -> Vec<SkeletonFile> {
+    let mut all: Vec<SkeletonFile> = Vec::new();
     for entry in library.entries() {
         let Origin::File(file) = &entry.origin else {
             continue;
         };
-        let found = match (&file.companion, &file.content) {
-            (Some(companion), _) => Companion::clone(companion),
-            (None, Content::Here(bytes)) if file.kind == FileKind::Asf => Companion {
+        let found = match (&file.skeleton_file, &file.content) {
+            (Some(skeleton_file), _) => SkeletonFile::clone(skeleton_file),
+            (None, Content::Here(bytes)) if file.kind == FileKind::Asf => SkeletonFile {
                 name: file.name.clone(),
                 sha256: file.sha256.clone(),
                 bytes: Arc::clone(bytes),
@@ -72,5 +72,5 @@ pub(super) fn companions(library: &Library) -> Vec<Companion> {
 /// Returns whether a motion needs a skeleton file, and one has arrived since it was read.
 pub(super) fn lacks_skeleton(library: &Library, report: &ReadReport, setup: &ReadSetup) -> bool {
     let takes_skeleton = |file: &ReadFile| file.kind.takes_skeleton();
-    report.files.iter().any(takes_skeleton) && companions(library) != setup.companions
+    report.files.iter().any(takes_skeleton) && skeleton_files(library) != setup.skeleton_files
 }

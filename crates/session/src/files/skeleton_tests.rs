@@ -82,12 +82,12 @@ fn motion_has_the_skeleton_of_its_name() {
                 files(&session),
                 [("16_22".to_owned(), "amc", 2), ("01_01".to_owned(), "amc", 2)]
             );
-            let companions =
+            let skeleton_files =
                 session.library().entries().iter().filter_map(|entry| match &entry.origin {
-                    Origin::File(file) => Some(file.companion.as_ref()?.name.as_str()),
+                    Origin::File(file) => Some(file.skeleton_file.as_ref()?.name.as_str()),
                     _ => None,
                 });
-            assert_eq!(companions.collect::<Vec<_>>(), ["16.asf", "01_01.asf"]);
+            assert_eq!(skeleton_files.collect::<Vec<_>>(), ["16.asf", "01_01.asf"]);
         }
     }
 }

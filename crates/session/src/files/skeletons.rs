@@ -3,11 +3,11 @@
 
 use super::intake::FileIntake;
 use super::messages::notify_unread;
-use super::setup::companions;
+use super::setup::skeleton_files;
 use crate::document::Document;
 use crate::library::{Arrival, Library, Origin, SourceFile};
 use crate::notice::Notices;
-use crate::reading::Companion;
+use crate::reading::SkeletonFile;
 use segue_formats::{FileKind, acclaim};
 use segue_text::{Message, ToMessage};
 
@@ -20,8 +20,8 @@ impl FileIntake {
         arrival: Arrival,
     ) {
         let (entries, skeletons) =
-            (document.library.entries().to_vec(), companions(&document.library));
-        let is_named = |file: &SourceFile, skeleton: &Companion| {
+            (document.library.entries().to_vec(), skeleton_files(&document.library));
+        let is_named = |file: &SourceFile, skeleton: &SkeletonFile| {
             acclaim::goes_by_name(&file.name, &skeleton.name)
         };
         for entry in &entries {
@@ -31,18 +31,18 @@ impl FileIntake {
             let awaits = entry.awaits_skeleton();
             // A motion that was read with another subject's skeleton has its own now.
             let has_other = file.kind == FileKind::Amc
-                && (file.companion.as_ref()).is_some_and(|had| {
+                && (file.skeleton_file.as_ref()).is_some_and(|had| {
                     !is_named(file, had)
                         && skeletons.iter().any(|skeleton| is_named(file, skeleton))
                 });
             // A motion on a generic body has its own now.
             let has_body = file.kind == FileKind::Numpy
-                && file.companion.is_none()
+                && file.skeleton_file.is_none()
                 && skeletons.iter().any(|skeleton| skeleton.is_model);
             if !(awaits || has_other || has_body) {
                 continue;
             }
-            let file = SourceFile { companion: None, ..file.clone() };
+            let file = SourceFile { skeleton_file: None, ..file.clone() };
             match self.read_anew(document, &file, awaits.then_some(arrival)) {
                 Ok(true) if awaits => {
                     offer_moving(document, &entry.id, arrival);
@@ -75,10 +75,11 @@ pub(super) fn drop_used_skeletons(library: &mut Library) {
     let entries = library.entries().to_vec();
     let used = |sha256: &str| {
         entries.iter().any(|entry| match &entry.origin {
-            // A body model is its own companion.
-            Origin::File(file) if !file.kind.is_skeleton() => {
-                file.companion.as_ref().is_some_and(|companion| companion.sha256 == sha256)
-            }
+            // A body model is named as its own skeleton file.
+            Origin::File(file) if !file.kind.is_skeleton() => file
+                .skeleton_file
+                .as_ref()
+                .is_some_and(|skeleton_file| skeleton_file.sha256 == sha256),
             _ => false,
         })
     };

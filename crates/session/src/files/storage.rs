@@ -64,7 +64,7 @@ pub(crate) fn stored_entries(
         let is_as_stored = |entry: &Entry| {
             let is_read_so = match (&entry.origin, &stored.file) {
                 (Origin::File(here), Some(file)) => {
-                    here.options == file.options && here.companion == file.companion
+                    here.options == file.options && here.skeleton_file == file.skeleton_file
                 }
                 (Origin::File(_), None) => false,
                 (_, file) => file.is_none(),
@@ -143,7 +143,7 @@ impl SavedFile {
             content,
             size,
             kind: self.kind,
-            companion: self.companion.clone(),
+            skeleton_file: self.skeleton_file.clone(),
             index: self.index,
             options: self.options,
         }

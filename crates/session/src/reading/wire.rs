@@ -7,7 +7,7 @@ mod unpacker;
 pub use parcel::Parcel;
 pub use unpacker::Unpacker;
 
-use super::{About, Companion};
+use super::{About, SkeletonFile};
 use crate::convert::ConvertedClip;
 use crate::memory::motion_bytes;
 use segue_formats::{FileKind, ImportError};
@@ -69,7 +69,7 @@ struct ClipsHead {
     #[serde(default)]
     meshes: Vec<MeshHead>,
     warnings: Vec<Message>,
-    companion: Option<Box<Companion>>,
+    skeleton_file: Option<Box<SkeletonFile>>,
     awaits_skeleton: bool,
 }
 

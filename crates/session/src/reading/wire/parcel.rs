@@ -146,7 +146,7 @@ impl FileHead {
                         .map(|mesh| MeshHead::of(mesh))
                         .collect(),
                     warnings: read.warnings.clone(),
-                    companion: read.companion.clone(),
+                    skeleton_file: read.skeleton_file.clone(),
                     awaits_skeleton: read.awaits_skeleton,
                 }),
                 Err(error) => Err(error.clone()),

@@ -243,7 +243,7 @@ impl Incoming {
                 Ok(ReadClips {
                     clips: clips?,
                     warnings: read.warnings,
-                    companion: read.companion,
+                    skeleton_file: read.skeleton_file,
                     awaits_skeleton: read.awaits_skeleton,
                 })
             }
