@@ -182,12 +182,21 @@ pub(crate) fn metric_cell_ui(metric: &Metric<'_>, rect: Rect, id: Id, ui: &Ui) -
     let ink = metric.ink(ui);
     let name = line_of(&[Run::new(metric.short, Type::Small, palette.muted)], rect.width(), ui);
     let name_top = rect.bottom() - name.size().y - 1.0;
-    let number = [
-        Run::new(Text::Data(metric.value), Type::Metric, ink),
-        Run::new(metric.unit, Type::Small, palette.muted).after(space::XS),
-    ];
-    let digits = run(Text::Data(metric.value), Type::Metric, ink).size().x;
-    let number = line_of(&number[..if metric.unit.is_empty() { 1 } else { 2 }], f32::INFINITY, ui);
+    let number_in = |step: Type, width: f32| {
+        let mut runs = vec![Run::new(Text::Data(metric.value), step, ink)];
+        if !metric.unit.is_empty() {
+            runs.push(Run::new(metric.unit, Type::Small, palette.muted).after(space::XS));
+        }
+        line_of(&runs, width, ui)
+    };
+    // A number with more digits than the column and its gap have room for is smaller.
+    let room = rect.width() + space::M - space::XS;
+    let step = [Type::Metric, Type::Number]
+        .into_iter()
+        .find(|step| number_in(*step, f32::INFINITY).size().x <= room)
+        .unwrap_or(Type::Small);
+    let digits = run(Text::Data(metric.value), step, ink).size().x;
+    let number = number_in(step, room);
     let at = put(ui.painter(), pos2(rect.left(), name_top), Align2::LEFT_BOTTOM, number);
     if metric.rank != Rank::Middle {
         let word = run(metric.rank.word().into(), Type::Small, ink);

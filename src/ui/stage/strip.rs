@@ -19,6 +19,8 @@ use segue_session::{Key, Pane, Session, listed_metrics};
 const TOUCHED: f32 = 44.0;
 /// The least width of a row with a full name and a number, points at a desk.
 const LIST_WIDTH: f32 = 230.0;
+/// The least number that is written as a power of ten.
+const MAX_IN_FULL: f64 = 1e5;
 /// The largest share of the stage that the list of all numbers takes; beyond, it scrolls.
 const MAX_SHARE: f32 = 0.5;
 
@@ -342,7 +344,11 @@ fn written(row: &MetricRow, value: Option<f64>) -> String {
     };
     let decimals = row.unit.decimals(value);
     let degree = if row.unit == Unit::Degrees { "°" } else { "" };
-    let digits = format!("{value:.decimals$}");
+    let digits = if value.abs() < MAX_IN_FULL {
+        format!("{value:.decimals$}")
+    } else {
+        format!("{value:.1e}")
+    };
     // A number that rounds to zero has no sign.
     let is_zero = digits.bytes().all(|byte| matches!(byte, b'-' | b'0' | b'.'));
     let digits = if is_zero { digits.trim_start_matches('-') } else { &digits };

@@ -47,12 +47,7 @@ pub(super) struct Take {
 impl Take {
     /// Returns a motion of joints by rotations (frame by frame) and the root's places.
     pub(super) fn new(joints: Vec<Joint>, rotations: Vec<Quat>, root: Vec<Vec3>) -> Self {
-        let raw = RawMotion {
-            joints,
-            rotations,
-            root_translations: root,
-            ..RawMotion::default()
-        };
+        let raw = RawMotion { joints, rotations, root_translations: root, ..RawMotion::default() };
         Self { raw, fps: None, default_fps: DEFAULT_FPS, up: None, default_up: UpAxis::Y }
     }
 
