@@ -88,3 +88,18 @@ onOneBackend("going back in the history restores the state", async ({ open }) =>
   await page.goBack();
   await until("the link of the step before is used", async () => (await segue("params")).blend_window === 48);
 });
+
+// Fails when the body parts that were corrected are not in the link of their clip, or are not
+// corrected where it is opened.
+onOneBackend("link of a clip holds its corrected body parts", async ({ open }) => {
+  const { segue } = await open("lab=view&a=walk&play=off", SMALL);
+  await segue("set", {});
+  const map = JSON.parse(await segue("boneMap", "walk"));
+  map.roles.left_toe = null;
+  await segue("setBoneMap", JSON.stringify(map));
+  const url = new URL(await segue("url"));
+  assert.match(url.searchParams.get("bones") ?? "", /^[0-9a-f]{16}:left_toe-$/);
+  const other = await open(url.search.slice(1), SMALL);
+  await other.segue("set", {});
+  assert.equal(JSON.parse(await other.segue("boneMap", "walk")).roles.left_toe, null);
+});

@@ -3,12 +3,15 @@
 //! A rig is a set of joint names with their parents: clips whose files list the same joints in
 //! another order, or in other lengths, are of one rig. A correction of one clip holds for all of
 //! them, also for those that are opened later. A map is stored with the work, and saved and read as
-//! a file of its own ([`json`](BoneMap::to_json)).
+//! a file of its own ([`json`](BoneMap::to_json)). Links hold the corrections of the clips that they
+//! name, if these are few.
 
 mod json;
+mod link;
 
 pub(crate) use json::is_bone_map;
 pub use json::{BoneMapError, MAX_BONE_MAP_BYTES, role_of_word, word_of_role};
+pub(crate) use link::{BONES, MAX_LINKED_RIGS, corrections_of};
 
 use segue_motion::clip::Motion;
 use segue_motion::skeleton::{Mirror, Role, Roles, Skeleton};

@@ -54,6 +54,11 @@ pub(crate) fn with_own_edits(params: &Params) -> Params {
 
 /// Returns the parameters with the corrections of those clips alone that they name.
 pub(crate) fn with_named_edits(params: &Params) -> Params {
+    with_edits_of(params, &named_clips(params))
+}
+
+/// Returns the clips that parameters name, by their ids.
+pub(crate) fn named_clips(params: &Params) -> Vec<String> {
     let compared = params.compare().map_or(&[][..], |compare| &compare.values);
     let compared = compared.iter().filter_map(|value| match value {
         Value::Text(id) => Some(id.clone()),
@@ -62,9 +67,7 @@ pub(crate) fn with_named_edits(params: &Params) -> Params {
     let slots = [Key::A, Key::B].map(|key| params.text(key).to_owned());
     let listed = lab_of(params.lab()).listed(params);
     let others = params.clip_ids(Key::Others).iter().cloned();
-    let clips: Vec<String> =
-        slots.into_iter().chain(listed).chain(others).chain(compared).collect();
-    with_edits_of(params, &clips)
+    slots.into_iter().chain(listed).chain(others).chain(compared).collect()
 }
 
 fn with_edits_of(params: &Params, clips: &[String]) -> Params {

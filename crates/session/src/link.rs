@@ -1,5 +1,6 @@
 //! Links: the state of a session as a query string.
 
+use super::bone_map::{BONES, BoneMap, MAX_LINKED_RIGS};
 use super::outside::short;
 use super::params::{Key, Param, Params, Value};
 use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
@@ -24,6 +25,8 @@ const ESCAPED: &AsciiSet = &CONTROLS
 pub struct Link {
     /// The values that were understood, in the order of the link.
     pub values: Vec<(Key, Value)>,
+    /// The corrected body parts of the rigs that its clips have.
+    pub bone_maps: Vec<BoneMap>,
     /// One sentence for each key that is unknown and each value that does not fit.
     pub problems: Vec<Message>,
 }
@@ -40,6 +43,17 @@ pub fn read(query: &str) -> Link {
             Some(key) => match key.param().parse(&text) {
                 Ok(value) => link.values.push((key, value)),
                 Err(error) => link.problems.push(error.to_message()),
+            },
+            None if name == BONES => match BoneMap::from_link(&text) {
+                Ok(map) if link.bone_maps.len() < MAX_LINKED_RIGS => link.bone_maps.push(map),
+                Ok(_) => {
+                    let reason = msg!("the first {max} rigs are used", max = MAX_LINKED_RIGS);
+                    link.problems.push(msg!("{key}: {reason}", key = BONES, reason));
+                }
+                Err(error) => {
+                    let reason = error.to_message();
+                    link.problems.push(msg!("{key}: {reason}", key = BONES, reason));
+                }
             },
             None if LOADER_KEYS.contains(&name.as_ref()) => {}
             None => {
@@ -64,14 +78,25 @@ pub(crate) fn named(params: &Params) -> impl Iterator<Item = (&'static Param, &V
 pub fn write(params: &Params) -> String {
     let mut query = String::new();
     for (param, value) in named(params) {
-        if !query.is_empty() {
-            query.push('&');
-        }
-        query.push_str(param.name);
-        query.push('=');
-        query.extend(utf8_percent_encode(&param.format(value), ESCAPED));
+        add(&mut query, param.name, &param.format(value));
     }
     query
+}
+
+/// Adds the corrected body parts of rigs to a query string, as far as they are short.
+pub(crate) fn add_bone_maps(query: &mut String, maps: &[BoneMap]) {
+    for part in maps.iter().filter_map(BoneMap::to_link) {
+        add(query, BONES, &part);
+    }
+}
+
+fn add(query: &mut String, key: &str, text: &str) {
+    if !query.is_empty() {
+        query.push('&');
+    }
+    query.push_str(key);
+    query.push('=');
+    query.extend(utf8_percent_encode(text, ESCAPED));
 }
 
 #[cfg(test)]

@@ -360,6 +360,7 @@ impl Session {
             let result = params.set(key, value);
             debug_assert!(result.is_ok(), "links hold checked values: {result:?}");
         }
+        self.files.correct_as_linked(&mut self.document, &link.bone_maps);
         self.document.note_link(&named);
         self.replace_params(NewParams { params, named: named.clone(), problems: link.problems });
         self.note_lesson(&named);

@@ -52,6 +52,15 @@ pub enum BoneMapError {
         /// The body part.
         word: String,
     },
+    /// A part of a link without a rig.
+    #[error("expected a rig and its corrected body parts, as in 5c0d1e7a90b1c2d3:left_foot-Foot_L")]
+    LinkedRig,
+    /// A part of a link with more corrections than links hold.
+    #[error("at most {max} characters, or a bone map as a file")]
+    LinkedLength {
+        /// The limit.
+        max: usize,
+    },
     /// Two body parts with one bone.
     #[error("`roles`: `{first}` and `{second}` have the same bone; each bone has one part")]
     SameBone {
@@ -150,15 +159,26 @@ impl BoneMap {
                 Value::String(name) if !name.is_empty() => Some(name.clone()),
                 _ => return Err(BoneMapError::NotAName { word: word.clone() }),
             };
-            let same = roles.iter().find(|(_, other)| name.is_some() && **other == name);
-            if let Some((&first, _)) = same {
-                return Err(BoneMapError::SameBone {
-                    first: word_of_role(first),
-                    second: word.clone(),
-                });
-            }
-            roles.insert(role, name);
+            Self::add_role(&mut roles, role, name)?;
         }
         Ok(roles)
+    }
+
+    /// Adds a body part and the name of its bone to others.
+    ///
+    /// # Errors
+    /// [`BoneMapError::SameBone`] if another part has that bone.
+    pub(super) fn add_role(
+        roles: &mut BTreeMap<Role, Option<String>>,
+        role: Role,
+        name: Option<String>,
+    ) -> Result<(), BoneMapError> {
+        let same = roles.iter().find(|(_, other)| name.is_some() && **other == name);
+        if let Some((&first, _)) = same {
+            let [first, second] = [first, role].map(word_of_role);
+            return Err(BoneMapError::SameBone { first, second });
+        }
+        roles.insert(role, name);
+        Ok(())
     }
 }

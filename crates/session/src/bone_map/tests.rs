@@ -135,6 +135,45 @@ proptest! {
     }
 }
 
+proptest! {
+    #[test]
+    fn any_names_survive_a_link(
+        names in prop::collection::btree_map(0..Role::COUNT, any::<Option<String>>(), 1..6)
+    ) {
+        let mut seen = std::collections::BTreeSet::new();
+        let mut kept = |name: Option<String>| name.filter(|name| !name.is_empty() && seen.insert(name.clone()));
+        let roles = names.into_iter().map(|(role, name)| (Role::ALL[role], kept(name))).collect();
+        let map = BoneMap { rig: "0123456789abcdef".into(), roles };
+        let mut query = "t=1".to_owned();
+        crate::link::add_bone_maps(&mut query, std::slice::from_ref(&map));
+        let link = crate::link::read(&query);
+        match map.to_link() {
+            Some(_) => prop_assert_eq!(link.bone_maps, [map]),
+            None => prop_assert_eq!(query, "t=1"),
+        }
+    }
+}
+
+#[test]
+fn damaged_map_in_a_link_is_refused_with_the_reason() {
+    let rig = "0123456789abcdef";
+    let problem = |part: &str| {
+        let link = crate::link::read(&format!("bones={part}&blend_window=12"));
+        assert_eq!((link.values.len(), link.bone_maps.len()), (1, 0), "{part}");
+        link.problems[0].to_string()
+    };
+    for part in ["", "head-Head", "0123:head-Head", "0123456789abcdeg:head-H", rig] {
+        assert!(problem(part).starts_with("bones: expected a rig and its corrected"), "{part}");
+    }
+    assert!(problem(&format!("{rig}:tail-T")).contains("no body part `tail`"));
+    assert!(problem(&format!("{rig}:head-H;left_foot-H")).contains("have the same bone"));
+    let long = "x".repeat(1000);
+    assert!(problem(&format!("{rig}:head-{long}")).contains("at most 800 characters"));
+    let many: Vec<String> = (0..6).map(|rig| format!("bones={rig:016x}:head-H")).collect();
+    let link = crate::link::read(&many.join("&"));
+    assert_eq!((link.bone_maps.len(), link.problems.len()), (4, 2));
+}
+
 fn motion(session: &Session, id: &str) -> Arc<Motion> {
     session.library().get(id).unwrap().motion.clone().unwrap()
 }
@@ -174,6 +213,43 @@ fn correction_holds_for_all_clips_of_the_rig_and_is_one_step() {
     assert!([&first, &second].iter().all(|id| head(&session, id) == found));
     let fourth = session.load("w.bvh", made_bvh(4.0)).unwrap().ids.remove(0);
     assert_eq!(head(&session, &fourth), found, "the correction was taken back");
+}
+
+#[test]
+fn correction_is_part_of_the_link_of_its_clip() {
+    let bytes = made_bvh(1.0);
+    let mut session = Session::new();
+    let first = session.load("x.bvh", Arc::clone(&bytes)).unwrap().ids.remove(0);
+    session.apply(Command::Assign(Slot::A, first.clone())).unwrap();
+    let found = motion(&session, &first).roles().clone();
+    assert!(!session.query().contains("bones="), "nothing is corrected");
+    set_head(&mut session, &first, Some(1));
+    let removed = vec![(Role::LeftToe, None)];
+    session.apply(Command::File(FileCommand::SetRoles(first.clone(), removed))).unwrap();
+    let corrected = motion(&session, &first).roles().clone();
+    let link = session.query_for_others();
+    assert!(link.contains("bones=") && link.contains("left_toe-"), "{link}");
+    assert!(!link.contains("hips-"), "only what differs: {link}");
+    // With clips of other rigs alone, it is of no use.
+    let other = String::from_utf8(made_bvh(2.0).to_vec()).unwrap().replace("LeftUpLeg", "Thigh");
+    let other = session.load("y.bvh", Arc::from(other.as_bytes())).unwrap().ids.remove(0);
+    for slot in [Slot::A, Slot::B] {
+        session.apply(Command::Assign(slot, other.clone())).unwrap();
+    }
+    assert!(!session.query().contains("bones="), "{}", session.query());
+
+    // Somebody else opens the link before the file, and after it.
+    let mut theirs = Session::new();
+    theirs.apply(Command::OpenLink(link.clone())).unwrap();
+    let id = theirs.load("x.bvh", Arc::clone(&bytes)).unwrap().ids.remove(0);
+    assert_eq!(*motion(&theirs, &id).roles(), corrected);
+    let mut theirs = Session::new();
+    let id = theirs.load("x.bvh", bytes).unwrap().ids.remove(0);
+    theirs.apply(Command::OpenLink(link.clone())).unwrap();
+    assert_eq!(*motion(&theirs, &id).roles(), corrected);
+    assert_eq!(theirs.query_for_others(), link);
+    theirs.apply(Command::Undo).unwrap();
+    assert_eq!(*motion(&theirs, &id).roles(), found, "opening a link is one step");
 }
 
 #[test]

@@ -105,6 +105,29 @@ impl FileIntake {
         }
     }
 
+    /// Corrects the body parts that a link names, in all clips of each rig. Others stay as they
+    /// are.
+    pub(crate) fn correct_as_linked(&mut self, document: &mut Document, maps: &[BoneMap]) {
+        for map in maps {
+            let known = document.library.bone_maps().get(&map.rig).cloned().unwrap_or_default();
+            if map.roles.iter().all(|(role, name)| known.roles.get(role) == Some(name)) {
+                continue;
+            }
+            self.map_clips(document, map, |_, rig| rig == map.rig);
+            for entry in document.library.entries().to_vec() {
+                let is_of_rig = entry.facts.as_ref().is_some_and(|facts| facts.rig == map.rig);
+                if is_of_rig && entry.motion.is_none() {
+                    // It gets the map when it is read.
+                    document.library.change(&entry.id, |entry| entry.roles_by_hand = None);
+                }
+            }
+            let mut roles = known.roles;
+            roles.extend(map.roles.clone());
+            document.library.put_bone_map(BoneMap { rig: map.rig.clone(), roles });
+            document.library_revision += 1;
+        }
+    }
+
     /// Reads a bone map from a file, and applies it.
     pub(super) fn load_bone_map(
         &mut self,

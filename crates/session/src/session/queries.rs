@@ -2,8 +2,9 @@
 
 use super::Session;
 use crate::Selected;
+use crate::bone_map;
 use crate::clip_info::ClipInfo;
-use crate::contact_edits::{ContactClip, corrections_of, with_named_edits};
+use crate::contact_edits::{ContactClip, corrections_of, named_clips, with_named_edits};
 use crate::labs::lab::Beside;
 use crate::labs::lab_of;
 use crate::labs::{CharacterMotion, CycleMade, DistanceMap, Remedy, Slot, remedies};
@@ -39,7 +40,7 @@ impl Session {
     /// Returns the query string that restores this state, without `?`.
     #[must_use]
     pub fn query(&self) -> String {
-        query_with_edits(&self.document.params)
+        self.query_with_corrections(&self.document.params)
     }
 
     /// Returns the clips whose contacts can be corrected on the timeline: those that the panes show
@@ -90,7 +91,23 @@ impl Session {
         for key in [Key::Projector, Key::Lang] {
             params.copy_from(&defaults, key);
         }
-        query_with_edits(&params)
+        self.query_with_corrections(&params)
+    }
+
+    /// Returns the query string of parameters, with the corrected contacts and body parts of the
+    /// clips that they name.
+    fn query_with_corrections(&self, params: &Params) -> String {
+        let mut query = if params.contact_edits().is_empty() {
+            query_of(params)
+        } else {
+            query_of(&with_named_edits(params))
+        };
+        let library = &self.document.library;
+        if !library.bone_maps().is_empty() {
+            let maps = bone_map::corrections_of(library, &named_clips(params));
+            link::add_bone_maps(&mut query, &maps);
+        }
+        query
     }
 
     /// Returns the open comparison.
@@ -302,12 +319,4 @@ impl Session {
 /// Rounds a value to whole steps; never returns negative zero.
 fn to_step(value: f64, step: f64) -> f64 {
     (value / step).round() * step + 0.0
-}
-
-/// Returns the query string of parameters, with the corrected contacts of the clips that they name.
-fn query_with_edits(params: &Params) -> String {
-    if params.contact_edits().is_empty() {
-        return query_of(params);
-    }
-    query_of(&with_named_edits(params))
 }

@@ -76,7 +76,15 @@ impl Session {
         let (entries, lost) = stored_entries(&self.document.library, &saved.entries, content_of);
         let before = std::mem::take(&mut self.document.library);
         let mut maps = stored_maps(saved);
-        maps.extend(BoneMaps::clone(before.bone_maps()));
+        for map in before.bone_maps().values() {
+            let known = maps.entry(map.rig.clone()).or_default();
+            if map.roles.is_empty() {
+                known.roles.clear();
+            }
+            // A link may have corrected some parts of a rig alone.
+            known.rig.clone_from(&map.rig);
+            known.roles.extend(map.roles.clone());
+        }
         self.document.library.set_bone_maps(maps);
         let mut came = Vec::new();
         for entry in entries {
