@@ -165,9 +165,10 @@ fn python(report: &mut Report) {
     });
 }
 
-/// Builds the command line, and returns its path.
+/// Builds the command line, and returns its path. It is built as for its own tests: alone, it
+/// would ask for other features of the packages below it.
 fn command_line() -> Result<PathBuf> {
-    shell::run(&mut cargo(&["build", "--quiet", "--locked", "--package=segue-cli"]))?;
+    shell::run(tests_without_ui().args(["--no-run", "--test=results"]))?;
     Ok(shell::target().join(format!("debug/segue{}", std::env::consts::EXE_SUFFIX)))
 }
 
