@@ -1,14 +1,14 @@
 // Tests of dropped folders: their motion files are read once each, in the order of their paths.
 
 import assert from "node:assert/strict";
-import { onBothBackends, onOneBackend } from "./harness.mjs";
+import { onOneBackend } from "./harness.mjs";
 import { dropFolder, striding, until } from "./help.mjs";
 
 const isAccent = (red, green, blue) => green > 150 && green - red > 60 && green - blue > 20;
 
 // Fails when a folder is read as a file, when a file is read twice or out of order, and when the
 // drop zone stays open.
-onBothBackends("motion files of a dropped folder are read in order", async ({ open }) => {
+onOneBackend("motion files of a dropped folder are read in order", async ({ open }) => {
   const { page, segue, pixels } = await open("lab=blend&play=off", { viewport: [960, 640] });
   await segue("set", {});
   await dropFolder(page, [

@@ -3,7 +3,7 @@
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { onBothBackends } from "./harness.mjs";
+import { onBothBackends, onOneBackend } from "./harness.mjs";
 import { apart, until } from "./help.mjs";
 
 const DESK = { viewport: [1000, 700] };
@@ -12,7 +12,7 @@ const DESK = { viewport: [1000, 700] };
 const panes = async (segue, name) => (await segue("metrics"))[name].panes;
 
 // Fails when the speed is not that of the motion.
-onBothBackends("speed lab has the speed of the parameter", async ({ open }) => {
+onOneBackend("speed lab has the speed of the parameter", async ({ open }) => {
   const { segue } = await open("lab=speed&speed=1.5", DESK);
   await segue("set", {});
   for (const speed of [1.5, 2.3, 3.4]) {
@@ -24,7 +24,7 @@ onBothBackends("speed lab has the speed of the parameter", async ({ open }) => {
 });
 
 // Fails when a cycle has a seam, and when the classic methods have none.
-onBothBackends("exact loop has no seam, and one spring alone has one", async ({ open }) => {
+onOneBackend("exact loop has no seam, and one spring alone has one", async ({ open }) => {
   const { segue } = await open("lab=loop&a=walk_left&loop_from=0.3&loop_to=1.2&compare=loop_method:exact,linear&play=off", DESK);
   await segue("set", {});
   const [exact, linear] = await panes(segue, "loop_seam_dps");
@@ -33,7 +33,7 @@ onBothBackends("exact loop has no seam, and one spring alone has one", async ({ 
 });
 
 // Fails when the rebuilt root motion is not that of the clip it was removed from.
-onBothBackends("removed root motion is rebuilt from the feet", async ({ open }) => {
+onOneBackend("removed root motion is rebuilt from the feet", async ({ open }) => {
   const { segue } = await open("lab=in_place&a=walk&compare=root_way:take_out,put_back&play=off", DESK);
   await segue("set", {});
   const [removed, rebuilt] = await panes(segue, "root_way_m");
@@ -44,7 +44,7 @@ onBothBackends("removed root motion is rebuilt from the feet", async ({ open }) 
 });
 
 // Fails when faults that were put in are not found, or stay after the mends.
-onBothBackends("faults of a take are found and mended", async ({ open }) => {
+onOneBackend("faults of a take are found and mended", async ({ open }) => {
   const { segue } = await open("lab=clean&a=walk&clean_faults=4&clean_seed=7&compare=clean_mend:on,off&play=off", DESK);
   await segue("set", {});
   const [mended, recorded] = await panes(segue, "faults_left");
@@ -55,7 +55,7 @@ onBothBackends("faults of a take are found and mended", async ({ open }) => {
 });
 
 // Fails when an edit of the link is not made, or a kept edit is not made again from its recipe.
-onBothBackends("clip is trimmed, mirrored and kept as its recipe", async ({ open }) => {
+onOneBackend("clip is trimmed, mirrored and kept as its recipe", async ({ open }) => {
   const { segue } = await open("lab=edit&a=walk_left&edit_from=0.5&edit_to=1.5&scale=2&compare=mirror:off,on&play=off", DESK);
   await segue("set", {});
   assert.deepEqual(await panes(segue, "clip_s"), [1, 1]);
@@ -71,7 +71,7 @@ onBothBackends("clip is trimmed, mirrored and kept as its recipe", async ({ open
 });
 
 // Fails when the layer moves the legs, or does not move the arms.
-onBothBackends("layer moves the joints of its mask, and no others", async ({ open }) => {
+onOneBackend("layer moves the joints of its mask, and no others", async ({ open }) => {
   const { segue } = await open("lab=layers&mask=arms&feather=0&play=off", DESK);
   await segue("set", {});
   const [arms] = await panes(segue, "off_arms_deg");
@@ -82,7 +82,7 @@ onBothBackends("layer moves the joints of its mask, and no others", async ({ ope
 });
 
 // Fails when a chosen mistake has no effect, or one occurs where none is chosen.
-onBothBackends("classic mistake is shown beside the right method", async ({ open }) => {
+onOneBackend("classic mistake is shown beside the right method", async ({ open }) => {
   const { segue } = await open("lab=transition&compare=mistake:none,degrees,atan&play=off", DESK);
   await segue("set", {});
   const seams = await panes(segue, "velocity_jump_dps");
@@ -92,7 +92,7 @@ onBothBackends("classic mistake is shown beside the right method", async ({ open
 });
 
 // Fails when the character does not follow its path, and when the path is not part of the link.
-onBothBackends("character follows the path of the link, beside others", async ({ open }) => {
+onOneBackend("character follows the path of the link, beside others", async ({ open }) => {
   const { segue } = await open("lab=path&a=walk&play=off", DESK);
   await segue("set", {});
   const half = async (which) => (await segue("pose", which, 1.6)).positions.slice(0, 3);
@@ -112,7 +112,7 @@ onBothBackends("character follows the path of the link, beside others", async ({
 
 // Fails when the graph has no walk, when the same seed gives another one, when the walk does not
 // continue, and when a classic mistake does not spin.
-onBothBackends("graph lab walks by its seed, and the mistake spins", async ({ open }) => {
+onOneBackend("graph lab walks by its seed, and the mistake spins", async ({ open }) => {
   const { segue } = await open("lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20&compare=atan:atan2,atan&play=off", DESK);
   await segue("set", {});
   const spins = await panes(segue, "spins");
@@ -182,7 +182,7 @@ onBothBackends("built-in walk is the same in every browser and natively", async 
 
 // Fails when a scenario does not turn the character, when weights need a reload, and when the
 // scenario is not in the link.
-onBothBackends("character is driven through a scenario", async ({ open }) => {
+onOneBackend("character is driven through a scenario", async ({ open }) => {
   const { segue } = await open("lab=match&scenario=spin&play=off", DESK);
   await segue("set", {});
   const [turn] = await panes(segue, "match_turn");
@@ -196,7 +196,7 @@ onBothBackends("character is driven through a scenario", async ({ open }) => {
 
 // Fails when a kept result is not a clip like any other, when its link needs data, and when it is
 // lost with the page.
-onBothBackends("kept result can be used, linked and restored", async ({ open }) => {
+onOneBackend("kept result can be used, linked and restored", async ({ open }) => {
   const { page, segue, ready } = await open("lab=transition&half_life=0.3&play=off", DESK);
   await segue("set", {});
   const id = await segue("keep", "result");

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import process from "node:process";
 import { fileURLToPath } from "node:url";
-import { onBothBackends, onOneBackend } from "./harness.mjs";
+import { onOneBackend } from "./harness.mjs";
 import { apart, striding, stored, until } from "./help.mjs";
 
 const SMALL = { viewport: [960, 640] };
@@ -13,7 +13,7 @@ const loaded = async (segue) => (await segue("clips")).filter((clip) => clip.sha
 
 // Fails when the drop does not reach the app, when a clip gets another slot, and when the result is
 // not made of the dropped clips.
-onBothBackends("dropped files become A, then B, and play", async ({ open }) => {
+onOneBackend("dropped files become A, then B, and play", async ({ open }) => {
   const { segue, dropFile } = await open("lab=blend&play=off", SMALL);
   await dropFile("slow.bvh", striding({ hertz: 0.8, swing: 20 }));
   const [slow] = await until("the first file is in the library", async () => (await loaded(segue)).length === 1 && loaded(segue));
@@ -158,7 +158,7 @@ onOneBackend("zip of 60,000 empty files does not stop the frames, and its refusa
 });
 
 // Fails when the library, the parameters or the bytes of the files are not restored from storage.
-onBothBackends("reload restores the work", async ({ open }) => {
+onOneBackend("reload restores the work", async ({ open }) => {
   const { page, segue, load, ready } = await open("", SMALL);
   const { clips } = await load("mine.bvh", striding({ frames: 90 }));
   await segue("set", { lab: "blend", compare: "", a: clips[0].id, blend_window: 17, weight_law: "linear", play: false, t: 0.4 });
