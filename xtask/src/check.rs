@@ -91,12 +91,8 @@ fn lint(report: &mut Report) {
     report.step("clippy, web", || {
         tools::ensure_wasm_target()?;
         tools::clang()?;
-        let web = |what: &[&str]| {
-            let target = "--target=wasm32-unknown-unknown";
-            shell::run(&mut clippy(&[&[target, "--bin=segue-app"], what].concat()))
-        };
-        web(&["--bin=reader", "--bin=compute"])?;
-        web(&["--no-default-features", "--features=app"])
+        let modules = ["--bin=segue-app", "--bin=reader", "--bin=compute"];
+        shell::run(&mut clippy(&[&["--target=wasm32-unknown-unknown"], &modules[..]].concat()))
     });
 }
 
