@@ -146,10 +146,11 @@ fn python(report: &mut Report) {
         for old in fs::read_dir(&wheels)? {
             fs::remove_file(old?.path())?;
         }
-        let build = ["-m", "maturin", "build", "--quiet", "--locked", "--profile=dev", "--out"];
+        let build = ["-m", "maturin", "build", "--quiet", "--locked", "--profile=dev"];
         let mut maturin = command(&python, &build);
         shell::build_as_in_ci(&mut maturin);
-        shell::run(maturin.arg(&wheels).current_dir(&package))?;
+        maturin.arg("--features=unified").arg("--out").arg(&wheels);
+        shell::run(maturin.current_dir(&package))?;
         let wheel = fs::read_dir(&wheels)?.next().ok_or("maturin has made no wheel")??.path();
         let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
         shell::run(command(&python, &install).args(["--no-deps", "--force-reinstall"]).arg(wheel))?;
