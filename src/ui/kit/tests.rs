@@ -574,3 +574,22 @@ fn widget_that_gets_the_focus_by_keyboard_is_scrolled_into_view() {
     let last = harness.get_by_label("19").rect();
     assert!(last.bottom() <= visible.top() + 121.0, "{last} beside {visible}");
 }
+
+#[test]
+fn metric_of_many_digits_stays_in_its_column() {
+    let place = egui::Rect::from_min_size(pos2(16.0, 16.0), vec2(70.0, 38.0));
+    for value in ["1.2", "1234.5", "999999.9", "−1.0e18", "−123456789012345.6"] {
+        let harness = bench((), move |(), ui| {
+            let [unit, name] = ["cm", "Slide"].map(Word::new);
+            let metric = Metric { value, unit, name, short: name, ..Metric::default() };
+            metric_cell_ui(&metric, place, egui::Id::new("metric"), ui);
+        });
+        let end = |shape: &egui::epaint::ClippedShape| match &shape.shape {
+            egui::Shape::Text(text) => Some(text.visual_bounding_rect().right()),
+            _ => None,
+        };
+        let end = harness.output().shapes.iter().filter_map(end).fold(0.0, f32::max);
+        let limit = place.right() + crate::ui::theme::space::M;
+        assert!(place.left() < end && end < limit, "{value} ends at {end}, past {limit}");
+    }
+}

@@ -354,3 +354,19 @@ fn written(row: &MetricRow, value: Option<f64>) -> String {
     let digits = if is_zero { digits.trim_start_matches('-') } else { &digits };
     format!("{}{degree}", digits.replace('-', "−"))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn number_too_large_for_its_place_is_a_power_of_ten() {
+        let row = MetricId::FootSlide.row();
+        let cases =
+            [(9.24, "9.2"), (-0.01, "0.0"), (-3.0, "−3.0"), (1e6, "1.0e6"), (-2e18, "−2.0e18")];
+        for (value, text) in cases {
+            assert_eq!(written(row, Some(value)), text);
+        }
+        assert_eq!(written(row, None), "–");
+    }
+}
