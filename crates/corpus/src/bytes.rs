@@ -51,18 +51,16 @@ impl<'a> Reader<'a> {
 
     /// Checks that the next bytes are the mark of a kind of file.
     pub(crate) fn mark(&mut self, mark: [u8; 4]) -> Result<(), CorpusError> {
-        match self.array::<4>()? == mark {
-            true => Ok(()),
-            false => Err(CorpusError::OtherKind { what: self.what }),
+        if self.array::<4>()? == mark {
+            Ok(())
+        } else {
+            Err(CorpusError::OtherKind { what: self.what })
         }
     }
 
     /// Checks that nothing follows.
     pub(crate) fn end(&self) -> Result<(), CorpusError> {
-        match self.bytes.is_empty() {
-            true => Ok(()),
-            false => Err(CorpusError::Surplus { what: self.what }),
-        }
+        if self.bytes.is_empty() { Ok(()) } else { Err(CorpusError::Surplus { what: self.what }) }
     }
 }
 

@@ -205,8 +205,8 @@ fn copies(clips: &[(f64, Option<Signature>)]) -> Vec<Option<(usize, bool)>> {
                 continue;
             };
             for (candidate, is_mirrored) in [(own, false), (&mirrored, true)] {
-                let most = best.map_or(MAX_DISTANCE_CM, |(distance, ..)| distance);
-                let Some(distance) = candidate.distance_cm(signature, most) else { continue };
+                let distance = candidate.distance_cm(signature, MAX_DISTANCE_CM);
+                let Some(distance) = distance else { continue };
                 let is_better = best.is_none_or(|(least, of, _)| {
                     distance < least || distance == least && other < of
                 });

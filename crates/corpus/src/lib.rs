@@ -48,7 +48,7 @@
 //! let index = Index::read(&corpus.centroids)?;
 //! let query = vec![0.0; index.dims()];
 //! let mut lists = Vec::new();
-//! for list in index.nearest_lists(&query, 4)? {
+//! for list in index.nearest_lists(&query, 8)? {
 //!     let place = index.place(list).ok_or("no such list")?;
 //!     lists.push((list, &corpus.lists[place.file][place.bytes()]));
 //! }

@@ -133,6 +133,19 @@ struct Head<R> {
     signature: usize,
 }
 
+impl<'a> Head<&'a ClipRow> {
+    fn of(clip: &'a ClipRecord) -> Self {
+        let ClipRecord { row, poses, thumbnail, features, signature } = clip;
+        Self {
+            row,
+            poses: poses.len(),
+            thumbnail: thumbnail.len(),
+            features: features.len(),
+            signature: signature.len(),
+        }
+    }
+}
+
 impl FileRecord {
     /// Returns the record of a file that cannot be read.
     #[must_use]
@@ -146,17 +159,7 @@ impl FileRecord {
     /// # Errors
     /// [`CorpusError::TooLarge`], [`CorpusError::Json`].
     pub fn to_bytes(&self) -> Result<Vec<u8>, CorpusError> {
-        let head = |clip| {
-            let ClipRecord { row, poses, thumbnail, features, signature } = clip;
-            Head {
-                row,
-                poses: poses.len(),
-                thumbnail: thumbnail.len(),
-                features: features.len(),
-                signature: signature.len(),
-            }
-        };
-        let heads: Vec<Head<&ClipRow>> = self.clips.iter().map(head).collect();
+        let heads: Vec<Head<&ClipRow>> = self.clips.iter().map(Head::of).collect();
         let text = serde_json::to_vec(&heads)?;
         let mut out = MARK.to_vec();
         push_u32(&mut out, VERSION as usize)?;

@@ -64,8 +64,8 @@ fn sides(clip: &Clip, roles: &Roles) -> Vec<u8> {
             sides[first] = side.index() as u8 + 1;
         }
     }
-    for joint in 0..joints.len() {
-        if let Some(parent) = joints[joint].parent.filter(|_| sides[joint] == 0) {
+    for (joint, own) in joints.iter().enumerate() {
+        if let Some(parent) = own.parent.filter(|_| sides[joint] == 0) {
             sides[joint] = sides[parent];
         }
     }

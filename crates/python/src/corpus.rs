@@ -4,7 +4,7 @@
 //! are, keeps the records, and writes the files of a corpus.
 
 use crate::clip::{Clip, Origin};
-use numpy::{PyReadonlyArray1, PyReadonlyArrayMethods as _};
+use numpy::PyReadonlyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -25,7 +25,7 @@ fn value_error(error: impl ToString) -> PyErr {
 /// Names and contents of the skeletons beside a file.
 type Beside = Vec<(String, Vec<u8>)>;
 
-fn companions(beside: &Beside) -> Vec<Companion> {
+fn companions(beside: &[(String, Vec<u8>)]) -> Vec<Companion> {
     beside.iter().map(|(name, bytes)| Companion::new(name, bytes)).collect()
 }
 
@@ -124,7 +124,8 @@ impl CorpusGatherer {
         let gatherer = taken.ok_or_else(|| value_error("this corpus is made already"))?;
         let made = py.detach(|| gatherer.finish()).map_err(value_error)?;
         let dict = PyDict::new(py);
-        let rows = made.rows.iter().map(|row| row_as_dict(py, row)).collect::<PyResult<Vec<_>>>()?;
+        let rows =
+            made.rows.iter().map(|row| row_as_dict(py, row)).collect::<PyResult<Vec<_>>>()?;
         let pieces = |shards: &[Vec<Piece>]| -> Vec<Vec<(String, usize)>> {
             let of_shard = |own: &Vec<Piece>| {
                 own.iter().map(|piece| (piece.key.clone(), piece.clip)).collect()
@@ -250,9 +251,10 @@ impl CorpusIndex {
         let query = query.as_slice().map_err(value_error)?;
         let lists: Vec<(usize, &[u8])> =
             lists.iter().map(|(list, bytes)| (*list, bytes.as_slice())).collect();
-        let hits = match by_clip {
-            true => self.0.search_clips(query, &lists, count),
-            false => self.0.search(query, &lists, count),
+        let hits = if by_clip {
+            self.0.search_clips(query, &lists, count)
+        } else {
+            self.0.search(query, &lists, count)
         };
         let hits = hits.map_err(value_error)?;
         Ok(hits.iter().map(|hit| (hit.clip, hit.moment, hit.distance)).collect())

@@ -43,7 +43,7 @@ pub(crate) fn build(
     let centroids = Centroids::find(rows, dims, list_count(moments));
     let count = centroids.lists.len() / dims;
     let mut members: Vec<Vec<(usize, usize, usize)>> = vec![Vec::new(); count];
-    let owners = clips.iter().flat_map(|own| (0..own.count).map(|moment| (own.clip, moment)));
+    let owners = clips.iter().flat_map(|own| (0..own.count).map(move |moment| (own.clip, moment)));
     for (at, ((clip, moment), row)) in owners.zip(rows.chunks_exact(dims)).enumerate() {
         if let Some(list) = centroids.list_of(row) {
             members[list].push((clip, moment, at));

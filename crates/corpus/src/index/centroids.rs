@@ -13,7 +13,7 @@ const ROUNDS: usize = 8;
 /// The number of sampled moments for each list.
 const SAMPLED_PER_LIST: usize = 64;
 /// The seed of samples and of first centroids.
-const SEED: u64 = 0x5e6_0e5e_60e5;
+const SEED: u64 = 0x5e60_e5e6;
 
 /// The centroids of lists.
 #[derive(Clone, Debug)]

@@ -134,9 +134,16 @@ impl Index {
         self.check(query)?;
         let mut hits = Vec::new();
         for (list, bytes) in lists {
-            let length = self.places.get(*list).map_or(0, |place| place.length);
-            if bytes.len() != length {
-                let (found, expected) = (bytes.len(), length);
+            let Some(place) = self.places.get(*list) else {
+                let (found, expected) = (*list, self.places.len());
+                return Err(CorpusError::Mismatch {
+                    what: "the number of a list",
+                    found,
+                    expected,
+                });
+            };
+            if bytes.len() != place.length {
+                let (found, expected) = (bytes.len(), place.length);
                 return Err(CorpusError::Mismatch { what: "bytes of a list", found, expected });
             }
             self.scan(query, *list, bytes, &mut hits);

@@ -24,12 +24,13 @@ pub(super) fn encode(
     header.extend([4, 3, 0, 0, 0]);
     let colors: Vec<u8> = palette.iter().flat_map(|color| [color[0], color[1], color[2]]).collect();
     let opacities: Vec<u8> = palette.iter().map(|color| color[3]).collect();
+    let rows = rows.finish()?;
     let mut out = b"\x89PNG\r\n\x1a\n".to_vec();
     let parts: [(&[u8; 4], &[u8]); 5] = [
         (b"IHDR", &header),
         (b"PLTE", &colors),
         (b"tRNS", &opacities),
-        (b"IDAT", &rows.finish()?),
+        (b"IDAT", &rows),
         (b"IEND", &[]),
     ];
     for (kind, content) in parts {

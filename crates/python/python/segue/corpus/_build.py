@@ -119,7 +119,8 @@ def build(
         pool = Threads(workers, clean, known)
     found: dict[str, list[Source]] = {}
     failures: dict[str, bytes] = {}
-    made = done = 0
+    computed: set[str] = set()
+    done = 0
     with contextlib.closing(pool):
         for part in made_by(pool, sources):
             for source, key, record in part:
@@ -128,11 +129,11 @@ def build(
                     failures[key] = record or b""
                 elif record is not None:
                     store.put(key, record)
-                    made += 1
+                    computed.add(key)
                 found.setdefault(key, []).append(source)
             done += len(part)
             if progress is not None:
                 progress(done, len(sources))
     corpus = Gathered(store, found, failures, clean, read_labels(labels))
     counts, is_written = corpus.write()
-    return Report(**counts, made=made, is_written=is_written)
+    return Report(**counts, made=len(computed), is_written=is_written)

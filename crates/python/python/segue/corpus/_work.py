@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import concurrent.futures
 import os
-import zipfile
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
@@ -30,7 +29,8 @@ def _make_one(source: Source, clean: bool, known: frozenset[str]) -> Made:
     try:
         data = read(source.place, source.member)
         beside = [(name, read(place, member)) for name, place, member in source.beside]
-    except (OSError, ValueError, KeyError, RuntimeError, zipfile.BadZipFile) as error:
+    except Exception as error:  # noqa: BLE001
+        # Whatever a disk, a zip or a network has to say: a row, and not the end.
         return Made(source, None, _core.corpus_failure(_reason(error)))
     name = source.member or source.path
     key = _core.corpus_key(name, data, beside, clean)
