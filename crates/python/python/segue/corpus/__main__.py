@@ -15,17 +15,22 @@ def main(words: list[str] | None = None) -> int:
     command = parser.add_subparsers(required=True).add_parser(
         "build",
         help="builds a corpus of motion files",
-        epilog="example: python -m segue.corpus build 'takes/**/*.bvh' set.zip s3://bucket/more corpus",
+        epilog="example: python -m segue.corpus build 'takes/**/*.bvh' set.zip s3://a/more corpus",
     )
-    command.add_argument("inputs", nargs="+", metavar="IN", help="files, folders, zips, patterns, addresses")
-    command.add_argument("out", metavar="OUT", help="the folder of the corpus")
-    command.add_argument("--workers", type=int, metavar="N", help="files that are read at the same time")
-    command.add_argument(
-        "--ray", nargs="?", const=True, metavar="ADDRESS", help="works on Ray: here, or on the cluster at an address"
+    add = command.add_argument
+    add("inputs", nargs="+", metavar="IN", help="files, folders, zips, patterns, addresses")
+    add("out", metavar="OUT", help="the folder of the corpus")
+    add("--workers", type=int, metavar="N", help="how many files are read at the same time")
+    add(
+        "--ray",
+        nargs="?",
+        const=True,
+        metavar="ADDRESS",
+        help="works on Ray: on this machine, or on the cluster at an address",
     )
-    command.add_argument("--clean", action="store_true", help="mends the faults of takes")
-    command.add_argument("--labels", metavar="FILE", help="a CSV file: path, and the labels of its clips")
-    command.add_argument("--fresh", action="store_true", help="computes all files again")
+    add("--clean", action="store_true", help="mends the faults of takes")
+    add("--labels", metavar="FILE", help="a CSV file: a path, and the labels of its clips")
+    add("--fresh", action="store_true", help="computes all files again")
     asked = parser.parse_args(words)
     try:
         report = build(
@@ -43,7 +48,8 @@ def main(words: list[str] | None = None) -> int:
         return 1
     print(
         f"{report.rows} rows: {report.clips} clips, {report.copies} of them copies; "
-        f"{report.unplaced} not on the body, {report.unreadable} unreadable; {report.made} files computed"
+        f"{report.unplaced} not on the body, {report.unreadable} unreadable; "
+        f"{report.made} files computed"
     )
     return 0
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ._labels import Labels, read_labels
+from ._needs import needed
 from ._sources import Source, find
 from ._store import Store
 from ._work import RayTasks, Threads, made_by
@@ -105,8 +106,7 @@ def build(
     >>> segue.corpus.build("takes/", "corpus/", workers=2).clips
     2988
     """
-    import pyarrow  # type: ignore[import-not-found, import-untyped, unused-ignore]  # noqa: F401
-
+    needed("pyarrow")
     is_one = isinstance(inputs, (str, os.PathLike))
     words: list[Any] = [inputs] if is_one else list(inputs)  # type: ignore[arg-type, list-item]
     sources = find(os.fspath(own) for own in words)

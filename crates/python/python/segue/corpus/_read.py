@@ -11,6 +11,7 @@ import numpy as np
 
 from .. import _core
 from .._core import Clip
+from ._needs import needed
 
 
 class Like(NamedTuple):
@@ -62,9 +63,8 @@ class Corpus:
         -------
         pyarrow.Table
         """
-        import pyarrow.parquet  # type: ignore[import-not-found, import-untyped, unused-ignore]
-
-        return pyarrow.parquet.read_table(self.folder / "clips.parquet", columns=columns)
+        parquet = needed("pyarrow.parquet")
+        return parquet.read_table(self.folder / "clips.parquet", columns=columns)
 
     def clip(self, row: int) -> Clip:
         """Return the clip of a row, on the standard body.

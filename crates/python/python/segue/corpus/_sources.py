@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from .. import _core
+from ._needs import needed
 
 MOTION_ENDINGS, _ARCHIVE_ENDINGS, MAX_BYTES = _core.corpus_endings()
 
@@ -193,13 +194,11 @@ def _system(place: str) -> tuple[Any, str]:
 
 @functools.lru_cache(maxsize=64)
 def _remote_system(scheme: str, root: str) -> Any:
-    from pyarrow import fs
-
+    fs = needed("pyarrow.fs")
     if scheme in ("s3", "gs", "gcs", "hdfs", "abfs", "abfss", "mock"):
         return fs.FileSystem.from_uri(root)[0]
     # Those of fsspec, such as `hf://` of huggingface_hub.
-    import fsspec  # type: ignore[import-not-found, import-untyped, unused-ignore]
-
+    fsspec = needed("fsspec")
     return fs.PyFileSystem(fs.FSSpecHandler(fsspec.filesystem(scheme)))
 
 
@@ -211,8 +210,7 @@ def _remote(scheme: str, place: str) -> tuple[Any, str]:
 
 
 def _listed_remotely(word: str, system: Any, path: str) -> Iterator[tuple[str, str, bool]]:
-    from pyarrow import fs
-
+    fs = needed("pyarrow.fs")
     scheme, options = word.split("://", 1)[0], word.partition("?")[2]
     is_pattern = any(sign in path for sign in "*[")
     base = _base_of(path) if is_pattern else path.rstrip("/")

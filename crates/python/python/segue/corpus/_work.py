@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 from .. import _core
+from ._needs import needed
 from ._sources import Source, read
 
 
@@ -77,9 +78,7 @@ class RayTasks:
     def __init__(
         self, address: str | None, workers: int | None, clean: bool, known: frozenset[str]
     ) -> None:
-        import ray  # type: ignore[import-not-found, import-untyped, unused-ignore]
-
-        self._ray = ray
+        ray = self._ray = needed("ray")
         self._is_own = not ray.is_initialized()
         if self._is_own:
             here: dict[str, Any] = {"address": address} if address else {"num_cpus": workers}

@@ -6,13 +6,18 @@ import hashlib
 import json
 import posixpath
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
 from .. import _core
+from ._needs import needed
 from ._sources import Source
 from ._store import Store, write_whole
 from ._work import make
+
+#: A column of the table: its name, its type, and what gives the value of a row.
+Column = tuple[str, Any, Callable[[dict[str, Any]], Any]]
 
 #: Rows of the table that are read together.
 _ROWS_PER_GROUP = 1 << 16
@@ -58,8 +63,7 @@ class Gathered:
 
     def _content(self) -> str:
         """Return a hash of all that the files of the corpus depend on."""
-        import pyarrow  # type: ignore[import-not-found, import-untyped, unused-ignore]
-
+        pyarrow = needed("pyarrow")
         digest = hashlib.sha256()
         paths = {key: [own.path for own in sources] for key, sources in self._sources.items()}
         failed = {key: hashlib.sha256(own).hexdigest() for key, own in self._failures.items()}
@@ -122,12 +126,21 @@ class Gathered:
         return names
 
     def _write_table(self, rows: list[dict[str, Any]]) -> None:
-        import pyarrow
-        import pyarrow.parquet  # type: ignore[import-not-found, import-untyped, unused-ignore]
+        pyarrow, parquet = needed("pyarrow"), needed("pyarrow.parquet")
+        columns = self._columns(pyarrow, rows)
+        schema = pyarrow.schema([(name, kind) for name, kind, _ in columns])
+        arrays = [pyarrow.array([of(row) for row in rows], kind) for _, kind, of in columns]
+        table = pyarrow.Table.from_arrays(arrays, schema=schema)
+        path = self._store.out / "clips.parquet"
+        part = path.with_name(path.name + ".part")
+        parquet.write_table(table, part, row_group_size=_ROWS_PER_GROUP, compression="snappy")
+        part.replace(path)
 
-        text, number = pyarrow.string(), pyarrow.float32()
-        texts, count, wide = pyarrow.list_(text), pyarrow.int32(), pyarrow.int64()
-        columns: list[tuple[str, Any, Callable[[dict[str, Any]], Any]]] = [
+    def _columns(self, arrow: Any, rows: list[dict[str, Any]]) -> list[Column]:
+        """Return the columns of the table: name, type, and the value of a row."""
+        text, number, count = arrow.string(), arrow.float32(), arrow.int32()
+        texts, wide = arrow.list_(text), arrow.int64()
+        columns: list[Column] = [
             ("id", text, lambda row: row["id"]),
             ("path", text, lambda row: self._paths(row)[0]),
             ("also", texts, lambda row: self._paths(row)[1:]),
@@ -138,7 +151,7 @@ class Gathered:
             ("status message", text),
             ("line column", count),
             ("format", text),
-            ("seconds", pyarrow.float64()),
+            ("seconds", arrow.float64()),
             ("frames", count),
             ("fps", number),
             ("joints", count),
@@ -149,27 +162,17 @@ class Gathered:
             ("warnings", texts),
             ("moments", count),
             ("copy_of", text),
-            ("is_mirrored", pyarrow.bool_()),
+            ("is_mirrored", arrow.bool_()),
         ]:
-            for name in names.split():
-                columns.append((name, kind, lambda row, name=name: row[name]))
+            columns.extend((name, kind, itemgetter(name)) for name in names.split())
         for part, prefix in [("poses", ""), ("thumbnail", "thumbnail_")]:
-            for at, (name, kind) in enumerate([("shard", count), ("offset", wide), ("length", count)]):
-                columns.append(
-                    (prefix + name, kind, lambda row, part=part, at=at: (row[part] or [None] * 3)[at])
-                )
+            kinds = [("shard", count), ("offset", wide), ("length", count)]
+            for at, (name, kind) in enumerate(kinds):
+                columns.append((prefix + name, kind, _place(part, at)))
         found = {name for row in rows for name in row["metrics"]}
-        for name in (own[0] for own in _core.corpus_columns() if own[0] in found):
-            columns.append((name, number, lambda row, name=name: row["metrics"].get(name)))
-        schema = pyarrow.schema([(name, kind) for name, kind, _ in columns])
-        arrays = [pyarrow.array([of(row) for row in rows], kind) for _, kind, of in columns]
-        table = pyarrow.Table.from_arrays(arrays, schema=schema)
-        path = self._store.out / "clips.parquet"
-        part = path.with_name(path.name + ".part")
-        pyarrow.parquet.write_table(
-            table, part, row_group_size=_ROWS_PER_GROUP, compression="snappy"
-        )
-        part.replace(path)
+        known = [row[0] for row in _core.corpus_columns() if row[0] in found]
+        columns.extend((name, number, _metric(name)) for name in known)
+        return columns
 
     def _paths(self, row: dict[str, Any]) -> list[str]:
         """Return all paths of a row's file, with the path in it where it is an archive."""
@@ -186,6 +189,14 @@ class Gathered:
     def _labels_of(self, row: dict[str, Any]) -> list[str]:
         labels = [own for path in self._paths(row) for own in self._labels.get(path, [])]
         return list(dict.fromkeys(labels))
+
+
+def _place(part: str, at: int) -> Callable[[dict[str, Any]], Any]:
+    return lambda row: row[part] and row[part][at]
+
+
+def _metric(name: str) -> Callable[[dict[str, Any]], Any]:
+    return lambda row: row["metrics"].get(name)
 
 
 def _poses(number: int) -> str:
