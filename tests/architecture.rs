@@ -46,7 +46,8 @@ const CRATES: [&str; 5] =
     ["segue_motion", "segue_fbx", "segue_formats", "segue_session", "segue_scene"];
 
 /// The crates whose results have the same bits on every machine.
-const EXACT_CRATES: [&str; 4] = ["crates/motion", "crates/fbx", "crates/formats", "crates/session"];
+const EXACT_CRATES: [&str; 5] =
+    ["crates/motion", "crates/fbx", "crates/formats", "crates/session", "crates/corpus"];
 
 /// Methods of numbers that call the machine's C library, and `slerp` of glam, which has another
 /// formula for each kind of processor.

@@ -20,7 +20,7 @@ const PARTS: [(&str, Part); 7] = [
 ];
 
 /// The crates below the app, and the programs beside it.
-const LIBRARIES: [&str; 9] = [
+const LIBRARIES: [&str; 10] = [
     "segue-text",
     "segue-text-derive",
     "segue-motion",
@@ -28,6 +28,7 @@ const LIBRARIES: [&str; 9] = [
     "segue-formats",
     "segue-session",
     "segue-scene",
+    "segue-corpus",
     "segue-batch",
     "segue-cli",
 ];

@@ -117,7 +117,7 @@ pub use drive::{Drive, DriveMetrics, Jump, drive};
 pub use error::MatchError;
 pub use features::{Block, FeatureOptions, Features, Layout, Normalisation, RATE, Weights};
 pub use made::{made_clip, made_clips, made_name, made_params};
-pub use motion::DatabaseClip;
+pub use motion::{DatabaseClip, feature_rows};
 pub use pace::Pace;
 pub use scenario::Scenario;
 pub use search::{Hit, SearchResult};

@@ -1,7 +1,7 @@
 //! `import segue`: motion files as `NumPy` arrays, and Segue's labs for scripts.
 //!
 //! The package is `python/segue/`; this crate is its module `_core`. Everything that computes lies
-//! below: reading and driving in `segue-batch`, labs in `segue-session`, formats and motion in the
+//! below: reading and driving in `segue-batch`, corpora in `segue-corpus`, labs in `segue-session`, formats and motion in the
 //! core. Here are conversions between those and Python, without the interpreter's lock wherever
 //! something takes time.
 
@@ -9,6 +9,7 @@
 
 mod arrays;
 mod clip;
+mod corpus;
 mod errors;
 mod graph;
 mod labs;
@@ -24,6 +25,11 @@ use pyo3::prelude::*;
 mod _core {
     #[pymodule_export]
     use super::clip::Clip;
+    #[pymodule_export]
+    use super::corpus::{
+        CorpusGatherer, CorpusIndex, corpus_clip, corpus_columns, corpus_endings, corpus_failure,
+        corpus_key, corpus_parts, corpus_query, corpus_record,
+    };
     #[pymodule_export]
     use super::graph::{Graph, distance_matrix, graph};
     #[pymodule_export]

@@ -32,7 +32,7 @@ mod view;
 pub(super) use answer::Answer;
 pub(super) use artefact_meter::ArtefactMeter;
 pub use blend::mistake_shows;
-pub use clean::{CleanFacts, FoundFault};
+pub use clean::{CleanFacts, FoundFault, cleaned};
 pub(super) use edit::edit_params;
 pub use edit::{ClipEdit, edits_of};
 pub use error::LabError;

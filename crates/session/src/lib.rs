@@ -125,7 +125,7 @@ pub use labs::{
     DistanceMap, DriveHistory, DriveMoment, FittedMotion, FramePair, PathFacts, RegistrationFacts,
     spline_ends,
 };
-pub use labs::{JobKind, file_stem, metrics_of_clip, own_words, weight_curve};
+pub use labs::{JobKind, cleaned, file_stem, metrics_of_clip, own_words, weight_curve};
 pub use lesson::{Lesson, LessonPage};
 pub use library::{ClipGroup, Entry, Library, Origin, SourceFile, file_id, split_reference};
 pub use memory::{MemoryUse, PageMemory};

@@ -155,6 +155,33 @@ impl Layout {
         }
     }
 
+    /// Returns the scale of each dimension for these standard deviations, one for each: the value
+    /// by which its differences from the mean are divided. Constant dimensions have the scale 1.
+    #[must_use]
+    pub fn scales(&self, normalisation: Normalisation, deviations: &[f64]) -> Vec<f32> {
+        let scale_of = |dims: Range<usize>| {
+            let own = deviations.get(dims.clone()).unwrap_or_default();
+            match (own.iter().sum::<f64>() / dims.len() as f64) as f32 {
+                still if still <= 1e-6 || !still.is_finite() => 1.0,
+                // In clips that all walk straight on, noise of the heading must not dominate the
+                // cost.
+                scale => scale.max(MIN_SCALE),
+            }
+        };
+        match normalisation {
+            Normalisation::Dimension => {
+                (0..self.dims()).map(|dim| scale_of(dim..dim + 1)).collect()
+            }
+            Normalisation::Block => {
+                let of_block = |block| {
+                    let range = self.range(block);
+                    std::iter::repeat_n(scale_of(range.clone()), range.len())
+                };
+                Block::ALL.into_iter().flat_map(of_block).collect()
+            }
+        }
+    }
+
     /// Returns the first dimension of the body.
     pub(super) fn body(&self) -> usize {
         4 * self.ahead.len()
@@ -261,26 +288,8 @@ impl Features {
                 *square += (f64::from(value) - mean) * (f64::from(value) - mean);
             }
         }
-        let scale_of = |dims: Range<usize>| {
-            let deviations: f64 =
-                squares[dims.clone()].iter().map(|square| (square / number).sqrt()).sum();
-            match (deviations / dims.len() as f64) as f32 {
-                still if still <= 1e-6 || !still.is_finite() => 1.0,
-                // In clips that all walk straight on, noise of the heading must not dominate the
-                // cost.
-                scale => scale.max(MIN_SCALE),
-            }
-        };
-        let scales = match normalisation {
-            Normalisation::Dimension => (0..dims).map(|dim| scale_of(dim..dim + 1)).collect(),
-            Normalisation::Block => {
-                let of_block = |block| {
-                    let range = layout.range(block);
-                    std::iter::repeat_n(scale_of(range.clone()), range.len())
-                };
-                Block::ALL.into_iter().flat_map(of_block).collect()
-            }
-        };
+        let deviations: Vec<f64> = squares.iter().map(|square| (square / number).sqrt()).collect();
+        let scales = layout.scales(normalisation, &deviations);
         let means = sums.into_iter().map(|mean| mean as f32).collect();
         let mut features = Self { layout, rows: Vec::new(), means, scales };
         for row in rows.chunks_exact_mut(dims) {

@@ -255,6 +255,40 @@ impl DatabaseClip {
     }
 }
 
+/// Returns the raw features of a clip at [`RATE`], for every frame of which the trajectory lies
+/// inside it: row-major, [`Layout::dims`] numbers each. `every` is the number of frames from one
+/// row to the next. They are those of a [`Database`](super::Database) of this clip, before
+/// [`Features::normalise`](super::Features::normalise).
+///
+/// # Errors
+/// [`MatchError::NoFeet`] when hips or feet are unknown, [`MatchError::NotFinite`].
+pub fn feature_rows(
+    clip: &Clip,
+    roles: &Roles,
+    layout: &Layout,
+    every: usize,
+) -> Result<Vec<f32>, MatchError> {
+    let joints = FeatureJoints::find(clip, roles)?;
+    let roots = simulation_roots(&character_frames(clip, roles));
+    let body = body_features(clip, None, joints, &roots);
+    let mut rows = Vec::new();
+    let frames = clip.frames().saturating_sub(layout.horizon());
+    for frame in (0..frames).step_by(every.max(1)) {
+        let here = roots[frame].inverse();
+        let mut row = vec![0.0; layout.dims()];
+        for (index, ahead) in layout.ahead().iter().enumerate() {
+            let there = here.after(&roots[frame + ahead]);
+            write_trajectory(&mut row, layout.ahead().len(), index, &there);
+        }
+        row[layout.body()..].copy_from_slice(&body[frame]);
+        rows.extend(row);
+    }
+    if rows.iter().any(|value| !value.is_finite()) {
+        return Err(MatchError::NotFinite { name: clip.name().to_owned() });
+    }
+    Ok(rows)
+}
+
 /// Writes one ground frame of a trajectory, in the character's frame, into a row with this many
 /// times.
 pub(super) fn write_trajectory(row: &mut [f32], times: usize, index: usize, there: &Planar) {

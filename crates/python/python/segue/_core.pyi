@@ -9,6 +9,8 @@ from os import PathLike
 
 __all__ = [
     "Clip",
+    "CorpusGatherer",
+    "CorpusIndex",
     "Graph",
     "Matches",
     "PAGE",
@@ -16,6 +18,14 @@ __all__ = [
     "__version__",
     "builtin",
     "builtins",
+    "corpus_clip",
+    "corpus_columns",
+    "corpus_endings",
+    "corpus_failure",
+    "corpus_key",
+    "corpus_parts",
+    "corpus_query",
+    "corpus_record",
     "distance_matrix",
     "find_files",
     "graph",
@@ -156,6 +166,43 @@ class Matches:
         self, queries: NDArray[np.float32], k: int, weights: list[float] | None
     ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], NDArray[np.float32]]: ...
 
+@final
+class CorpusGatherer:
+    def __new__(cls, clean: bool) -> CorpusGatherer: ...
+    def add(self, key: str, record: bytes) -> None: ...
+    def finish(self) -> dict[str, Any]: ...
+
+@final
+class CorpusIndex:
+    def __new__(cls, centroids: bytes) -> CorpusIndex: ...
+    def nearest_lists(
+        self, query: NDArray[np.float32], probes: int
+    ) -> list[tuple[int, int, int, int]]: ...
+    def search(
+        self,
+        query: NDArray[np.float32],
+        lists: list[tuple[int, bytes]],
+        count: int,
+        by_clip: bool,
+    ) -> list[tuple[int, int, float]]: ...
+    @property
+    def moments(self) -> int: ...
+    def __len__(self) -> int: ...
+
+def corpus_endings() -> tuple[list[str], list[str], int]: ...
+def corpus_key(
+    name: str, data: bytes, beside: list[tuple[str, bytes]], clean: bool
+) -> str: ...
+def corpus_record(
+    name: str, data: bytes, beside: list[tuple[str, bytes]], clean: bool
+) -> bytes: ...
+def corpus_failure(message: str) -> bytes: ...
+def corpus_parts(record: bytes) -> list[tuple[bytes, bytes]]: ...
+def corpus_columns() -> list[list[str]]: ...
+def corpus_clip(name: str, data: bytes) -> Clip: ...
+def corpus_query(
+    clip: Clip, seconds: float, means: list[float], factors: list[float]
+) -> list[float] | None: ...
 def load_each(
     paths: list[Any],
     *,

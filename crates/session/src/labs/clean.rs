@@ -12,7 +12,7 @@ use crate::choices::Mending;
 use crate::labs::LabError;
 use crate::metrics::{Metric, MetricId};
 use crate::params::{Key, Params};
-use segue_motion::clean::{Fault, FaultKind};
+use segue_motion::clean::{Fault, FaultKind, MendOptions, find_faults, mend};
 use segue_motion::clip::Motion;
 use segue_motion::metrics::worst_foot_slide;
 use segue_text::{Message, msg};
@@ -101,6 +101,20 @@ impl Mends {
             && fault.confidence >= self.least
             && !self.skipped.contains(&(fault.kind, fault.frames.start))
     }
+}
+
+/// Returns a take mended as the Clean lab mends it by default, and the number of faults that were
+/// mended. Without a session, and all at once.
+///
+/// # Errors
+/// [`LabError`] if its feet cannot be held.
+pub fn cleaned(motion: &Arc<Motion>) -> Result<(Arc<Motion>, usize), LabError> {
+    let mends = Mends::of(&Params::default());
+    let faults = find_faults(motion);
+    let chosen: Vec<&Fault> =
+        faults.iter().filter(|fault| mends.is_on && mends.choose(fault)).collect();
+    let options = MendOptions { cutoff_hz: mends.cutoff_hz, ..MendOptions::default() };
+    Ok((mend(motion, &chosen, &options)?.motion, chosen.len()))
 }
 
 /// A fault of the take, and what is done about it.

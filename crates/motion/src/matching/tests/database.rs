@@ -129,3 +129,22 @@ fn corrected_contacts_are_those_of_the_database_at_its_rate_and_mirrored() {
     }
     assert_eq!(database.motions().len(), 2);
 }
+
+#[test]
+fn feature_rows_of_a_clip_are_those_of_its_database() {
+    let walk = Motion::analyze(synthesize(&Params::new(Action::Walk)).unwrap().clip);
+    let options = DatabaseOptions { mirrored: false, cycles: false, ..DatabaseOptions::default() };
+    let database = Database::new(vec![Arc::new(walk.clone())], &options).unwrap();
+    let layout = database.features().layout();
+    let clip = resample(walk.clip(), RATE as f64, Interpolation::Cubic).unwrap();
+    let rows = feature_rows(&clip, walk.roles(), layout, 3).unwrap();
+    let frames = database.valid().iter().step_by(3);
+    assert_eq!(rows.len() / layout.dims(), frames.len());
+    for (row, &frame) in rows.chunks_exact(layout.dims()).zip(frames) {
+        let mut row = row.to_vec();
+        database.features().normalise_row(&mut row);
+        assert_eq!(Some(row.as_slice()), database.features().row(frame as usize));
+    }
+    let short = clip.crop(0..layout.horizon()).unwrap();
+    assert_eq!(feature_rows(&short, walk.roles(), layout, 1), Ok(Vec::new()));
+}

@@ -26,6 +26,17 @@ fn faults_injected_are_listed_and_mended() {
 }
 
 #[test]
+fn cleaned_take_is_that_of_the_lab() {
+    let motion = |mend: &str| {
+        let session = opened(&format!("lab=clean&a=walk&clean_faults=4&clean_mend={mend}"));
+        session.main_outcome().expect("a result").motion.clone()
+    };
+    let (mended, count) = crate::cleaned(&motion("off")).expect("mended");
+    assert!(count >= 4, "{count}");
+    assert_eq!(mended.clip(), motion("on").clip());
+}
+
+#[test]
 fn sound_clip_stays_as_it_is() {
     let session = opened("lab=clean&a=walk");
     let view = opened("lab=view&a=walk");
