@@ -9,7 +9,7 @@ use segue_formats::ImportError;
 use segue_motion::clip::Motion;
 use segue_motion::skeleton::Role;
 use segue_session::bone_map::rig_of;
-use segue_session::reading::{Companion, ReadClip, ReadFile, ReadSetup, read};
+use segue_session::reading::{ReadClip, ReadFile, ReadSetup, SkeletonFile, read};
 use segue_session::{cleaned, metrics_of_clip};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
@@ -29,7 +29,12 @@ pub struct Options {
 /// skeletons beside it, of the options, and of the version of records. The name only tells the
 /// format; where a file is paired with another by its name, it is a part of the key.
 #[must_use]
-pub fn work_key(name: &str, bytes: &[u8], companions: &[Companion], options: &Options) -> String {
+pub fn work_key(
+    name: &str,
+    bytes: &[u8],
+    skeleton_files: &[SkeletonFile],
+    options: &Options,
+) -> String {
     let mut digest = Sha256::new();
     let mut part = |bytes: &[u8]| {
         // Lengths keep the parts apart.
@@ -40,8 +45,8 @@ pub fn work_key(name: &str, bytes: &[u8], companions: &[Companion], options: &Op
     part(&VERSION.to_le_bytes());
     part(env!("CARGO_PKG_VERSION").as_bytes());
     part(&[u8::from(options.clean)]);
-    part(neutral_name(name, companions).as_bytes());
-    for own in companions {
+    part(neutral_name(name, skeleton_files).as_bytes());
+    for own in skeleton_files {
         part(own.name.as_bytes());
         part(own.sha256.as_bytes());
     }
@@ -53,7 +58,7 @@ pub fn work_key(name: &str, bytes: &[u8], companions: &[Companion], options: &Op
     })
 }
 
-/// Reads a file, and makes all that a corpus has of it. `companions` are the skeletons beside it: the
+/// Reads a file, and makes all that a corpus has of it. `skeleton_files` are the skeletons beside it: the
 /// ASF files of an AMC file.
 ///
 /// A pure function that does not fail: a file that cannot be read, and a clip that cannot be placed,
@@ -62,15 +67,15 @@ pub fn work_key(name: &str, bytes: &[u8], companions: &[Companion], options: &Op
 pub fn process_file(
     name: &str,
     bytes: &[u8],
-    companions: &[Companion],
+    skeleton_files: &[SkeletonFile],
     options: &Options,
 ) -> FileRecord {
     let body = match StandardBody::new() {
         Ok(body) => body,
         Err(error) => return FileRecord::unreadable(error.to_string()),
     };
-    let name = neutral_name(name, companions);
-    let setup = ReadSetup { companions: companions.to_vec(), ..ReadSetup::default() };
+    let name = neutral_name(name, skeleton_files);
+    let setup = ReadSetup { skeleton_files: skeleton_files.to_vec(), ..ReadSetup::default() };
     let report = read(&name, bytes, &setup, &mut |_| true).unwrap_or_default();
     let is_archive = !report.is_one_file();
     let files = report.files.into_iter();
@@ -79,9 +84,9 @@ pub fn process_file(
 
 /// Returns the name under which a file is read: `clip` and its ending, so that files of the same
 /// content have the same record.
-fn neutral_name(name: &str, companions: &[Companion]) -> String {
+fn neutral_name(name: &str, skeleton_files: &[SkeletonFile]) -> String {
     let own = name.rsplit(['/', '\\']).next().unwrap_or(name);
-    if !companions.is_empty() {
+    if !skeleton_files.is_empty() {
         return own.to_owned();
     }
     let lower = own.to_lowercase();

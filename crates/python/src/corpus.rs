@@ -14,7 +14,7 @@ use segue_corpus::{
 };
 use segue_formats::{ARCHIVE_ENDINGS, ImportOptions, MOTION_ENDINGS};
 use segue_motion::clip::Motion;
-use segue_session::reading::Companion;
+use segue_session::reading::SkeletonFile;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex};
 
@@ -25,8 +25,8 @@ fn value_error(error: impl ToString) -> PyErr {
 /// Names and contents of the skeletons beside a file.
 type Beside = Vec<(String, Vec<u8>)>;
 
-fn companions(beside: &[(String, Vec<u8>)]) -> Vec<Companion> {
-    beside.iter().map(|(name, bytes)| Companion::new(name, bytes)).collect()
+fn skeleton_files(beside: &[(String, Vec<u8>)]) -> Vec<SkeletonFile> {
+    beside.iter().map(|(name, bytes)| SkeletonFile::new(name, bytes)).collect()
 }
 
 /// Returns the endings of motion files, those of archives, and the greatest size of a file, bytes.
@@ -45,7 +45,7 @@ pub(crate) fn corpus_key(
     beside: Beside,
     clean: bool,
 ) -> String {
-    py.detach(|| work_key(name, data, &companions(&beside), &Options { clean }))
+    py.detach(|| work_key(name, data, &skeleton_files(&beside), &Options { clean }))
 }
 
 /// Returns the record of a file. It never fails: what goes wrong is a row.
@@ -58,7 +58,7 @@ pub(crate) fn corpus_record<'py>(
     clean: bool,
 ) -> PyResult<Bound<'py, PyBytes>> {
     let made = py.detach(|| {
-        let process = || process_file(name, data, &companions(&beside), &Options { clean });
+        let process = || process_file(name, data, &skeleton_files(&beside), &Options { clean });
         // One file in a million must not end the other ones.
         let record = catch_unwind(AssertUnwindSafe(process))
             .unwrap_or_else(|_| FileRecord::unreadable("reading it has failed: an error of Segue"));
