@@ -46,6 +46,32 @@ onOneBackend("results of workers are those of a page without them", async ({ ope
   assert.ok((await workers(shared)).jobs > before - 1);
 });
 
+// Fails when no clip of a database goes to a worker, and when its measurement differs in a bit.
+onOneBackend("database of workers is that of a page without them", async ({ open }) => {
+  const link = "lab=match&scenario=spin&play=off";
+  const [alone, shared] = [await open(`${link}&pool=off`, SMALL), await open(`${link}&pool=2`, SMALL)];
+  assert.deepEqual(await result(shared), await result(alone));
+  const first = await workers(shared);
+  assert.ok(first.jobs >= 30 && first.running === 2 && first.replaced === 0, JSON.stringify(first));
+  assert.deepEqual(await workers(alone), { running: 0, jobs: 0, replaced: 0 });
+
+  // Clips that came from files, at several rates.
+  for (const { segue, load } of [alone, shared]) {
+    const clips = [];
+    for (let i = 0; i < 3; i++) clips.push((await load(`${i}.bvh`, striding({ frames: 2500, hertz: 0.8 + 0.1 * i, swing: 25 + 3 * i, fps: 30 * (i + 1) }))).clips[0].id);
+    await segue("set", { match_clips: clips.join(",") });
+  }
+  assert.deepEqual(await result(shared), await result(alone));
+  const second = await workers(shared);
+  assert.equal(second.jobs, first.jobs + 3);
+  // Other trajectory times need no worker, a database without mirror images does.
+  for (const values of [{ ahead_far: 0.9 }, { mirrored: false }]) {
+    for (const page of [alone, shared]) await page.segue("set", values);
+    assert.deepEqual(await result(shared), await result(alone), JSON.stringify(values));
+  }
+  assert.equal((await workers(shared)).jobs, second.jobs + 3);
+});
+
 // Fails when the jobs of a worker that ended are lost.
 onOneBackend("jobs of a worker that ends are done by another", async ({ open }) => {
   const alone = await open(`${GRAPH}&pool=off`, SMALL);

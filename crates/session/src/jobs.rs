@@ -14,6 +14,8 @@
 
 mod board;
 mod candidates;
+mod clip_parcel;
+mod database_clip;
 mod distances;
 mod motion_parcel;
 mod parcel;
@@ -25,6 +27,7 @@ mod tests;
 mod worker;
 
 pub(crate) use board::{JobBoard, Taken, Ticket};
+pub(crate) use database_clip::DatabaseClipTask;
 pub(crate) use distances::DistanceTask;
 pub use parcel::{Parcel, ParcelError};
 pub(crate) use registration::{RegistrationAnswer, RegistrationTask};

@@ -1,31 +1,23 @@
 //! Construction of databases in slices.
 
-use super::cycle;
 use super::database::{Database, DatabaseOptions, spread_all};
 use super::features::{Features, Layout, RATE};
+use super::measurement::{ClipMeasurement, MeasuredClip};
 use super::motion::{DatabaseClip, FeatureJoints};
 use super::pace::Pace;
 use super::search::{BoxBuilder, BoxIndex};
-use super::tags::{TagRange, suggest_tags};
 use super::{MatchError, Weights};
 use crate::blend::moving_joints_of;
-use crate::clip::{
-    Clip, ContactCorrections, ContactOptions, Contacts, Interpolation, Motion, RetargetError,
-    mirror, resample,
-};
-use crate::math::Planar;
-use crate::registration::{Progress, REFERENCE_HEIGHT_M};
-use crate::retarget::{MotionRetargeting, RetargetErrors, TargetBody};
-use crate::skeleton::{Roles, Side, Skeleton};
-use crate::transition::repeat_clip;
+use crate::clip::Motion;
+use crate::registration::Progress;
+use crate::retarget::RetargetErrors;
+use crate::skeleton::{Roles, Skeleton};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// The greatest number of frames of a database: features of 27 dimensions then take half a
 /// gigabyte.
 const MAX_FRAMES: usize = 2_000_000;
-/// Number of frames that are retargeted in one slice, in one of several passes.
-const FRAMES_PER_RETARGET: usize = 1_000;
 /// Number of frames whose features are gathered in one slice.
 const FRAMES_PER_GATHER: usize = 3_000;
 /// Number of frames that are sorted into boxes in one slice.
@@ -34,11 +26,11 @@ const FRAMES_PER_SORT: usize = 100_000;
 /// The construction of a [`Database`] in slices: call [`advance`](Self::advance) until it is
 /// complete, then [`finish`](Self::finish).
 ///
-/// Each clip is retargeted to the first clip's skeleton, resampled to [`RATE`] frames per second,
-/// measured, and mirrored; one of these steps for one clip is a slice. Then features are normalised
-/// and frames sorted into boxes. A clip that is a cycle is closed and repeats
-/// ([`DatabaseOptions::cycles`]). Any other clip that is too short for its trajectory features is
-/// left out and named in [`Database::skipped`].
+/// Each clip is measured ([`ClipMeasurement`]), in slices here, or elsewhere
+/// ([`set_measured`](Self::set_measured)). Then features are normalised and frames sorted into
+/// boxes, in the order of the clips, in whichever order they were measured. A clip that is a cycle
+/// repeats ([`DatabaseOptions::cycles`]). Any other clip that is too short for its trajectory
+/// features is left out and named in [`Database::skipped`].
 #[derive(Debug)]
 pub struct DatabaseBuilder {
     clips: Vec<Arc<Motion>>,
@@ -46,56 +38,22 @@ pub struct DatabaseBuilder {
     layout: Layout,
     skeleton: Arc<Skeleton>,
     roles: Roles,
+    /// The motions of each clip, as far as they are measured; empty for a database of known ones.
+    measured: Vec<Option<MeasuredClip>>,
     motions: Vec<Arc<DatabaseClip>>,
     skipped: Vec<MatchError>,
     retargeted: Vec<(String, RetargetErrors)>,
     longest_secs: f64,
-    /// The next clip, and its stage.
-    next: usize,
     stage: Stage,
 }
 
 #[derive(Debug)]
 enum Stage {
-    Prepare,
-    Retarget(Box<MotionRetargeting>),
-    Measure(PreparedClip),
-    Mirror,
-    MeasureMirrored(PreparedClip),
+    /// Clips are measured; with the one whose measurement is under way.
+    Measure(Option<Box<ClipMeasurement>>),
     Gather(GatheredFeatures),
     Normalise(GatheredFeatures),
     Sort(BoxSorting),
-}
-
-/// A clip at the database's rate; for a cycle one repetition, and its transform.
-#[derive(Clone, Debug)]
-struct PreparedClip {
-    clip: Arc<Clip>,
-    cycle: Option<Planar>,
-    /// The corrections of its contacts by hand.
-    corrections: ContactCorrections,
-}
-
-impl PreparedClip {
-    /// Returns the contacts of the feet, as corrected.
-    fn contacts(&self, roles: &Roles) -> Result<Contacts, MatchError> {
-        Ok(self.corrections.applied_to(&self.detected_contacts(roles)?))
-    }
-
-    /// Returns the contacts that are detected; for a cycle those of a repetition between others,
-    /// where no stance is cut off.
-    fn detected_contacts(&self, roles: &Roles) -> Result<Contacts, MatchError> {
-        let detect = |clip: &Clip| Contacts::detect(clip, roles, &ContactOptions::default());
-        let Some(cycle) = &self.cycle else {
-            return Ok(detect(&self.clip));
-        };
-        let frames = self.clip.frames();
-        let three = detect(&repeat_clip(&self.clip, cycle, 3)?);
-        Ok(Contacts::from_flags(
-            Side::BOTH
-                .map(|side| (frames..2 * frames).map(|frame| three.planted(side, frame)).collect()),
-        ))
-    }
 }
 
 /// The features of all motions, one after the other.
@@ -160,18 +118,19 @@ impl DatabaseBuilder {
             return Err(MatchError::TooManyFrames { frames: frames as usize, most: MAX_FRAMES });
         }
         let longest_secs = clips.iter().map(|clip| clip.clip().duration_secs()).fold(0.0, f64::max);
+        let measured = clips.iter().map(|_| None).collect();
         Ok(Self {
             clips,
             options: options.clone(),
             layout,
             skeleton,
             roles,
+            measured,
             motions: Vec::new(),
             skipped: Vec::new(),
             retargeted: Vec::new(),
             longest_secs,
-            next: 0,
-            stage: Stage::Prepare,
+            stage: Stage::Measure(None),
         })
     }
 
@@ -192,25 +151,43 @@ impl DatabaseBuilder {
             layout: Layout::new(features)?,
             skeleton: Arc::clone(&database.skeleton),
             roles: database.roles.clone(),
+            measured: Vec::new(),
             motions: database.motions.clone(),
             skipped: database.skipped.clone(),
             retargeted: database.retargeted.clone(),
             longest_secs: longest,
-            next: 0,
             stage: Stage::Gather(GatheredFeatures::new()),
         })
+    }
+
+    /// Returns the first clip that is not measured, by its number; `None` once all are.
+    #[must_use]
+    pub fn next_clip(&self) -> Option<usize> {
+        self.measured.iter().position(Option::is_none)
+    }
+
+    /// Returns all clips that are not measured, by their numbers.
+    pub fn unmeasured(&self) -> impl Iterator<Item = usize> {
+        self.measured.iter().enumerate().filter(|(_, known)| known.is_none()).map(|(clip, _)| clip)
+    }
+
+    /// Takes in a clip that was measured elsewhere. Clips may arrive in any order; one that is
+    /// already there, or none of this database, is ignored.
+    pub fn set_measured(&mut self, clip: usize, measured: MeasuredClip) {
+        if let Some(place @ None) = self.measured.get_mut(clip) {
+            *place = Some(measured);
+        }
     }
 
     /// Returns the progress, of 1000.
     #[must_use]
     pub fn progress(&self) -> Progress {
-        let of_clip =
-            |part: usize| (4 * self.next + part) * CLIPS_SHARE / (4 * self.clips.len()).max(1);
         let done = match &self.stage {
-            Stage::Prepare | Stage::Retarget(_) => of_clip(0),
-            Stage::Measure(_) => of_clip(1),
-            Stage::Mirror => of_clip(2),
-            Stage::MeasureMirrored(_) => of_clip(3),
+            Stage::Measure(under_way) => {
+                let steps = under_way.as_ref().map_or(0, |measurement| measurement.steps_done());
+                let clips = self.measured.iter().flatten().count();
+                (4 * clips + steps) * CLIPS_SHARE / (4 * self.clips.len()).max(1)
+            }
             Stage::Gather(gathering) => {
                 CLIPS_SHARE + GATHER_SHARE * gathering.motions() / self.motions.len().max(1)
             }
@@ -232,78 +209,28 @@ impl DatabaseBuilder {
     /// [`MatchError`] when a clip cannot be retargeted to the first one's skeleton or mirrored, has
     /// no feet there or values that are not finite, or no clip has a frame that can be searched.
     pub fn advance(&mut self) -> Result<Progress, MatchError> {
-        match std::mem::replace(&mut self.stage, Stage::Prepare) {
-            Stage::Prepare => match self.clips.get(self.next) {
-                Some(from) if *from.clip().skeleton() == self.skeleton => {
-                    self.stage = self.measure_next(Arc::clone(from.clip()))?;
-                }
-                Some(from) => {
-                    let first = self.clips.first().unwrap_or(from);
-                    let (body, options) = (TargetBody::of(first), self.options.retarget);
-                    let begun = MotionRetargeting::new(Arc::clone(from), body, options);
-                    let begun = begun.map_err(|error| self.not_retargeted(error))?;
-                    self.stage = Stage::Retarget(Box::new(begun));
-                }
-                None => self.stage = Stage::Gather(GatheredFeatures::new()),
-            },
-            Stage::Retarget(retargeting) => {
-                let next = retargeting.advance(FRAMES_PER_RETARGET);
-                self.stage = match next.map_err(|error| self.not_retargeted(error))? {
-                    ControlFlow::Continue(rest) => Stage::Retarget(Box::new(rest)),
-                    ControlFlow::Break(made) => {
-                        if let Some(from) = self.clips.get(self.next).filter(|_| !made.is_same_rig)
-                        {
-                            self.retargeted.push((from.clip().name().to_owned(), made.report));
+        match std::mem::replace(&mut self.stage, Stage::Measure(None)) {
+            Stage::Measure(under_way) => {
+                let next = self.next_clip();
+                let next = next.and_then(|next| Some((next, self.clips.get(next)?)));
+                if let Some((next, from)) = next {
+                    let under_way = under_way.filter(|one| one.source() == next);
+                    let measurement = if let Some(measurement) = under_way {
+                        *measurement
+                    } else {
+                        let first = Arc::clone(self.clips.first().unwrap_or(from));
+                        ClipMeasurement::new(Arc::clone(from), first, next, &self.options)?
+                    };
+                    match measurement.advance()? {
+                        ControlFlow::Continue(rest) => {
+                            self.stage = Stage::Measure(Some(Box::new(rest)));
                         }
-                        self.measure_next(Arc::new(made.clip))?
+                        ControlFlow::Break(measured) => self.set_measured(next, measured),
                     }
-                };
-            }
-            Stage::Measure(round) => {
-                let contacts = round.contacts(&self.roles)?;
-                let mut motion = DatabaseClip::new(
-                    round.clip,
-                    round.cycle,
-                    &self.roles,
-                    contacts,
-                    self.next,
-                    false,
-                )?;
-                motion.tags = self.tags_of(&motion);
-                self.motions.push(Arc::new(motion));
-                self.stage = if self.options.mirrored { Stage::Mirror } else { self.next_clip() };
-            }
-            Stage::Mirror => {
-                self.stage = match self.motions.last() {
-                    Some(motion) => {
-                        let clip = mirror(motion.clip(), &self.roles).map_err(|error| {
-                            MatchError::Mirror { name: motion.clip().name().to_owned(), error }
-                        })?;
-                        Stage::MeasureMirrored(PreparedClip {
-                            clip: Arc::new(clip),
-                            cycle: motion.cycle().map(|cycle| cycle.mirrored()),
-                            // The contacts of the original are mirrored.
-                            corrections: ContactCorrections::default(),
-                        })
-                    }
-                    None => self.next_clip(),
-                };
-            }
-            Stage::MeasureMirrored(round) => {
-                if let Some(original) = self.motions.last() {
-                    let contacts = original.contacts().mirrored();
-                    let mut motion = DatabaseClip::new(
-                        round.clip,
-                        round.cycle,
-                        &self.roles,
-                        contacts,
-                        self.next,
-                        true,
-                    )?;
-                    motion.tags.clone_from(&original.tags);
-                    self.motions.push(Arc::new(motion));
+                } else {
+                    self.join_measured();
+                    self.stage = Stage::Gather(GatheredFeatures::new());
                 }
-                self.stage = self.next_clip();
             }
             Stage::Gather(mut gathering) => {
                 let until = gathering.rows.len() + FRAMES_PER_GATHER * self.layout.dims();
@@ -363,53 +290,23 @@ impl DatabaseBuilder {
         }
     }
 
-    fn next_clip(&mut self) -> Stage {
-        self.next += 1;
-        Stage::Prepare
-    }
-
-    fn not_retargeted(&self, error: RetargetError) -> MatchError {
-        let clip = self.clips.get(self.next).map(|from| from.clip().name().to_owned());
-        MatchError::Retarget { name: clip.unwrap_or_default(), error }
-    }
-
-    /// Returns the stage after the next clip is on the first one's skeleton.
-    fn measure_next(&mut self, clip: Arc<Clip>) -> Result<Stage, MatchError> {
-        let Some(from) = self.clips.get(self.next) else { return Ok(Stage::Prepare) };
-        let round = self.prepared(from, clip)?;
-        if round.cycle.is_some() || round.clip.frames() > self.layout.horizon() {
-            return Ok(Stage::Measure(round));
+    /// Lists the motions of all clips in their order, with the clips that have none.
+    fn join_measured(&mut self) {
+        for (from, measured) in self.clips.iter().zip(std::mem::take(&mut self.measured)) {
+            let Some(MeasuredClip { motions, retargeted }) = measured else { continue };
+            let clip = from.clip();
+            if let Some(errors) = retargeted {
+                self.retargeted.push((clip.name().to_owned(), errors));
+            }
+            if motions.is_empty() {
+                self.skipped.push(MatchError::TooShort {
+                    name: clip.name().to_owned(),
+                    secs: clip.duration_secs(),
+                    horizon_secs: self.layout.horizon() as f64 / RATE as f64,
+                });
+            }
+            self.motions.extend(motions.into_iter().map(Arc::new));
         }
-        self.skipped.push(MatchError::TooShort {
-            name: from.clip().name().to_owned(),
-            secs: from.clip().duration_secs(),
-            horizon_secs: self.layout.horizon() as f64 / RATE as f64,
-        });
-        self.next += 1;
-        Ok(Stage::Prepare)
-    }
-
-    /// Returns a clip, which is on the first one's skeleton, at the database's rate.
-    fn prepared(&self, from: &Motion, mut clip: Arc<Clip>) -> Result<PreparedClip, MatchError> {
-        let corrections = from.contact_corrections();
-        if self.options.cycles
-            && let Some(looped) = cycle::closed(&clip, &self.roles, corrections, from.is_cycle())
-            && let Some((clip, cycle)) = cycle::at_rate(&looped)
-        {
-            let ratio = clip.frames() as f64 / looped.clip.frames().max(1) as f64;
-            let corrections = corrections.at_rate(ratio);
-            return Ok(PreparedClip { clip: Arc::new(clip), cycle: Some(cycle), corrections });
-        }
-        let corrections = corrections.at_rate(RATE as f64 / clip.fps());
-        if clip.fps() != RATE as f64 {
-            clip = Arc::new(resample(&clip, RATE as f64, Interpolation::Cubic)?);
-        }
-        Ok(PreparedClip { clip, cycle: None, corrections })
-    }
-
-    fn tags_of(&self, motion: &DatabaseClip) -> Vec<TagRange> {
-        let scale = f64::from(self.roles.body_height(&self.skeleton)) / REFERENCE_HEIGHT_M;
-        suggest_tags(motion.roots(), RATE as f64, scale)
     }
 
     fn normalised(&self, gathering: GatheredFeatures) -> Result<BoxSorting, MatchError> {

@@ -279,9 +279,7 @@ impl Database {
     pub fn retagged(&self, source: usize, tags: &[TagRange]) -> Self {
         let mut tagged = self.clone();
         for motion in tagged.motions.iter_mut().filter(|motion| motion.source() == source) {
-            let mut changed = DatabaseClip::clone(motion);
-            changed.tags = tags.to_vec();
-            *motion = Arc::new(changed);
+            *motion = Arc::new(DatabaseClip::clone(motion).with_tags(tags.to_vec()));
         }
         tagged.tags = spread_all(&tagged.motions);
         tagged.masks = tagged.index.masks(&tagged.tags);

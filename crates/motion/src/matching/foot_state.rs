@@ -5,21 +5,21 @@ use glam::Vec3;
 
 /// The state of a foot in the clip, in the frame that plays.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct FootState {
+pub struct FootState {
     /// Whether it is planted.
-    pub(super) planted: bool,
+    pub planted: bool,
     /// The number of frames for which it stays planted, including this one; shortly before it
     /// lands, the length of the next stance. 0 otherwise.
-    pub(super) stance_frames: usize,
+    pub stance_frames: usize,
     /// The height of its lowest point above the usual height of a planted foot, metres.
-    pub(super) above_m: f32,
+    pub above_m: f32,
     /// The amount by which its lowest point comes down in the next frames, metres.
-    pub(super) descent_m: f32,
+    pub descent_m: f32,
     /// The index of the point that moves least over the ground in the clip; while the foot is
     /// pulled along, another point may seem to stand.
-    pub(super) stillest: usize,
+    pub stillest: usize,
     /// The velocity of that point in the frame of the character, metres per second.
-    pub(super) velocity_mps: Vec3,
+    pub velocity_mps: Vec3,
 }
 
 impl FootState {

@@ -15,21 +15,41 @@ use std::sync::Arc;
 
 /// A clip of a database, with its measurements.
 #[derive(Clone, Debug, PartialEq)]
-pub struct DatabaseClip {
-    clip: Arc<Clip>,
-    roots: Vec<Planar>,
-    contacts: Contacts,
-    ground_m: f32,
-    stand_m: f32,
-    /// Left and right, frame by frame.
-    feet: [Vec<FootState>; 2],
-    body: Vec<[f32; BODY]>,
-    pace: Pace,
-    source: usize,
-    mirrored: bool,
+pub struct DatabaseClip(DatabaseClipParts);
+
+/// The parts of a [`DatabaseClip`], as they travel between programs. All lists have an element for
+/// each frame of the clip.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DatabaseClipParts {
+    /// The clip, on the database's skeleton and at [`RATE`].
+    pub clip: Arc<Clip>,
+    /// The simulation roots: `clip_from_simulation`.
+    pub roots: Vec<Planar>,
+    /// The contacts of the feet.
+    pub contacts: Contacts,
+    /// The height of the ground under the clip, metres.
+    pub ground_m: f32,
+    /// The usual height of a planted foot's lowest point, metres.
+    pub stand_m: f32,
+    /// The states of the left and the right foot.
+    pub feet: [Vec<FootState>; 2],
+    /// The features of the body, in the order of [`Layout`](super::Layout).
+    pub body: Vec<[f32; BODY]>,
+    /// The greatest speeds.
+    pub pace: Pace,
+    /// The number of its source among the clips of the database.
+    pub source: usize,
+    /// Whether it is a mirrored copy.
+    pub mirrored: bool,
     /// The transform of one repetition of a cycle: `clip_from_clip`.
-    cycle: Option<Planar>,
-    pub(super) tags: Vec<TagRange>,
+    pub cycle: Option<Planar>,
+    /// Its tags, at [`RATE`].
+    pub tags: Vec<TagRange>,
+}
+
+impl DatabaseClipParts {
+    /// The number of features of the body.
+    pub const BODY_FEATURES: usize = BODY;
 }
 
 /// The joints of the features.
@@ -86,7 +106,7 @@ impl DatabaseClip {
         for foot in feet.iter_mut().flatten() {
             foot.above_m -= stand_m;
         }
-        Ok(Self {
+        Ok(Self(DatabaseClipParts {
             pace: Pace::of(&clip, &roots),
             ground_m,
             stand_m,
@@ -99,73 +119,97 @@ impl DatabaseClip {
             mirrored,
             cycle,
             tags: Vec::new(),
-        })
+        }))
+    }
+
+    /// Returns its parts.
+    #[must_use]
+    pub fn into_parts(self) -> DatabaseClipParts {
+        self.0
+    }
+
+    /// Returns the clip with these parts; `None` if it has no frame, or lists of different lengths.
+    #[must_use]
+    pub fn of_parts(parts: DatabaseClipParts) -> Option<Self> {
+        let frames = parts.clip.frames();
+        let (joints, [left, right]) = (parts.clip.skeleton().len(), &parts.feet);
+        let lengths = [parts.roots.len(), parts.contacts.frames(), left.len(), right.len()];
+        let are_alike = parts.body.len() == frames && lengths.into_iter().all(|len| len == frames);
+        let is_whole = frames > 0 && are_alike && parts.pace.joints_radps.len() == joints;
+        is_whole.then_some(Self(parts))
+    }
+
+    /// Returns the same clip with other tags.
+    #[must_use]
+    pub(super) fn with_tags(mut self, tags: Vec<TagRange>) -> Self {
+        self.0.tags = tags;
+        self
     }
 
     /// Returns the clip, on the database's skeleton and at [`RATE`].
     #[must_use]
     pub fn clip(&self) -> &Arc<Clip> {
-        &self.clip
+        &self.0.clip
     }
 
     /// Returns the simulation root of each frame: `clip_from_simulation`.
     #[must_use]
     pub fn roots(&self) -> &[Planar] {
-        &self.roots
+        &self.0.roots
     }
 
     /// Returns the greatest speeds of the clip.
     #[must_use]
     pub fn pace(&self) -> &Pace {
-        &self.pace
+        &self.0.pace
     }
 
     /// Returns the contacts of the feet.
     #[must_use]
     pub fn contacts(&self) -> &Contacts {
-        &self.contacts
+        &self.0.contacts
     }
 
     /// Returns the height of the ground under the clip, metres.
     #[must_use]
     pub fn ground_m(&self) -> f32 {
-        self.ground_m
+        self.0.ground_m
     }
 
     /// Returns the usual height of a planted foot's lowest point, metres. It may be above the
     /// ground, which feet set lower when they dip into the floor at push-off.
     pub(super) fn stand_m(&self) -> f32 {
-        self.stand_m
+        self.0.stand_m
     }
 
     /// Returns the states of the feet in a frame: left, right.
     pub(super) fn feet(&self, frame: usize) -> [FootState; 2] {
-        [0, 1].map(|side: usize| self.feet[side].get(frame).copied().unwrap_or_default())
+        [0, 1].map(|side: usize| self.0.feet[side].get(frame).copied().unwrap_or_default())
     }
 
     /// Returns the number of its source among the clips from which the database was built.
     #[must_use]
     pub fn source(&self) -> usize {
-        self.source
+        self.0.source
     }
 
     /// Returns whether it is a mirrored copy.
     #[must_use]
     pub fn is_mirrored(&self) -> bool {
-        self.mirrored
+        self.0.mirrored
     }
 
     /// Returns whether it is a cycle, which repeats: its last frame is followed by its first.
     #[must_use]
     pub fn is_cycle(&self) -> bool {
-        self.cycle.is_some()
+        self.0.cycle.is_some()
     }
 
     /// Returns the transform of one repetition of a cycle: the frame after the last is the first,
     /// moved by this over the ground. `None` for a clip that ends.
     #[must_use]
     pub fn cycle(&self) -> Option<Planar> {
-        self.cycle
+        self.0.cycle
     }
 
     /// Returns the next frame; `None` at the end of a clip that is not a cycle.
@@ -173,7 +217,7 @@ impl DatabaseClip {
     pub fn next(&self, frame: usize) -> Option<usize> {
         match frame + 1 {
             next if next < self.frames() => Some(next),
-            _ => self.cycle.map(|_| 0),
+            _ => self.0.cycle.map(|_| 0),
         }
     }
 
@@ -186,13 +230,13 @@ impl DatabaseClip {
     /// Returns its tags, at [`RATE`].
     #[must_use]
     pub fn tags(&self) -> &[TagRange] {
-        &self.tags
+        &self.0.tags
     }
 
     /// Returns the number of frames.
     #[must_use]
     pub fn frames(&self) -> usize {
-        self.clip.frames()
+        self.0.clip.frames()
     }
 
     /// Returns the number of frames, from frame 0 on, whose trajectory lies inside the clip: all
@@ -206,21 +250,21 @@ impl DatabaseClip {
     /// clip is extrapolated by its last half second.
     #[must_use]
     pub fn root(&self, frame: usize) -> Planar {
-        if let Some(root) = self.roots.get(frame) {
+        if let Some(root) = self.0.roots.get(frame) {
             return *root;
         }
-        let Some(last) = self.roots.last() else {
+        let Some(last) = self.0.roots.last() else {
             return Planar::IDENTITY;
         };
-        if let Some(cycle) = &self.cycle {
-            return cycle_frame(&self.roots, cycle, isize::try_from(frame).unwrap_or(0));
+        if let Some(cycle) = &self.0.cycle {
+            return cycle_frame(&self.0.roots, cycle, isize::try_from(frame).unwrap_or(0));
         }
-        let behind = self.roots.len() - 1;
+        let behind = self.0.roots.len() - 1;
         let over = (frame - behind) as f64;
         // The steps of half a second: a single one would extrapolate the error of the smoothing at
         // the end.
         let steps = behind.min(RATE / 2);
-        let Some(before) = behind.checked_sub(steps.max(1)).and_then(|at| self.roots.get(at))
+        let Some(before) = behind.checked_sub(steps.max(1)).and_then(|at| self.0.roots.get(at))
         else {
             return *last;
         };
@@ -247,7 +291,7 @@ impl DatabaseClip {
             let there = here.after(&self.root(frame + ahead));
             write_trajectory(row, times, index, &there);
         }
-        if let (Some(body), Some(to)) = (self.body.get(frame), row.get_mut(layout.body()..)) {
+        if let (Some(body), Some(to)) = (self.0.body.get(frame), row.get_mut(layout.body()..)) {
             for (to, value) in to.iter_mut().zip(body) {
                 *to = *value;
             }

@@ -14,7 +14,7 @@ use std::ops::Range;
 const TOLERANCE_RADIANS: f32 = 0.01;
 
 /// A quantity of the directions alone, and of the result.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Compared<T> {
     /// That of the bones' directions alone.
     pub directions: T,
@@ -24,7 +24,7 @@ pub struct Compared<T> {
 
 /// The distance between the end of a limb and the place where the source has it, at the scale of
 /// the body.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct LimbReach {
     /// The largest distance, centimetres.
     pub worst_cm: f64,
@@ -33,7 +33,7 @@ pub struct LimbReach {
 }
 
 /// The slide of planted feet.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct SkatingValues {
     /// The slide in the worst stance, centimetres.
     pub worst_cm: f64,
@@ -44,7 +44,7 @@ pub struct SkatingValues {
 }
 
 /// The errors of a retargeted motion, each beside that of the bones' directions alone.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct RetargetErrors {
     /// The left and the right foot; `None` where one of the bodies has no such leg.
     pub feet: [Option<Compared<LimbReach>>; 2],

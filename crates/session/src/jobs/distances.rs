@@ -64,7 +64,7 @@ impl Task for DistanceTask {
         Ok(answer)
     }
 
-    fn pack(answer: DistanceAnswer) -> Result<Parcel, ParcelError> {
+    fn pack(_clips: &[JobClip], answer: DistanceAnswer) -> Result<Parcel, ParcelError> {
         let head: Vec<TileHead> = (answer.iter())
             .map(|tile| TileHead {
                 cells: tile.rms_m.len(),
@@ -84,7 +84,7 @@ impl Task for DistanceTask {
         Ok(parcel)
     }
 
-    fn unpack(&self, parcel: Parcel) -> Result<DistanceAnswer, ParcelError> {
+    fn unpack(&self, _clips: &[JobClip], parcel: Parcel) -> Result<DistanceAnswer, ParcelError> {
         let heads: Vec<TileHead> = serde_json::from_str(&parcel.head)?;
         let (is_single, all) = (heads.len() == 1, parcel.floats);
         let (mut floats, mut bytes) = (&all[..], &parcel.bytes[..]);

@@ -1,12 +1,10 @@
 //! Clips on their way to a worker.
 
-use super::parcel::{put, take, take_floats};
+use super::clip_parcel::{ClipHead, put_clip};
+use super::parcel::{put, take};
 use super::{Parcel, ParcelError};
-use glam::{DVec2, Quat, Vec3};
-use segue_motion::clip::{
-    Clip, ContactCorrection, ContactOptions, Contacts, FootOptions, JointTranslations, Motion,
-    Provenance,
-};
+use glam::DVec2;
+use segue_motion::clip::{ContactCorrection, ContactOptions, Contacts, FootOptions, Motion};
 use segue_motion::math::Planar;
 use segue_motion::skeleton::{FoldedChain, Joint, Roles, Side, Skeleton};
 use serde::{Deserialize, Serialize};
@@ -14,17 +12,12 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A clip without its arrays.
+/// A motion without its arrays.
 #[derive(Serialize, Deserialize)]
 struct Head<'a> {
-    name: Cow<'a, str>,
+    clip: ClipHead<'a>,
     joints: Cow<'a, [Joint]>,
     above: Cow<'a, Option<FoldedChain>>,
-    fps: f64,
-    frames: usize,
-    provenance: Provenance,
-    /// The joints that have translations.
-    moving: Vec<usize>,
     roles: Cow<'a, Roles>,
     contacts: ContactOptions,
     /// The height of the ground that is set by hand.
@@ -44,13 +37,9 @@ pub(super) fn pack(motion: &Motion) -> Result<Parcel, ParcelError> {
     let clip = motion.clip();
     let skeleton = clip.skeleton();
     let head = Head {
-        name: Cow::Borrowed(clip.name()),
+        clip: ClipHead::of(clip),
         joints: Cow::Borrowed(skeleton.joints()),
         above: Cow::Owned(skeleton.folded_chain().cloned()),
-        fps: clip.fps(),
-        frames: clip.frames(),
-        provenance: clip.provenance(),
-        moving: clip.translations().iter().map(|track| track.joint).collect(),
         roles: Cow::Borrowed(motion.roles()),
         contacts: motion.feet().contacts,
         set_ground_m: motion.feet().ground_m,
@@ -62,19 +51,8 @@ pub(super) fn pack(motion: &Motion) -> Result<Parcel, ParcelError> {
         known: [motion.known_ground_frames().is_some(), motion.known_contacts().is_some()],
         ground_m: motion.known_ground_m(),
     };
-    let numbers = clip.frames() * (4 * skeleton.len() + 3 * (1 + clip.translations().len()));
-    let mut floats = Vec::with_capacity(numbers);
-    for frame in 0..clip.frames() {
-        for rotation in clip.rotations(frame) {
-            floats.extend_from_slice(&rotation.to_array());
-        }
-    }
-    let tracks = clip.translations().iter().map(|track| &track.values[..]);
-    for values in std::iter::once(clip.root_translations()).chain(tracks) {
-        for value in values {
-            floats.extend_from_slice(&value.to_array());
-        }
-    }
+    let mut floats = Vec::new();
+    put_clip(&mut floats, clip);
     let mut bytes = Vec::with_capacity(26 * clip.frames());
     for place in motion.known_ground_frames().unwrap_or_default() {
         put(&mut bytes, &[place.yaw, place.shift.x, place.shift.y]);
@@ -90,21 +68,10 @@ pub(super) fn pack(motion: &Motion) -> Result<Parcel, ParcelError> {
 /// Restores a clip.
 pub(super) fn unpack(parcel: &Parcel) -> Result<Motion, ParcelError> {
     let head: Head<'_> = serde_json::from_str(&parcel.head)?;
-    let (frames, mut floats, mut bytes) = (head.frames, &parcel.floats[..], &parcel.bytes[..]);
-    let numbers = |each: usize, more: usize| {
-        frames.checked_mul(each).and_then(|all| all.checked_mul(more)).ok_or(ParcelError::Arrays)
-    };
-    let rotations = take_floats(&mut floats, numbers(head.joints.len(), 4)?)?;
-    let rotations = rotations.chunks_exact(4).map(|q| Quat::from_xyzw(q[0], q[1], q[2], q[3]));
-    let mut values = || -> Result<Vec<Vec3>, ParcelError> {
-        let all = take_floats(&mut floats, numbers(1, 3)?)?;
-        Ok(all.chunks_exact(3).map(Vec3::from_slice).collect())
-    };
-    let root = values()?;
-    let mut tracks = Vec::new();
-    for joint in head.moving {
-        tracks.push(JointTranslations { joint, values: values()? });
-    }
+    let (frames, mut floats, mut bytes) = (head.clip.frames, &parcel.floats[..], &parcel.bytes[..]);
+    let skeleton = Skeleton::new(head.joints.into_owned()).map_err(|_| ParcelError::Arrays)?;
+    let skeleton = Arc::new(skeleton.with_folded_chain(head.above.into_owned()));
+    let clip = head.clip.take(&skeleton, &mut floats)?;
     let [knows_places, knows_contacts] = head.known;
     let places = take::<[f64; 3]>(&mut bytes, if knows_places { frames } else { 0 })?;
     let places =
@@ -114,17 +81,11 @@ pub(super) fn unpack(parcel: &Parcel) -> Result<Motion, ParcelError> {
         Ok(flags.into_iter().map(|flag| flag != 0).collect())
     };
     let contacts = [flags()?, flags()?];
-    let skeleton = Skeleton::new(head.joints.into_owned()).map_err(|_| ParcelError::Arrays)?;
-    let skeleton = Arc::new(skeleton.with_folded_chain(head.above.into_owned()));
-    let clip = Clip::new(head.name, skeleton, head.fps, rotations.collect(), root)
-        .and_then(|clip| clip.with_translations(tracks))
-        .map_err(|_| ParcelError::Arrays)?;
     let corrections = head.corrections.into_iter().map(|(is_left, frames, planted)| {
         let side = if is_left { Side::Left } else { Side::Right };
         ContactCorrection { side, frames, planted }
     });
     let feet = FootOptions { contacts: head.contacts, ground_m: head.set_ground_m };
-    let clip = clip.with_provenance(head.provenance);
     let mut motion = if knows_places {
         Motion::with_ground_frames(clip, &head.roles, places)
     } else {

@@ -40,7 +40,17 @@ pub(super) fn take<T: Pod>(bytes: &mut &[u8], count: usize) -> Result<Vec<T>, Pa
 
 /// Moves `count` numbers from the front of `floats`.
 pub(super) fn take_floats(floats: &mut &[f32], count: usize) -> Result<Vec<f32>, ParcelError> {
+    Ok(split_floats(floats, count, 1)?.to_vec())
+}
+
+/// Splits `rows` rows of `columns` numbers from the front of `floats`.
+pub(super) fn split_floats<'a>(
+    floats: &mut &'a [f32],
+    rows: usize,
+    columns: usize,
+) -> Result<&'a [f32], ParcelError> {
+    let count = rows.checked_mul(columns).ok_or(ParcelError::Arrays)?;
     let (now, later) = floats.split_at_checked(count).ok_or(ParcelError::Arrays)?;
     *floats = later;
-    Ok(now.to_vec())
+    Ok(now)
 }

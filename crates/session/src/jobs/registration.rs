@@ -88,7 +88,7 @@ impl Task for RegistrationTask {
         Ok(RegistrationAnswer { matrix: answer, curves })
     }
 
-    fn pack(answer: RegistrationAnswer) -> Result<Parcel, ParcelError> {
+    fn pack(_clips: &[JobClip], answer: RegistrationAnswer) -> Result<Parcel, ParcelError> {
         let parts = answer.curves.map(|curves| curves.map(|curves| curves.parts()));
         let head = Head {
             matrix: answer.matrix.as_ref().map(|matrix| MatrixHead {
@@ -107,7 +107,11 @@ impl Task for RegistrationTask {
         Ok(parcel)
     }
 
-    fn unpack(&self, parcel: Parcel) -> Result<RegistrationAnswer, ParcelError> {
+    fn unpack(
+        &self,
+        _clips: &[JobClip],
+        parcel: Parcel,
+    ) -> Result<RegistrationAnswer, ParcelError> {
         let head: Head = serde_json::from_str(&parcel.head)?;
         let matrix = match head.matrix {
             Some(MatrixHead { window, stride, first, columns }) => Some(

@@ -57,7 +57,7 @@ impl Task for StreamTask {
         Ok(rows?)
     }
 
-    fn pack(answer: Vec<StreamRow>) -> Result<Parcel, ParcelError> {
+    fn pack(_clips: &[JobClip], answer: Vec<StreamRow>) -> Result<Parcel, ParcelError> {
         let head: Vec<RowHead> = (answer.iter())
             .map(|row| RowHead {
                 part: row.part,
@@ -74,7 +74,7 @@ impl Task for StreamTask {
         Ok(parcel)
     }
 
-    fn unpack(&self, parcel: Parcel) -> Result<Vec<StreamRow>, ParcelError> {
+    fn unpack(&self, _clips: &[JobClip], parcel: Parcel) -> Result<Vec<StreamRow>, ParcelError> {
         let heads: Vec<RowHead> = serde_json::from_str(&parcel.head)?;
         let (mut floats, mut bytes) = (&parcel.floats[..], &parcel.bytes[..]);
         let row = |RowHead { part, blocks, candidates }: RowHead| {

@@ -1,5 +1,6 @@
 //! The kinds of jobs.
 
+use super::database_clip::DatabaseClipTask;
 use super::distances::DistanceTask;
 use super::motion_parcel;
 use super::registration::RegistrationTask;
@@ -20,11 +21,11 @@ pub(crate) trait Task: Kind<Output = Self::Answer> + Into<AnyTask> {
     /// but changes no bit of the answer.
     fn run(&self, clips: &[JobClip], memory: &mut WorkerMemory) -> Result<Self::Answer, JobError>;
 
-    /// Packs an answer for its transfer.
-    fn pack(answer: Self::Answer) -> Result<Parcel, ParcelError>;
+    /// Packs an answer for its transfer; the clips are those of the job.
+    fn pack(clips: &[JobClip], answer: Self::Answer) -> Result<Parcel, ParcelError>;
 
-    /// Restores an answer from its parcel.
-    fn unpack(&self, parcel: Parcel) -> Result<Self::Answer, ParcelError>;
+    /// Restores an answer from its parcel; the clips are those of the job.
+    fn unpack(&self, clips: &[JobClip], parcel: Parcel) -> Result<Self::Answer, ParcelError>;
 
     /// Returns a number that jobs have in common which profit from the memory of one worker.
     fn affinity(&self) -> u64;
@@ -90,7 +91,7 @@ impl Job {
     /// # Errors
     /// [`ParcelError`] when it is none.
     pub fn answer(&self, parcel: Parcel) -> Result<Answer, ParcelError> {
-        self.task.unpack(parcel)
+        self.task.unpack(&self.clips, parcel)
     }
 
     /// Returns a number that jobs have in common which profit from the memory of one worker.
@@ -133,9 +134,11 @@ macro_rules! tasks {
                 }))
             }
 
-            fn unpack(&self, parcel: Parcel) -> Result<Answer, ParcelError> {
+            fn unpack(&self, clips: &[JobClip], parcel: Parcel) -> Result<Answer, ParcelError> {
                 Ok(Answer(match self {
-                    $(Self::$kind(task) => AnyAnswer::$kind(Box::new(task.unpack(parcel)?)),)*
+                    $(Self::$kind(task) => {
+                        AnyAnswer::$kind(Box::new(task.unpack(clips, parcel)?))
+                    })*
                 }))
             }
 
@@ -147,13 +150,13 @@ macro_rules! tasks {
         }
 
         impl Answer {
-            /// Packs the answer for its transfer.
+            /// Packs the answer for its transfer; the clips are those of the job.
             ///
             /// # Errors
             /// [`ParcelError`] when JSON cannot represent its header.
-            pub fn pack(self) -> Result<Parcel, ParcelError> {
+            pub fn pack(self, clips: &[JobClip]) -> Result<Parcel, ParcelError> {
                 match self.0 {
-                    $(AnyAnswer::$kind(answer) => <$task as Task>::pack(*answer),)*
+                    $(AnyAnswer::$kind(answer) => <$task as Task>::pack(clips, *answer),)*
                 }
             }
         }
@@ -180,6 +183,7 @@ macro_rules! tasks {
 }
 
 tasks! {
+    DatabaseClip(DatabaseClipTask),
     Distances(DistanceTask),
     Registration(RegistrationTask),
     Stream(StreamTask),

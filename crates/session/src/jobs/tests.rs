@@ -1,11 +1,13 @@
 //! Tests of jobs: results do not depend on where and in which order they are run.
 
+use super::task::Kind as _;
 use super::*;
 use crate::fixtures::*;
 use crate::labs::Distances;
 use crate::params::MAX_PANES;
 use proptest::prelude::*;
 use segue_motion::clip::ContactCorrection;
+use segue_motion::matching::Database;
 use segue_motion::skeleton::Side;
 use std::collections::BTreeSet;
 
@@ -170,6 +172,60 @@ proptest! {
         }
         prop_assert_eq!(workers.run, 6);
     }
+
+    #[test]
+    fn database_of_workers_is_that_of_a_session_without(workers in 1usize..4, seed: u64) {
+        let open = |session: &mut Session| {
+            let link = format!("lab=match&scenario=spin&match_clips={}", load_mixed_clips(session));
+            session.apply(Command::OpenLink(link)).unwrap();
+        };
+        let mut workers = Workers::new(workers, seed);
+        let (mut alone, mut session) = (Session::new(), Session::new());
+        session.set_workers(workers.all.len());
+        open(&mut alone);
+        while alone.work() {}
+        open(&mut session);
+        workers.settle(&mut session);
+        prop_assert_eq!(workers.run, 4);
+        assert_same(&session, &alone);
+        assert!(database(&session) == database(&alone), "another database");
+        let found = database(&session);
+        prop_assert_eq!((found.motions().len(), found.skipped().len()), (6, 1));
+        prop_assert_eq!(found.retargeted().len(), 1);
+        // Without mirror images all are measured again; other trajectory times need no worker.
+        for (key, value, run) in
+            [(Key::Mirrored, Value::Switch(false), 8), (Key::AheadFar, Value::Number(0.9), 8)]
+        {
+            for session in [&mut session, &mut alone] {
+                set(session, key, value.clone());
+            }
+            while alone.work() {}
+            workers.settle(&mut session);
+            prop_assert_eq!(workers.run, run);
+            assert_same(&session, &alone);
+            assert!(database(&session) == database(&alone), "another database");
+        }
+    }
+}
+
+fn database(session: &Session) -> &Arc<Database> {
+    &session.main_outcome().unwrap().driven().unwrap().database
+}
+
+/// Loads clips of two rigs and one that is too short, and returns their ids as in a link.
+fn load_mixed_clips(session: &mut Session) -> String {
+    let mut made = opened("lab=make&make_seconds=30");
+    made.work();
+    let long = Arc::clone(made.main_outcome().unwrap().motion.clip());
+    let short = Arc::new(long.crop(0..20).unwrap());
+    let tall = Arc::new(long.scaled(1.3));
+    let clips = [("x.bvh", &long), ("y.bvh", &short), ("z.bvh", &tall), ("w.bvh", &long)];
+    let ids = clips.map(|(name, clip)| {
+        let options = segue_formats::bvh::WriteOptions::default();
+        let file = segue_formats::bvh::write(clip, &options).into_bytes().into();
+        session.load(name, file).unwrap().ids.remove(0)
+    });
+    ids.join(",")
 }
 
 /// Returns a synthesised walk of 12 seconds as a BVH file.
@@ -250,10 +306,92 @@ fn jobs_for_what_was_left_are_cancelled() {
 }
 
 #[test]
+fn database_whose_clips_workers_cannot_measure_is_built_by_the_session() {
+    let open = |session: &mut Session| {
+        let link = format!("lab=match&scenario=spin&match_clips={}", load_mixed_clips(session));
+        session.apply(Command::OpenLink(link)).unwrap();
+    };
+    let mut alone = Session::new();
+    open(&mut alone);
+    while alone.work() {}
+    let mut session = Session::new();
+    session.set_workers(1);
+    open(&mut session);
+    while session.work() {}
+    let progress = |session: &Session| session.jobs().first().map(|job| job.progress);
+    let before = progress(&session).unwrap();
+    // One has an answer, one has none, and the others are left when all workers have ended.
+    let [first, second] = [(); 2].map(|()| session.take_job(0).unwrap());
+    session.finish_job(second.number, Some(Worker::new(0).run(&second).unwrap()), 0.1);
+    while session.work() {}
+    assert!(progress(&session).unwrap() > before);
+    session.finish_job(first.number, None, 0.0);
+    while session.work() {}
+    let third = session.take_job(0).unwrap();
+    assert!(session.is_job_wanted(third.number));
+    session.set_workers(0);
+    while session.work() {}
+    assert_same(&session, &alone);
+    assert!(database(&session) == database(&alone), "another database");
+}
+
+#[test]
+fn measurement_of_clips_is_cancelled_when_the_lab_is_left_and_goes_on_later() {
+    let mut workers = Workers::new(1, 7);
+    let mut session = Session::new();
+    session.set_workers(1);
+    let link = format!("lab=match&scenario=spin&match_clips={}", load_mixed_clips(&mut session));
+    session.apply(Command::OpenLink(link.clone())).unwrap();
+    while session.work() {}
+    assert!(workers.run_one(&mut session) && session.has_waiting_jobs());
+    for (number, answer) in std::mem::take(&mut workers.ended) {
+        session.finish_job(number, Some(answer), 0.1);
+    }
+    while session.work() {}
+    session.apply(Command::OpenLink("lab=view".into())).unwrap();
+    while session.work() {}
+    assert!(!session.has_waiting_jobs() && session.jobs().is_empty());
+    session.apply(Command::OpenLink(link)).unwrap();
+    workers.settle(&mut session);
+    assert_eq!(workers.run, 4, "the clip that was measured is not measured again");
+    assert_eq!(database(&session).motions().len(), 6);
+}
+
+#[test]
+fn clip_of_a_database_that_is_the_own_one_is_not_sent_back() {
+    let mut session = Session::new();
+    session.set_workers(1);
+    session.apply(Command::OpenLink("lab=match&scenario=spin".into())).unwrap();
+    while session.work() {}
+    let (mut own, mut all, mut worker) = (0, 0, Worker::new(0));
+    while let Some(job) = session.take_job(0) {
+        let clip = &job.clips[0];
+        worker.take_clip(clip.number, &clip.parcel().unwrap()).unwrap();
+        let parcel = worker.run_message(&job.message().unwrap()).unwrap();
+        let measured = DatabaseClipTask::output(job.answer(parcel.clone()).unwrap()).unwrap();
+        // A cycle is closed, and is another clip.
+        let is_own = Arc::ptr_eq(measured.motions[0].clip(), clip.motion.clip());
+        assert_ne!(is_own, measured.motions[0].is_cycle());
+        own += usize::from(is_own);
+        all += 1;
+        let torn = Parcel { bytes: parcel.bytes[1..].to_vec(), ..parcel.clone() };
+        assert!(job.answer(torn).is_err());
+        let torn = Parcel { floats: parcel.floats[1..].to_vec(), ..parcel };
+        assert!(job.answer(torn).is_err());
+    }
+    assert!(own > 0 && own < all, "{own} of {all}");
+}
+
+#[test]
 fn short_work_is_not_offered() {
     let mut session = Session::new();
     session.set_workers(MAX_PANES);
-    for link in ["lab=graph&clips=walk,walk_left&play=off", "lab=register&play=off", "lab=blend"] {
+    for link in [
+        "lab=graph&clips=walk,walk_left&play=off",
+        "lab=register&play=off",
+        "lab=blend",
+        "lab=match&scenario=spin&match_clips=idle,walk,walk_left",
+    ] {
         session.apply(Command::OpenLink(link.into())).unwrap();
         while session.work() {}
         assert!(!session.has_waiting_jobs() && session.main_outcome().is_some(), "{link}");
@@ -289,7 +427,7 @@ fn answer_that_is_none_is_refused() {
     session.apply(Command::OpenLink("lab=graph&play=off".into())).unwrap();
     while session.work() {}
     let job = session.take_job(0).unwrap();
-    let parcel = Worker::new(0).run(&job).unwrap().pack().unwrap();
+    let parcel = Worker::new(0).run(&job).unwrap().pack(&job.clips).unwrap();
     assert!(job.answer(parcel.clone()).is_ok());
     let torn = Parcel { bytes: parcel.bytes[4..].to_vec(), ..parcel.clone() };
     assert!(job.answer(torn).is_err());

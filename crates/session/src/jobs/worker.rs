@@ -5,6 +5,7 @@ use super::task::{Answer, AnyTask, Job, JobClip, Message};
 use super::{Parcel, ParcelError};
 use segue_motion::clip::Motion;
 use segue_motion::graph::{GraphError, StreamComputer, TileComputer};
+use segue_motion::matching::MatchError;
 use segue_motion::registration::{DistanceMatrix, PairTerms, RegistrationError};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -25,6 +26,9 @@ pub enum JobError {
     /// The computation failed: registration.
     #[error(transparent)]
     Registration(#[from] RegistrationError),
+    /// The computation failed: a clip of a database.
+    #[error(transparent)]
+    Match(#[from] MatchError),
     /// The computation has no result.
     #[error("the job has no result")]
     NoResult,
@@ -103,7 +107,8 @@ impl Worker {
             Ok(JobClip { number, motion: Arc::clone(motion) })
         };
         let clips: Result<Vec<JobClip>, JobError> = message.clips.into_iter().map(clip).collect();
-        Ok(message.task.run(&clips?, &mut self.memory)?.pack()?)
+        let clips = clips?;
+        Ok(message.task.run(&clips, &mut self.memory)?.pack(&clips)?)
     }
 
     /// Runs a job on its own clips, in the memory of the app.

@@ -6,6 +6,7 @@ use crate::labs::LabError;
 use crate::params::{Key, List, Params, Value};
 use segue_text::{Message, msg};
 mod crowd;
+mod database_building;
 mod live;
 mod live_drive;
 mod scheduler;

@@ -148,3 +148,56 @@ fn feature_rows_of_a_clip_are_those_of_its_database() {
     let short = clip.crop(0..layout.horizon()).unwrap();
     assert_eq!(feature_rows(&short, walk.roles(), layout, 1), Ok(Vec::new()));
 }
+
+/// Clips of two rigs, a cycle among them, and one that is too short.
+fn mixed_clips() -> Vec<Arc<Motion>> {
+    let of = |action, fps| synthesize(&Params { fps, ..Params::new(action) }).unwrap().clip;
+    let (idle, walk, run) =
+        (of(Action::Idle, 60.0), of(Action::Walk, 30.0), of(Action::Run, 60.0).scaled(1.2));
+    let short = walk.crop(0..9).unwrap();
+    [idle, short, walk, run].map(|clip| Arc::new(Motion::analyze(clip))).into()
+}
+
+#[test]
+fn database_of_clips_measured_in_any_order_is_the_same() {
+    let (clips, options) = (mixed_clips(), DatabaseOptions::default());
+    let whole = Database::new(clips.clone(), &options).unwrap();
+    assert_eq!((whole.motions().len(), whole.skipped().len(), whole.retargeted().len()), (6, 1, 1));
+    for order in [[3, 1, 0, 2], [2, 3, 1, 0]] {
+        let mut builder = DatabaseBuilder::new(clips.clone(), &options).unwrap();
+        for (count, &clip) in order.iter().enumerate() {
+            assert_eq!(builder.unmeasured().count(), clips.len() - count);
+            let (from, first) = (Arc::clone(&clips[clip]), Arc::clone(&clips[0]));
+            let measured = ClipMeasurement::new(from, first, clip, &options).unwrap();
+            builder.set_measured(clip, measured.finish().unwrap());
+            let done = builder.progress().done;
+            assert_eq!(done, 700 * (count + 1) / clips.len());
+        }
+        assert_eq!(builder.next_clip(), None);
+        assert!(builder.finish().unwrap() == whole, "{order:?}");
+    }
+    // One that arrives while it is measured in slices, and one that is there already.
+    let mut builder = DatabaseBuilder::new(clips.clone(), &options).unwrap();
+    builder.advance().unwrap();
+    let first = || ClipMeasurement::new(Arc::clone(&clips[0]), Arc::clone(&clips[0]), 0, &options);
+    builder.set_measured(0, first().unwrap().finish().unwrap());
+    builder.set_measured(0, MeasuredClip { motions: Vec::new(), retargeted: None });
+    builder.set_measured(99, MeasuredClip { motions: Vec::new(), retargeted: None });
+    assert!(builder.finish().unwrap() == whole);
+}
+
+#[test]
+fn database_clip_of_parts_is_the_same_and_refused_where_one_is_missing() {
+    let clip = DatabaseClip::clone(&small_database().motions()[1]);
+    let parts = clip.clone().into_parts();
+    assert!(DatabaseClip::of_parts(parts.clone()) == Some(clip));
+    let mut torn = parts.clone();
+    torn.body.pop();
+    assert_eq!(DatabaseClip::of_parts(torn), None);
+    let mut torn = parts.clone();
+    torn.feet[1].pop();
+    assert_eq!(DatabaseClip::of_parts(torn), None);
+    let mut torn = parts;
+    torn.pace.joints_radps.pop();
+    assert_eq!(DatabaseClip::of_parts(torn), None);
+}

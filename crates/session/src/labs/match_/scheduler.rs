@@ -1,6 +1,7 @@
 //! Construction of databases and playback of recorded input, in slices.
 
 use super::super::sliced::{JobKind, Sliced};
+use super::database_building::{BuildStep, DatabaseBuilding};
 use super::tagging::{filter_of, tagged};
 use super::trace::Tracer;
 use crate::choices;
@@ -12,8 +13,8 @@ use crate::labs::pair::retarget_options;
 use crate::params::{HandTag, Key, MAX_PANES, Params};
 use segue_motion::clip::Motion;
 use segue_motion::matching::{
-    Control, Controller, ControllerOptions, Database, DatabaseBuilder, DatabaseOptions,
-    FeatureOptions, MatchError, Normalisation, Recording, TagFilter, made_clip, made_params,
+    Control, Controller, ControllerOptions, Database, DatabaseOptions, FeatureOptions, MatchError,
+    Normalisation, Recording, TagFilter, made_clip, made_params,
 };
 use segue_motion::math::Planar;
 use std::sync::Arc;
@@ -125,7 +126,7 @@ pub(crate) struct DriveScheduler {
     made: Vec<Arc<Motion>>,
     databases: Vec<(Source, Result<Arc<Database>, LabError>)>,
     tagged: Vec<TaggedDatabase>,
-    building: Option<(Source, Box<DatabaseBuilder>)>,
+    building: Option<(Source, Box<DatabaseBuilding>)>,
     wanted: Vec<Source>,
     replays: Vec<(Script, Result<Arc<Outcome>, LabError>)>,
     playing: Option<(Script, Box<RunningReplay>)>,
@@ -206,29 +207,37 @@ impl DriveScheduler {
         self.scripts.iter().find(|script| !is_known(script))
     }
 
-    fn build(&mut self, source: &Source) -> Result<Option<Database>, MatchError> {
+    /// Does a slice of the construction of a database.
+    fn build(&mut self, source: &Source, jobs: &mut JobBoard) -> Result<BuildStep, MatchError> {
         let under_way = self.building.take().filter(|(of, _)| of == source);
-        let mut builder = if let Some((_, builder)) = under_way {
-            builder
+        let mut building = if let Some((_, building)) = under_way {
+            building
         } else {
             let alike = self.databases.iter().find(|(known, _)| known.has_clips_of(source));
             if let Some((_, Ok(database))) = alike {
-                Box::new(DatabaseBuilder::retimed(database, &source.options.features)?)
+                Box::new(DatabaseBuilding::retimed(database, &source.options)?)
             } else if !source.clips.is_empty() {
-                Box::new(DatabaseBuilder::new(source.clips.clone(), &source.options)?)
+                Box::new(DatabaseBuilding::new(&source.clips, &source.options)?)
             } else if let Some(params) = made_params().get(self.made.len()) {
                 let roles = self.made.first().map(|first| first.roles().clone());
                 self.made.push(Arc::new(made_clip(params, roles)?));
-                return Ok(None);
+                return Ok(BuildStep::Worked);
             } else {
-                Box::new(DatabaseBuilder::new(self.made.clone(), &source.options)?)
+                Box::new(DatabaseBuilding::new(&self.made, &source.options)?)
             }
         };
-        if builder.advance()?.is_complete() {
-            return builder.finish().map(Some);
+        let step = building.advance(jobs)?;
+        self.building = Some((source.clone(), building));
+        Ok(step)
+    }
+
+    /// Keeps the result of a construction.
+    fn keep(&mut self, source: Source, built: Result<Database, MatchError>) {
+        if self.databases.len() >= 2 * MAX_PANES {
+            drop(self.databases.remove(0));
         }
-        self.building = Some((source.clone(), builder));
-        Ok(None)
+        self.databases.push((source, built.map(Arc::new).map_err(LabError::from)));
+        self.is_ready = true;
     }
 
     fn play(&mut self, script: &Script) -> Result<Option<Outcome>, LabError> {
@@ -270,20 +279,27 @@ impl Sliced for DriveScheduler {
         self.is_ready = false;
     }
 
-    fn work(&mut self, _jobs: &mut JobBoard) -> bool {
+    fn work(&mut self, jobs: &mut JobBoard) -> bool {
         if self.is_ready {
             return false;
         }
         if let Some(source) = self.next_source().cloned() {
-            let built = self.build(&source);
-            if let Some(built) = built.map_err(LabError::from).transpose() {
-                if self.databases.len() >= 2 * MAX_PANES {
-                    drop(self.databases.remove(0));
+            match self.build(&source, jobs) {
+                Ok(BuildStep::Worked) => return true,
+                Ok(BuildStep::Complete) => {
+                    if let Some((source, building)) = self.building.take() {
+                        self.keep(source, building.finish());
+                    }
+                    return true;
                 }
-                self.databases.push((source, built.map(Arc::new)));
-                self.is_ready = true;
+                Err(error) => {
+                    self.keep(source, Err(error));
+                    return true;
+                }
+                Ok(BuildStep::Waits) => {}
             }
-            return true;
+        } else if let Some((_, building)) = &mut self.building {
+            building.cancel_jobs();
         }
         let Some(script) = self.next_script().cloned() else {
             return false;
@@ -305,10 +321,7 @@ impl Sliced for DriveScheduler {
     fn progress(&self) -> Option<(JobKind, f64)> {
         if let Some(source) = self.next_source() {
             let built = match &self.building {
-                Some((of, builder)) if of == source => {
-                    let progress = builder.progress();
-                    progress.done as f64 / progress.total.max(1) as f64
-                }
+                Some((of, building)) if of == source => building.progress(),
                 _ => 0.0,
             };
             let all = made_params().len().max(1) as f64;
