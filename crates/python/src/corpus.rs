@@ -69,10 +69,7 @@ pub(crate) fn corpus_record<'py>(
 
 /// Returns the record of a file that has no bytes.
 #[pyfunction]
-pub(crate) fn corpus_failure<'py>(
-    py: Python<'py>,
-    message: String,
-) -> PyResult<Bound<'py, PyBytes>> {
+pub(crate) fn corpus_failure(py: Python<'_>, message: String) -> PyResult<Bound<'_, PyBytes>> {
     let record = FileRecord::unreadable(message).to_bytes().map_err(value_error)?;
     Ok(PyBytes::new(py, &record))
 }
