@@ -27,7 +27,7 @@ const NUMBERS: usize = 3 * JOINTS + 4;
 const TURN_MM: f64 = 500.0;
 /// The greatest distance of copies, centimetres. The same motion in another rig is nearer, another
 /// take of it farther.
-pub const MAX_DISTANCE_CM: f32 = 5.0;
+pub const MAX_DISTANCE_CM: f32 = 2.5;
 /// The greatest difference of the durations of copies, seconds.
 pub(crate) const MAX_SECS_APART: f64 = 0.1;
 
@@ -159,11 +159,16 @@ mod tests {
         let slower = resample(own.clip(), 25.0, Interpolation::Linear).unwrap();
         let smaller = Motion::analyze(slower.scaled(0.9));
         let distance = |motion: &Motion| first.distance_cm(&signature(motion), 1e6).unwrap();
-        assert!(distance(&smaller) < 2.5, "{}", distance(&smaller));
+        assert!(distance(&smaller) < MAX_DISTANCE_CM, "{}", distance(&smaller));
         let elsewhere = Motion::analyze(own.clip().transformed(&Planar::new(2.0, 3.0, -7.0)));
         assert!(distance(&elsewhere) < 0.3, "{}", distance(&elsewhere));
-        let others =
-            [walk(|params| params.speed_mps = 1.7), walk(|params| params.turn_rate_dps = 35.0)];
+        let others = [
+            walk(|params| params.speed_mps = 1.7),
+            walk(|params| params.speed_mps = 1.5),
+            walk(|params| params.seed = 3),
+            walk(|params| params.height_m = 1.6),
+            walk(|params| params.turn_rate_dps = 35.0),
+        ];
         for other in others {
             assert!(distance(&other) > MAX_DISTANCE_CM, "{}", distance(&other));
         }

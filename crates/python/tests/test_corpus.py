@@ -68,7 +68,7 @@ def test_rows_are_those_of_the_files(takes, built):
     assert rows["set.zip/in/walk.bvh"]["also"] == ["walks/walk3.bvh"]
     assert "readme.txt" not in rows
     run = rows["again.bvh"]
-    assert run["status"] == "ok" and run["joints"] == 22 and run["format"] == "BVH"
+    assert run["status"] == "ok" and run["joints"] == 22 and run["format"] == "bvh"
     own = segue.metrics(segue.load(takes / "run.bvh"))
     told = {name: value for name, value in own.items() if value is not None}
     assert len(told) > 5

@@ -85,7 +85,7 @@ fn rows_have_the_numbers_of_their_clips() {
     let records = records(&Options::default());
     let corpus = gathered(&records);
     let walk = row(&corpus, &records, 0);
-    assert_eq!((walk.row.format.as_str(), walk.row.joints), ("BVH", Some(22)));
+    assert_eq!((walk.row.format.as_str(), walk.row.joints), ("bvh", Some(22)));
     assert_eq!((walk.row.name.as_deref(), walk.row.status), (None, Status::Ok));
     assert!((walk.row.height_m.unwrap() - 1.75).abs() < 0.1, "{:?}", walk.row.height_m);
     assert!(walk.row.metrics["skating_cmps"].unwrap() < 5.0, "{:?}", walk.row.metrics);
