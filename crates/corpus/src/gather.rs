@@ -185,8 +185,9 @@ impl Gatherer {
 /// whether it is mirrored.
 ///
 /// A clip is compared with all earlier ones that are no copies themselves, so that a chain of small
-/// differences never joins clips that are far apart. Only those of about its duration are looked at,
-/// and a pair is left at the first moment in which it differs: O(clips × clips of that duration).
+/// differences never joins clips that are far apart. Only those of about its duration are looked
+/// at, and a pair is left at the first moment in which it differs: O(clips × clips of that
+/// duration).
 fn copies(clips: &[(f64, Option<Signature>)]) -> Vec<Option<(usize, bool)>> {
     let mut by_duration: Vec<usize> = (0..clips.len()).collect();
     by_duration.sort_by(|a, b| clips[*a].0.total_cmp(&clips[*b].0));

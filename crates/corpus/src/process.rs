@@ -58,11 +58,11 @@ pub fn work_key(
     })
 }
 
-/// Reads a file, and makes all that a corpus has of it. `skeleton_files` are the skeletons beside it: the
-/// ASF files of an AMC file.
+/// Reads a file, and makes all that a corpus has of it. `skeleton_files` are the skeletons beside
+/// it: the ASF files of an AMC file.
 ///
-/// A pure function that does not fail: a file that cannot be read, and a clip that cannot be placed,
-/// are rows that say why. A skeleton by itself has no row.
+/// A pure function that does not fail: a file that cannot be read, and a clip that cannot be
+/// placed, are rows that say why. A skeleton by itself has no row.
 #[must_use]
 pub fn process_file(
     name: &str,
@@ -179,8 +179,8 @@ fn of_clip(
     }
 }
 
-/// Returns the number of faults that were mended, and a clip on the standard body, still without its
-/// row.
+/// Returns the number of faults that were mended, and a clip on the standard body, still without
+/// its row.
 fn placed(
     motion: &Arc<Motion>,
     body: &StandardBody,

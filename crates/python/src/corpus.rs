@@ -1,7 +1,7 @@
 //! Corpora: the work of one file, and what is made of all.
 //!
-//! Python drives: it finds files, hands their bytes to [`corpus_record`] on as many workers as there
-//! are, keeps the records, and writes the files of a corpus.
+//! Python drives: it finds files, hands their bytes to [`corpus_record`] on as many workers as
+//! there are, keeps the records, and writes the files of a corpus.
 
 use crate::clip::{Clip, Origin};
 use numpy::PyReadonlyArray1;
@@ -236,8 +236,8 @@ impl CorpusIndex {
         Ok(lists.into_iter().filter_map(with_place).collect())
     }
 
-    /// Returns the nearest moments in some lists: row, moment and distance of each; `by_clip` leaves
-    /// the nearest of each clip.
+    /// Returns the nearest moments in some lists: row, moment and distance of each; `by_clip`
+    /// leaves the nearest of each clip.
     fn search(
         &self,
         query: PyReadonlyArray1<'_, f32>,

@@ -1,9 +1,9 @@
 //! `import segue`: motion files as `NumPy` arrays, and Segue's labs for scripts.
 //!
 //! The package is `python/segue/`; this crate is its module `_core`. Everything that computes lies
-//! below: reading and driving in `segue-batch`, corpora in `segue-corpus`, labs in `segue-session`, formats and motion in the
-//! core. Here are conversions between those and Python, without the interpreter's lock wherever
-//! something takes time.
+//! below: reading and driving in `segue-batch`, corpora in `segue-corpus`, labs in `segue-session`,
+//! formats and motion in the core. Here are conversions between those and Python, without the
+//! interpreter's lock wherever something takes time.
 
 #![expect(clippy::needless_pass_by_value, reason = "arguments from Python come by value")]
 

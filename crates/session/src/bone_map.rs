@@ -3,8 +3,8 @@
 //! A rig is a set of joint names with their parents: clips whose files list the same joints in
 //! another order, or in other lengths, are of one rig. A correction of one clip holds for all of
 //! them, also for those that are opened later. A map is stored with the work, and saved and read as
-//! a file of its own ([`json`](BoneMap::to_json)). Links hold the corrections of the clips that they
-//! name, if these are few.
+//! a file of its own ([`json`](BoneMap::to_json)). Links hold the corrections of the clips that
+//! they name, if these are few.
 
 mod json;
 mod link;

@@ -80,8 +80,8 @@ fn list_count(moments: usize) -> usize {
     (2 * moments.isqrt()).clamp(1, MAX_LISTS)
 }
 
-/// Returns the bytes of a list: clips, then moments (u32), then steps (f32), then the differences from
-/// the centroid in steps, an `i8` for each dimension.
+/// Returns the bytes of a list: clips, then moments (u32), then steps (f32), then the differences
+/// from the centroid in steps, an `i8` for each dimension.
 fn encode(
     rows: &[f32],
     centre: &[f32],

@@ -125,8 +125,8 @@ impl ClipMeasurement {
     /// Processes one slice. Returns the measured clip after the last one.
     ///
     /// # Errors
-    /// [`MatchError`] when the clip cannot be retargeted to the first one's skeleton or mirrored, or
-    /// has values that are not finite.
+    /// [`MatchError`] when the clip cannot be retargeted to the first one's skeleton or mirrored,
+    /// or has values that are not finite.
     pub fn advance(mut self) -> Result<ControlFlow<MeasuredClip, Self>, MatchError> {
         self.stage = match std::mem::replace(&mut self.stage, Stage::Prepare) {
             Stage::Prepare if self.from.clip().skeleton() == self.first.clip().skeleton() => {
