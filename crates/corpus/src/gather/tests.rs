@@ -118,7 +118,7 @@ fn copies_are_those_of_the_slow_search() {
     let clips: Vec<(f64, Option<Signature>)> = (0..60)
         .map(|own: i32| {
             let secs = 2.0 + f64::from(own * 7 % 11) * 0.04;
-            (secs, signature(own * 37 % 101 * 20).filter(|_| own % 9 != 0))
+            (secs, signature(own * 37 % 101 * 10).filter(|_| own % 9 != 0))
         })
         .collect();
     let mut slow: Vec<Option<(usize, bool)>> = vec![None; clips.len()];

@@ -180,7 +180,9 @@ mod tests {
             let sample = sampled(&rows, 1, 10, &mut random);
             assert_eq!(sample.len(), 10);
             assert!(sample.windows(2).all(|pair| pair[0] < pair[1]));
-            sample.iter().for_each(|row| seen[*row as usize] += 1);
+            for row in sample {
+                seen[row as usize] += 1;
+            }
         }
         assert!(seen.iter().all(|count| (15..70).contains(count)), "{seen:?}");
         assert_eq!(sampled(&rows, 1, 99, &mut random), rows);

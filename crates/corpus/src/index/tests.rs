@@ -76,7 +76,7 @@ fn search_with_the_stated_probes_finds_95_percent_of_the_ten_nearest() {
     let index = Index::read(&files.centroids).unwrap();
     assert!(index.moments() > 2_500 && index.lists() > 80, "{} lists", index.lists());
     let recall = |probes: usize| {
-        let (mut found, mut queries) = (0, 0);
+        let (mut found, mut queries) = (0usize, 0usize);
         for query in sample.queries.chunks_exact(dims) {
             let wanted = index.nearest_lists(query, probes).unwrap();
             let hits = index.search(query, &lists(&index, &files.lists, &wanted), 10).unwrap();
