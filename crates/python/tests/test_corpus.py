@@ -243,7 +243,7 @@ def test_address_is_read_as_a_folder(takes, built, tmp_path, monkeypatch):
 
     # The file system of an address, on this machine.
     here = fs.SubTreeFileSystem(str(takes.parent), fs.LocalFileSystem())
-    monkeypatch.setattr(_sources, "_remote_system", lambda scheme, root: here)
+    monkeypatch.setattr(_sources, "_SYSTEMS", {f"s3://{takes.name}": here})
     address = f"s3://{takes.name}"
     assert [own.path for own in find([address])] == [own.path for own in find([str(takes)])]
     found = [own.path for own in find([f"{address}/**/walk*.bvh"])]

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import fnmatch
-import functools
 import io
 import os
 import posixpath
 import zipfile
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from .. import _core
 from ._needs import needed
@@ -18,8 +16,7 @@ from ._needs import needed
 MOTION_ENDINGS, _ARCHIVE_ENDINGS, MAX_BYTES = _core.corpus_endings()
 
 
-@dataclass(frozen=True, order=True)
-class Source:
+class Source(NamedTuple):
     """A file of a corpus.
 
     Attributes
@@ -192,8 +189,12 @@ def _system(place: str) -> tuple[Any, str]:
     return _remote(scheme, place)
 
 
-@functools.lru_cache(maxsize=64)
+#: The file systems of addresses.
+_SYSTEMS: dict[str, Any] = {}
+
+
 def _remote_system(scheme: str, root: str) -> Any:
+    """Return the file system of an address."""
     fs = needed("pyarrow.fs")
     if scheme in ("s3", "gs", "gcs", "hdfs", "abfs", "abfss", "mock"):
         return fs.FileSystem.from_uri(root)[0]
@@ -206,7 +207,9 @@ def _remote(scheme: str, place: str) -> tuple[Any, str]:
     address, _, options = place.partition("?")
     rest = address.split("://", 1)[1]
     root = f"{scheme}://{rest.split('/', 1)[0]}" + (f"?{options}" if options else "")
-    return _remote_system(scheme, root), rest
+    if root not in _SYSTEMS:
+        _SYSTEMS[root] = _remote_system(scheme, root)
+    return _SYSTEMS[root], rest
 
 
 def _listed_remotely(word: str, system: Any, path: str) -> Iterator[tuple[str, str, bool]]:
@@ -233,11 +236,25 @@ def _listed_remotely(word: str, system: Any, path: str) -> Iterator[tuple[str, s
             yield name, place(own), False
 
 
-@functools.lru_cache(maxsize=16)
+#: Zips that are open, by place, size and time of their last change.
+_ZIPS: dict[tuple[Any, ...], zipfile.ZipFile] = {}
+_MAX_ZIPS = 16
+
+
 def _opened_zip(place: str) -> zipfile.ZipFile:
     """Return a zip that is open; it is read by several threads."""
     system, path = _system(place)
-    if system is None:
-        return zipfile.ZipFile(path)
-    file: Any = io.BufferedReader(system.open_input_file(path))
-    return zipfile.ZipFile(file)
+    about = os.stat(path) if system is None else None
+    key = (place, about and about.st_size, about and about.st_mtime_ns)
+    found = _ZIPS.get(key)
+    if found is None:
+        if system is None:
+            found = zipfile.ZipFile(path)
+        else:
+            file: Any = io.BufferedReader(system.open_input_file(path))
+            found = zipfile.ZipFile(file)
+        if len(_ZIPS) >= _MAX_ZIPS:
+            # A thread that still reads one of them holds it open.
+            _ZIPS.clear()
+        _ZIPS[key] = found
+    return found
