@@ -582,7 +582,7 @@ fn metric_of_many_digits_stays_in_its_column() {
         let harness = bench((), move |(), ui| {
             let [unit, name] = ["cm", "Slide"].map(Word::new);
             let metric = Metric { value, unit, name, short: name, ..Metric::default() };
-            metric_cell_ui(&metric, place, egui::Id::new("metric"), ui);
+            metric_cell_ui(&metric, place, egui::Id::unique("metric"), ui);
         });
         let end = |shape: &egui::epaint::ClippedShape| match &shape.shape {
             egui::Shape::Text(text) => Some(text.visual_bounding_rect().right()),
