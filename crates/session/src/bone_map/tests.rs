@@ -147,9 +147,10 @@ proptest! {
         let mut query = "t=1".to_owned();
         crate::link::add_bone_maps(&mut query, std::slice::from_ref(&map));
         let link = crate::link::read(&query);
-        match map.to_link() {
-            Some(_) => prop_assert_eq!(link.bone_maps, [map]),
-            None => prop_assert_eq!(query, "t=1"),
+        if map.to_link().is_some() {
+            prop_assert_eq!(link.bone_maps, [map]);
+        } else {
+            prop_assert_eq!(query, "t=1");
         }
     }
 }
