@@ -89,6 +89,31 @@ fn set(session: &mut Session, key: Key, value: Value) {
     session.apply(Command::Set(vec![(key, value)])).unwrap();
 }
 
+/// A session that computes by itself, and one with workers.
+struct Both {
+    alone: Session,
+    session: Session,
+}
+
+impl Both {
+    /// Opens the same in both, and waits for the results.
+    fn opened(workers: &mut Workers, open: impl Fn(&mut Session)) -> Self {
+        let mut both = Self { alone: Session::new(), session: Session::new() };
+        both.session.set_workers(workers.all.len());
+        both.change(workers, open);
+        both
+    }
+
+    /// Changes both, and waits for the results, which are the same.
+    fn change(&mut self, workers: &mut Workers, change: impl Fn(&mut Session)) {
+        change(&mut self.alone);
+        while self.alone.work() {}
+        change(&mut self.session);
+        workers.settle(&mut self.session);
+        assert_same(&self.session, &self.alone);
+    }
+}
+
 /// Asserts that two sessions show the same, to the last bit.
 fn assert_same(one: &Session, other: &Session) {
     for (one, other) in one.panes().iter().zip(other.panes()) {
@@ -120,24 +145,16 @@ proptest! {
     #[test]
     fn graph_of_workers_is_that_of_a_session_without(workers in 1usize..4, seed: u64) {
         let link = "lab=graph&walk_seconds=10&play=off";
-        let mut alone = opened(link);
         let mut workers = Workers::new(workers, seed);
-        let mut session = Session::new();
-        session.set_workers(workers.all.len());
-        session.apply(Command::OpenLink(link.into())).unwrap();
-        workers.settle(&mut session);
+        let mut both = Both::opened(&mut workers, |session| {
+            session.apply(Command::OpenLink(link.into())).unwrap();
+        });
         prop_assert!(workers.run > 1);
-        assert_same(&session, &alone);
         // Another window from the same products; another threshold from the same distances.
         for (key, value) in [(Key::BlendWindow, 17.0), (Key::EdgeThreshold, 19.0)] {
             let before = workers.run;
-            for session in [&mut session, &mut alone] {
-                set(session, key, Value::Number(value));
-            }
-            while alone.work() {}
-            workers.settle(&mut session);
+            both.change(&mut workers, |session| set(session, key, Value::Number(value)));
             prop_assert!(workers.run > before);
-            assert_same(&session, &alone);
         }
     }
 
@@ -154,21 +171,10 @@ proptest! {
             session.apply(Command::OpenLink(link)).unwrap();
         };
         let mut workers = Workers::new(workers, seed);
-        let (mut alone, mut session) = (Session::new(), Session::new());
-        session.set_workers(workers.all.len());
-        open(&mut alone);
-        while alone.work() {}
-        open(&mut session);
-        workers.settle(&mut session);
+        let mut both = Both::opened(&mut workers, open);
         prop_assert_eq!(workers.run, 2);
-        assert_same(&session, &alone);
         for (key, value) in [(Key::RegistrationWindow, 9.0), (Key::SlopeLimit, 3.0)] {
-            for session in [&mut session, &mut alone] {
-                set(session, key, Value::Number(value));
-            }
-            while alone.work() {}
-            workers.settle(&mut session);
-            assert_same(&session, &alone);
+            both.change(&mut workers, |session| set(session, key, Value::Number(value)));
         }
         prop_assert_eq!(workers.run, 6);
     }
@@ -180,30 +186,19 @@ proptest! {
             session.apply(Command::OpenLink(link)).unwrap();
         };
         let mut workers = Workers::new(workers, seed);
-        let (mut alone, mut session) = (Session::new(), Session::new());
-        session.set_workers(workers.all.len());
-        open(&mut alone);
-        while alone.work() {}
-        open(&mut session);
-        workers.settle(&mut session);
+        let mut both = Both::opened(&mut workers, open);
         prop_assert_eq!(workers.run, 4);
-        assert_same(&session, &alone);
-        assert!(database(&session) == database(&alone), "another database");
-        let found = database(&session);
+        assert!(database(&both.session) == database(&both.alone), "another database");
+        let found = database(&both.session);
         prop_assert_eq!((found.motions().len(), found.skipped().len()), (6, 1));
         prop_assert_eq!(found.retargeted().len(), 1);
         // Without mirror images all are measured again; other trajectory times need no worker.
         for (key, value, run) in
             [(Key::Mirrored, Value::Switch(false), 8), (Key::AheadFar, Value::Number(0.9), 8)]
         {
-            for session in [&mut session, &mut alone] {
-                set(session, key, value.clone());
-            }
-            while alone.work() {}
-            workers.settle(&mut session);
+            both.change(&mut workers, |session| set(session, key, value.clone()));
             prop_assert_eq!(workers.run, run);
-            assert_same(&session, &alone);
-            assert!(database(&session) == database(&alone), "another database");
+            assert!(database(&both.session) == database(&both.alone), "another database");
         }
     }
 }
