@@ -13,6 +13,7 @@ pub(crate) use json::is_bone_map;
 pub use json::{BoneMapError, MAX_BONE_MAP_BYTES, role_of_word, word_of_role};
 pub(crate) use link::{BONES, MAX_LINKED_RIGS, corrections_of};
 
+use crate::hex;
 use segue_motion::clip::Motion;
 use segue_motion::skeleton::{Mirror, Role, Roles, Skeleton};
 use serde::{Deserialize, Serialize};
@@ -86,7 +87,6 @@ pub(crate) fn with_changes(roles: &Roles, changes: &[(Role, Option<usize>)]) -> 
 /// and of their parents, and on nothing else.
 #[must_use]
 pub fn rig_of(skeleton: &Skeleton) -> String {
-    use std::fmt::Write as _;
     let joints = skeleton.joints();
     let mut rows: Vec<(&str, &str)> = joints
         .iter()
@@ -104,12 +104,7 @@ pub fn rig_of(skeleton: &Skeleton) -> String {
         digest.update((parent.len() as u64).to_le_bytes());
         digest.update(parent);
     }
-    let mut hex = String::with_capacity(RIG_DIGITS);
-    for byte in digest.finalize().iter().take(RIG_DIGITS / 2) {
-        // Writing to a string cannot fail.
-        write!(hex, "{byte:02x}").ok();
-    }
-    hex
+    digest.finalize().get(..RIG_DIGITS / 2).map(hex).unwrap_or_default()
 }
 
 /// Returns the name of a joint that [`joint_named`] finds again in any skeleton of the rig: its own

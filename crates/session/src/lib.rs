@@ -80,6 +80,7 @@ mod extra_characters;
 mod files;
 #[cfg(test)]
 mod fixtures;
+mod hex;
 pub mod jobs;
 mod labs;
 pub mod lesson;
@@ -112,6 +113,7 @@ pub use command::{
 pub use contact_edits::ContactClip;
 pub use extra_characters::ExtraCharacter;
 pub use files::{Job, LoadedFile};
+pub use hex::hex;
 pub use labs::{
     BuiltGraph, DistanceField, Distances, FollowedPath, GraphClips, Walk, WalkGhost, WalkMoment,
     WalkStay, check_graph_clips, graph_of,

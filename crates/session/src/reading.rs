@@ -9,6 +9,7 @@ pub use wire::{Parcel, Unpacker, WireError};
 
 use super::bone_map::{BoneMaps, mapped};
 use super::convert::{ConvertOptions, ConvertedClip};
+use super::hex;
 use super::outside;
 use converted::convert_file;
 use segue_formats::acclaim::{self, AcclaimSkeleton};
@@ -503,13 +504,8 @@ impl ReadClip {
 
 /// Returns the SHA-256 in lower-case hexadecimal.
 fn sha256_hex(bytes: &[u8]) -> String {
-    use std::fmt::Write as _;
     // In pieces, because browsers optimise a function only between calls.
     let mut digest = Sha256::new();
     bytes.chunks(1 << 16).for_each(|piece| digest.update(piece));
-    digest.finalize().iter().fold(String::with_capacity(64), |mut hex, byte| {
-        // Writing to a string cannot fail.
-        write!(hex, "{byte:02x}").ok();
-        hex
-    })
+    hex(&digest.finalize())
 }
