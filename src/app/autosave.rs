@@ -29,7 +29,7 @@ struct Fingerprint {
 
 impl Fingerprint {
     fn of(session: &Session) -> Self {
-        Self { library: session.library_revision(), query: session.query() }
+        Self { library: session.library_revision(), query: session.stored_query() }
     }
 }
 

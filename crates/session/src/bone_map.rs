@@ -11,7 +11,7 @@ mod link;
 
 pub(crate) use json::is_bone_map;
 pub use json::{BoneMapError, MAX_BONE_MAP_BYTES, role_of_word, word_of_role};
-pub(crate) use link::{BONES, MAX_LINKED_RIGS, corrections_of};
+pub(crate) use link::{BONES, MAX_LINKED_RIGS, linked_maps};
 
 use crate::hex;
 use segue_motion::clip::Motion;

@@ -6,6 +6,7 @@ mod history;
 mod places;
 mod slots;
 
+use crate::bone_map::BoneMap;
 use crate::built_in::preset_entries;
 use crate::labs::Slot;
 use crate::library::{Entry, Library};
@@ -27,6 +28,8 @@ pub(crate) struct Document {
     named_slots: [bool; 2],
     /// The parameters that the opened link names.
     keys_of_link: Vec<Key>,
+    /// The corrected body parts that the opened link has.
+    pub(crate) maps_of_link: Vec<BoneMap>,
 }
 
 /// The changes that a command made to the parameters.
@@ -47,6 +50,7 @@ impl Default for Document {
             library_revision: 0,
             named_slots: [false; 2],
             keys_of_link: Vec::new(),
+            maps_of_link: Vec::new(),
         }
     }
 }

@@ -361,6 +361,7 @@ impl Session {
             debug_assert!(result.is_ok(), "links hold checked values: {result:?}");
         }
         self.files.correct_as_linked(&mut self.document, &link.bone_maps);
+        self.document.maps_of_link = link.bone_maps;
         self.document.note_link(&named);
         self.replace_params(NewParams { params, named: named.clone(), problems: link.problems });
         self.note_lesson(&named);

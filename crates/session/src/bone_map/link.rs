@@ -5,8 +5,9 @@ use super::{BoneMap, BoneMapError, RIG_DIGITS, role_of_word, word_of_role};
 use crate::library::Library;
 use crate::outside;
 use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_encode};
+use segue_motion::clip::Motion;
 use segue_motion::skeleton::{Role, RoleSource, Roles};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The key of these parts.
 pub(crate) const BONES: &str = "bones";
@@ -58,29 +59,45 @@ impl BoneMap {
     }
 }
 
-/// Returns the corrections of body parts that some clips have, by rig: the parts that differ from
-/// those that are found.
-pub(crate) fn corrections_of(library: &Library, clips: &[String]) -> Vec<BoneMap> {
+/// Returns the corrections of body parts for a link to some clips, by rig: the parts that differ
+/// from those that are found. While a clip is not here or not read, the maps of the opened link for
+/// other rigs stay in it.
+pub(crate) fn linked_maps(
+    library: &Library,
+    of_link: &[BoneMap],
+    clips: &[String],
+) -> Vec<BoneMap> {
     let mut maps: Vec<BoneMap> = Vec::new();
-    if library.bone_maps().is_empty() {
-        return maps;
-    }
-    for entry in clips.iter().filter_map(|id| library.find(id)) {
-        let (Some(facts), Some(motion)) = (&entry.facts, &entry.motion) else { continue };
-        let Some(map) = library.bone_maps().get(&facts.rig) else { continue };
-        if maps.len() == MAX_LINKED_RIGS || maps.iter().any(|own| own.rig == map.rig) {
+    let mut rigs: BTreeSet<&str> = BTreeSet::new();
+    let mut is_complete = true;
+    for id in clips.iter().filter(|id| !id.is_empty()) {
+        let entry = library.find(id);
+        let read = entry.and_then(|entry| Some((entry.facts.as_ref()?, entry.motion.as_ref()?)));
+        let Some((facts, motion)) = read else {
+            is_complete = false;
             continue;
-        }
-        let found = Roles::detect(motion.clip().skeleton());
-        let is_corrected = |role: Role| match motion.roles().source(role) {
-            Some(source) => source == RoleSource::ByHand,
-            None => found.get(role).is_some(),
         };
-        let roles = map.roles.iter().filter(|(role, _)| is_corrected(**role));
-        let roles: BTreeMap<_, _> = roles.map(|(role, name)| (*role, name.clone())).collect();
-        if !roles.is_empty() {
-            maps.push(BoneMap { rig: map.rig.clone(), roles });
+        if rigs.insert(&facts.rig)
+            && let Some(map) = library.bone_maps().get(&facts.rig)
+        {
+            maps.extend(corrections(map, motion));
         }
     }
+    if !is_complete {
+        maps.extend(of_link.iter().filter(|map| !rigs.contains(map.rig.as_str())).cloned());
+    }
+    maps.truncate(MAX_LINKED_RIGS);
     maps
+}
+
+/// Returns the parts of a rig's map that differ from those that are found in a clip.
+fn corrections(map: &BoneMap, motion: &Motion) -> Option<BoneMap> {
+    let found = Roles::detect(motion.clip().skeleton());
+    let is_corrected = |role: Role| match motion.roles().source(role) {
+        Some(source) => source == RoleSource::ByHand,
+        None => found.get(role).is_some(),
+    };
+    let roles = map.roles.iter().filter(|(role, _)| is_corrected(**role));
+    let roles: BTreeMap<_, _> = roles.map(|(role, name)| (*role, name.clone())).collect();
+    (!roles.is_empty()).then(|| BoneMap { rig: map.rig.clone(), roles })
 }

@@ -242,7 +242,9 @@ fn correction_is_part_of_the_link_of_its_clip() {
     // Somebody else opens the link before the file, and after it.
     let mut theirs = Session::new();
     theirs.apply(Command::OpenLink(link.clone())).unwrap();
+    assert_eq!(theirs.query_for_others(), link, "it waits for its file");
     let id = theirs.load("x.bvh", Arc::clone(&bytes)).unwrap().ids.remove(0);
+    assert_eq!(theirs.query_for_others(), link);
     assert_eq!(*motion(&theirs, &id).roles(), corrected);
     let mut theirs = Session::new();
     let id = theirs.load("x.bvh", bytes).unwrap().ids.remove(0);

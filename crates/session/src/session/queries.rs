@@ -25,7 +25,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, LazyLock};
 
 /// Returns the query string of parameters, without `?`.
-pub(super) fn query_of(params: &Params) -> String {
+fn query_of(params: &Params) -> String {
     let query = link::write(params);
     if would_set_up(params) {
         // The lab, which is usually named only if it is not the first one, shows that there is a
@@ -102,12 +102,19 @@ impl Session {
         } else {
             query_of(&with_named_edits(params))
         };
-        let library = &self.document.library;
+        let (library, of_link) = (&self.document.library, &self.document.maps_of_link);
         if !library.bone_maps().is_empty() {
-            let maps = bone_map::corrections_of(library, &named_clips(params));
+            let maps = bone_map::linked_maps(library, of_link, &named_clips(params));
             link::add_bone_maps(&mut query, &maps);
         }
         query
+    }
+
+    /// Returns the query string of the parameters alone, as it is stored: the corrected body parts
+    /// are stored with the library.
+    #[must_use]
+    pub fn stored_query(&self) -> String {
+        query_of(&self.document.params)
     }
 
     /// Returns the open comparison.

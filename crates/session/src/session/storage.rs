@@ -1,7 +1,6 @@
 //! Storing of the work, and its restoring: before anything is shown, or later.
 
 use super::Session;
-use super::queries::query_of;
 use crate::bone_map::{BoneMaps, MAX_RIGS};
 use crate::contact_edits::keep_edits_of_files;
 use crate::document::Document;
@@ -20,7 +19,7 @@ impl Session {
     #[must_use]
     pub fn saved(&self) -> Saved {
         Saved {
-            query: query_of(&self.document.params),
+            query: self.stored_query(),
             entries: self
                 .document
                 .library
