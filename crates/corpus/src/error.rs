@@ -62,7 +62,7 @@ pub enum CorpusError {
     Body(#[from] SynthError),
     /// A thumbnail cannot be compressed.
     #[error("a thumbnail cannot be compressed: {0}")]
-    Compress(#[from] std::io::Error),
+    Compress(#[from] png::EncodingError),
 }
 
 /// The reason why a clip cannot be put on the standard body.

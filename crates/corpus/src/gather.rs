@@ -1,4 +1,4 @@
-//! What is made of all files together.
+//! The gathering of records: shards, copies, scaled features, the index and the table of a corpus.
 
 use crate::index::{self, MomentRows};
 use crate::manifest::{Counts, manifest};

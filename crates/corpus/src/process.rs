@@ -1,4 +1,4 @@
-//! What becomes of one file.
+//! The record of one file: its clips, read, measured and put on the standard body.
 
 use crate::record::VERSION;
 use crate::{
@@ -10,13 +10,15 @@ use segue_motion::clip::Motion;
 use segue_motion::skeleton::Role;
 use segue_session::bone_map::rig_of;
 use segue_session::reading::{ReadClip, ReadFile, ReadSetup, SkeletonFile, read};
-use segue_session::{cleaned, metrics_of_clip};
+use segue_session::{cleaned, hex, metrics_of_clip};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 use std::sync::Arc;
 
 /// The name of files in place of their own, on which no record depends.
 const NEUTRAL: &str = "clip";
+/// The bytes of a key.
+const KEY_BYTES: usize = 16;
 
 /// Options of a corpus.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -51,11 +53,7 @@ pub fn work_key(
         part(own.sha256.as_bytes());
     }
     part(bytes);
-    digest.finalize().iter().take(16).fold(String::with_capacity(32), |mut hex, byte| {
-        // Writing to a string cannot fail.
-        std::fmt::Write::write_fmt(&mut hex, format_args!("{byte:02x}")).ok();
-        hex
-    })
+    digest.finalize().get(..KEY_BYTES).map(hex).unwrap_or_default()
 }
 
 /// Reads a file, and makes all that a corpus has of it. `skeleton_files` are the skeletons beside

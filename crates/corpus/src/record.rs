@@ -1,4 +1,4 @@
-//! What is known of a file: its clips, each with a row of the table and its bytes.
+//! Records of files: for each clip its row of the table, poses, thumbnail and features.
 
 use crate::CorpusError;
 use crate::bytes::{Reader, f32s, i32s, push_f32s, push_u32};
@@ -116,7 +116,7 @@ impl ClipRecord {
     }
 }
 
-/// All that is known of a file.
+/// The record of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileRecord {
     /// Its clips, in the order of the file.

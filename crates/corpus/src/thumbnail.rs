@@ -1,9 +1,8 @@
 //! A strip of stick figures: a clip at a glance.
 
-mod png;
-
 use crate::CorpusError;
 use glam::{Vec2, Vec3};
+use png::{BitDepth, ColorType, Compression, Encoder, Filter};
 use segue_motion::clip::{Clip, character_frames};
 use segue_motion::skeleton::{Role, Roles, Side};
 
@@ -48,7 +47,29 @@ pub fn thumbnail(clip: &Clip, roles: &Roles) -> Result<Vec<u8>, CorpusError> {
             }
         }
     }
-    png::encode(THUMBNAIL_SIZE, &strip.pixels, &palette())
+    encoded(&strip.pixels)
+}
+
+/// Returns a strip as PNG, given the numbers of its pixels' colours: four bits each.
+fn encoded(pixels: &[u8]) -> Result<Vec<u8>, CorpusError> {
+    let palette = palette();
+    let colors: Vec<u8> = palette.iter().flat_map(|color| [color[0], color[1], color[2]]).collect();
+    let opacities: Vec<u8> = palette.iter().map(|color| color[3]).collect();
+    let packed: Vec<u8> = pixels.chunks_exact(2).map(|pair| pair[0] << 4 | pair[1]).collect();
+    let mut bytes = Vec::new();
+    let [width, height] = THUMBNAIL_SIZE.map(|size| size as u32);
+    let mut encoder = Encoder::new(&mut bytes, width, height);
+    encoder.set_color(ColorType::Indexed);
+    encoder.set_depth(BitDepth::Four);
+    encoder.set_palette(colors);
+    encoder.set_trns(opacities);
+    encoder.set_compression(Compression::High);
+    // Neighbours are equal, or differ by an edge.
+    encoder.set_filter(Filter::NoFilter);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&packed)?;
+    writer.finish()?;
+    Ok(bytes)
 }
 
 /// Returns the colour of every joint's bone: 0 in the middle, 1 on the left, 2 on the right.
@@ -138,6 +159,18 @@ mod tests {
     use segue_motion::clip::Motion;
     use segue_motion::synth::{Action, Params, synthesize};
 
+    /// Returns the size of a strip, and the numbers of its pixels' colours.
+    fn decoded(bytes: &[u8]) -> ([usize; 2], Vec<u8>) {
+        let mut decoder = png::Decoder::new(std::io::Cursor::new(bytes));
+        decoder.set_transformations(png::Transformations::IDENTITY);
+        let mut reader = decoder.read_info().unwrap();
+        let mut packed = vec![0; reader.output_buffer_size().unwrap()];
+        let info = reader.next_frame(&mut packed).unwrap();
+        assert_eq!((info.color_type, info.bit_depth), (ColorType::Indexed, BitDepth::Four));
+        let pixels = packed.iter().flat_map(|pair| [pair >> 4, pair & 15]).collect();
+        ([info.width, info.height].map(|size| size as usize), pixels)
+    }
+
     #[test]
     fn strip_shows_six_figures_with_both_sides() {
         let body = StandardBody::new().unwrap();
@@ -145,7 +178,7 @@ mod tests {
         let placed = body.place(&walk).unwrap();
         let bytes = thumbnail(&placed.clip, body.roles()).unwrap();
         assert!(bytes.len() < 3_000, "{}", bytes.len());
-        let (size, pixels) = png::tests::decode(&bytes);
+        let (size, pixels) = decoded(&bytes);
         assert_eq!(size, THUMBNAIL_SIZE);
         for cell in 0..THUMBNAIL_POSES {
             let count = |color: u8| {

@@ -5,6 +5,8 @@
 //! tried.
 
 use super::squared;
+use rand_pcg::Pcg32;
+use rand_pcg::rand_core::Rng;
 
 /// The number of groups in which the nearest list is looked for.
 const GROUPS_TRIED: usize = 4;
@@ -14,6 +16,8 @@ const ROUNDS: usize = 8;
 const SAMPLED_PER_LIST: usize = 64;
 /// The seed of samples and of first centroids.
 const SEED: u64 = 0x5e60_e5e6;
+/// The stream of the generator.
+const STREAM: u64 = 0;
 
 /// The centroids of lists.
 #[derive(Clone, Debug)]
@@ -30,7 +34,7 @@ pub(super) struct Centroids {
 impl Centroids {
     /// Finds the centroids of about `count` lists of rows: k-means of a seeded sample.
     pub(super) fn find(rows: &[f32], dims: usize, count: usize) -> Self {
-        let mut random = SplitMix(SEED);
+        let mut random = Pcg32::new(SEED, STREAM);
         let sample = sampled(rows, dims, SAMPLED_PER_LIST.saturating_mul(count), &mut random);
         let number = sample.len() / dims;
         let groups = k_means(&sample, dims, isqrt(count), &mut random);
@@ -87,13 +91,13 @@ impl Centroids {
 }
 
 /// Returns up to `count` different rows, in their order.
-fn sampled(rows: &[f32], dims: usize, count: usize, random: &mut SplitMix) -> Vec<f32> {
+fn sampled(rows: &[f32], dims: usize, count: usize, random: &mut Pcg32) -> Vec<f32> {
     let mut left = rows.len() / dims;
     let mut wanted = count.min(left);
     let mut sample = Vec::with_capacity(wanted * dims);
     for row in rows.chunks_exact(dims) {
         // Knuth, "The Art of Computer Programming" 2, algorithm S: each set is as likely.
-        if random.below(left) < wanted {
+        if below(random, left) < wanted {
             sample.extend(row);
             wanted -= 1;
         }
@@ -103,7 +107,7 @@ fn sampled(rows: &[f32], dims: usize, count: usize, random: &mut SplitMix) -> Ve
 }
 
 /// Returns up to `count` centroids of rows (Lloyd 1982), beginning with some of the rows.
-fn k_means(rows: &[f32], dims: usize, count: usize, random: &mut SplitMix) -> Vec<f32> {
+fn k_means(rows: &[f32], dims: usize, count: usize, random: &mut Pcg32) -> Vec<f32> {
     let mut centres = sampled(rows, dims, count, random);
     let number = centres.len() / dims;
     if number == 0 || number == rows.len() / dims {
@@ -149,22 +153,9 @@ fn isqrt(number: usize) -> usize {
     if root * root < number { root + 1 } else { root }
 }
 
-/// Random numbers (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014).
-struct SplitMix(u64);
-
-impl SplitMix {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut mixed = self.0;
-        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        mixed ^ (mixed >> 31)
-    }
-
-    /// Returns a number from 0 to below `end`; 0 where there is none.
-    fn below(&mut self, end: usize) -> usize {
-        ((u128::from(self.next()) * end as u128) >> 64) as usize
-    }
+/// Returns a random number from 0 to below `end`; 0 where there is none.
+fn below(random: &mut Pcg32, end: usize) -> usize {
+    ((u128::from(random.next_u64()) * end as u128) >> 64) as usize
 }
 
 #[cfg(test)]
@@ -175,7 +166,7 @@ mod tests {
     fn sample_has_different_rows_and_every_row_can_be_in_it() {
         let rows: Vec<f32> = (0..50u8).map(f32::from).collect();
         let mut seen = [0; 50];
-        let mut random = SplitMix(1);
+        let mut random = Pcg32::new(1, STREAM);
         for _ in 0..200 {
             let sample = sampled(&rows, 1, 10, &mut random);
             assert_eq!(sample.len(), 10);
@@ -190,8 +181,8 @@ mod tests {
 
     #[test]
     fn centres_of_separate_clouds_are_their_means() {
-        let mut random = SplitMix(7);
-        let noise = |random: &mut SplitMix| random.below(1000) as f32 / 1000.0 - 0.5;
+        let mut random = Pcg32::new(7, STREAM);
+        let noise = |random: &mut Pcg32| below(random, 1000) as f32 / 1000.0 - 0.5;
         let clouds = [[0.0, 0.0], [90.0, 0.0], [0.0, 90.0]];
         let rows: Vec<f32> = (0..600)
             .flat_map(|at| clouds[at % 3].map(|centre: f32| centre + noise(&mut random)))
@@ -211,8 +202,8 @@ mod tests {
 
     #[test]
     fn list_of_a_row_is_nearly_always_the_nearest() {
-        let mut random = SplitMix(3);
-        let rows: Vec<f32> = (0..12_000).map(|_| random.below(1000) as f32).collect();
+        let mut random = Pcg32::new(3, STREAM);
+        let rows: Vec<f32> = (0..12_000).map(|_| below(&mut random, 1000) as f32).collect();
         let centroids = Centroids::find(&rows, 3, 100);
         let lists = centroids.lists.len() / 3;
         assert!((80..140).contains(&lists), "{lists}");
