@@ -2,7 +2,7 @@
 
 use crate::CorpusError;
 
-/// A reader of bytes that were written by somebody else.
+/// A checked reader of bytes from outside.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reader<'a> {
     bytes: &'a [u8],
@@ -87,7 +87,7 @@ fn words(bytes: &[u8]) -> impl Iterator<Item = [u8; 4]> + '_ {
     })
 }
 
-/// Appends numbers.
+/// Appends a number as a `u32`.
 pub(crate) fn push_u32(out: &mut Vec<u8>, value: usize) -> Result<(), CorpusError> {
     let value = u32::try_from(value).map_err(|_| CorpusError::TooLarge)?;
     out.extend(value.to_le_bytes());

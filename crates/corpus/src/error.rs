@@ -4,7 +4,7 @@ use segue_motion::clip::{ClipError, RetargetError};
 use segue_motion::matching::MatchError;
 use segue_motion::synth::SynthError;
 
-/// The reason why bytes are no part of a corpus, or none can be made.
+/// The reason why bytes of a corpus cannot be read, or a corpus cannot be made.
 #[derive(Debug, thiserror::Error)]
 pub enum CorpusError {
     /// Bytes end too early.
@@ -48,16 +48,16 @@ pub enum CorpusError {
     /// Text that is no JSON of this kind.
     #[error("the text of a record cannot be read: {0}")]
     Json(#[from] serde_json::Error),
-    /// A file or number beyond 4 GB, or four thousand million.
+    /// A count or a size that does not fit into 32 bits.
     #[error("a corpus has at most 4,294,967,295 clips, frames, and bytes of a clip")]
     TooLarge,
-    /// Poses that are no clip.
+    /// Poses that make no valid clip.
     #[error(transparent)]
     Clip(#[from] ClipError),
     /// Features cannot be laid out.
     #[error(transparent)]
     Features(#[from] MatchError),
-    /// There is no standard body.
+    /// The standard body cannot be synthesised.
     #[error(transparent)]
     Body(#[from] SynthError),
     /// A thumbnail cannot be compressed.

@@ -22,7 +22,7 @@ pub struct Gatherer {
     records: BTreeMap<String, Vec<GatheredClip>>,
 }
 
-/// All of a clip but what only the shards need.
+/// A clip of a record. Of poses and thumbnail only the numbers of bytes are held.
 #[derive(Debug)]
 struct GatheredClip {
     row: ClipRow,
@@ -55,7 +55,7 @@ pub struct CorpusRow {
     pub is_mirrored: bool,
 }
 
-/// A corpus, but for the shards, whose bytes lie in the records.
+/// A finished corpus. The bytes of its shards are read from the records.
 #[derive(Debug)]
 pub struct Gathered {
     /// The rows of the table, by key.

@@ -3,8 +3,8 @@
 //!
 //! # The idea
 //!
-//! Files do not know of each other, so that any number of workers can read them, in any order:
-//! [`process_file`] is a pure function from bytes to a [`FileRecord`]. What concerns all of them
+//! Each file is processed by itself, so any number of workers can process them, in any order:
+//! [`process_file`] is a pure function from bytes to a [`FileRecord`]. What depends on all files
 //! (scales of features, lists of similar moments, copies) is made of the records by a [`Gatherer`],
 //! which sorts them by the hash of their content: the same files give the same bytes, however and
 //! wherever they were read.
@@ -15,9 +15,8 @@
 //! all records, by hash → shards of poses · copies · scales → centroids → lists = Gathered
 //! ```
 //!
-//! - *Standard body*: the synthesiser's, 22 joints, 1.75 m tall; motions get there by
-//!   [`segue_motion::retarget`]. One body makes clips comparable, and every pose as long as the
-//!   others.
+//! - *Standard body*: the synthesiser's, 22 joints, 1.75 m tall. Motions are put on it by
+//!   [`segue_motion::retarget`], so that clips can be compared, and all poses have one size.
 //! - *Poses* ([`encode_poses`]): rotations in 48 bits (smallest three), roots in single precision,
 //!   contacts in one byte: 145 bytes a frame, 30 frames a second.
 //! - *Features*: those of motion matching ([`segue_motion::matching`]), ten rows a second.
@@ -44,7 +43,7 @@
 //! let corpus = gatherer.finish()?;
 //! assert_eq!(corpus.rows.len(), 2);
 //!
-//! // Somebody who has the files searches them by their ranges.
+//! // A search reads byte ranges of the files.
 //! let index = Index::read(&corpus.centroids)?;
 //! let query = vec![0.0; index.dims()];
 //! let mut lists = Vec::new();

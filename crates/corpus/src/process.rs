@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 use std::sync::Arc;
 
-/// The name of files in place of their own, on which no record depends.
+/// The name under which files are read instead of their own: records do not depend on names.
 const NEUTRAL: &str = "clip";
 /// The bytes of a key.
 const KEY_BYTES: usize = 16;

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 /// The first bytes of a record.
 const MARK: [u8; 4] = *b"SGRE";
-/// The version of records: one that changes with everything that changes their content.
+/// The version of records. It rises with every change of what a file's record contains.
 pub(crate) const VERSION: u32 = 1;
 
 /// The state of a row.

@@ -36,7 +36,7 @@ pub(crate) const MAX_SECS_APART: f64 = 0.1;
 pub struct Signature(Vec<i32>);
 
 impl Signature {
-    /// The number of numbers.
+    /// The length of a signature.
     pub const LEN: usize = MOMENTS * NUMBERS;
 
     /// Returns the signature of a clip on the standard body; `None` if it has no frames.

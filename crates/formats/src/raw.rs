@@ -23,7 +23,7 @@ pub(super) struct RawMotion {
     pub(super) wild_angles: WildAngles,
 }
 
-/// Angles that no body reaches. What is left of one after whole turns is noise.
+/// Angles of so many turns that the rotation left of them is noise.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct WildAngles {
     /// The rows with such an angle.

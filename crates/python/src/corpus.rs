@@ -1,4 +1,4 @@
-//! Corpora: the work of one file, and what is made of all.
+//! Corpora: the record of a file, the gathering of records, and the search.
 //!
 //! Python drives: it finds files, hands their bytes to [`corpus_record`] on as many workers as
 //! there are, keeps the records, and writes the files of a corpus.
@@ -59,7 +59,7 @@ pub(crate) fn corpus_record<'py>(
 ) -> PyResult<Bound<'py, PyBytes>> {
     let made = py.detach(|| {
         let process = || process_file(name, data, &skeleton_files(&beside), &Options { clean });
-        // One file in a million must not end the other ones.
+        // A panic on one file must not end the work on the others.
         let record = catch_unwind(AssertUnwindSafe(process))
             .unwrap_or_else(|_| FileRecord::unreadable("reading it has failed: an error of Segue"));
         record.to_bytes()

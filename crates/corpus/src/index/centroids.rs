@@ -79,7 +79,7 @@ impl Centroids {
             let own = &self.lists[start * self.dims..end * self.dims];
             for (list, centre) in own.chunks_exact(self.dims).enumerate() {
                 let found = (squared(row, centre), start + list);
-                // By number among equals, whichever group was tried first.
+                // Of equally near lists the first, in whatever order the groups are tried.
                 if best.is_none_or(|best| found.0 < best.0 || found.0 == best.0 && found.1 < best.1)
                 {
                     best = Some(found);
@@ -125,7 +125,7 @@ fn k_means(rows: &[f32], dims: usize, count: usize, random: &mut Pcg32) -> Vec<f
         for ((centre, sum), count) in
             centres.chunks_exact_mut(dims).zip(sums.chunks_exact(dims)).zip(counts)
         {
-            // One without members stays where it is.
+            // A centroid without members stays where it is.
             for (value, sum) in centre.iter_mut().zip(sum).filter(|_| count > 0) {
                 *value = (sum / count as f64) as f32;
             }

@@ -184,7 +184,7 @@ impl RowSink for Converter {
         for character in &mut self.characters {
             let raw = &mut character.raw;
             if character.turns.rotations_into(values, &mut raw.rotations) {
-                // A position may be as large: the row is looked at again.
+                // A position may be as large: only the angles of the row count.
                 raw.wild_angles.add_row(character.turns.largest(values));
             }
             for (track, place) in raw.translations_mut().zip(&character.places) {

@@ -55,7 +55,7 @@ def main(words: list[str] | None = None) -> int:
 
 
 class _Progress:
-    """Tells the progress once a second."""
+    """Prints the progress once a second."""
 
     def __init__(self) -> None:
         self._last = time.monotonic()

@@ -141,9 +141,9 @@ class Corpus:
             with open(self.folder / "index" / f"lists-{file:05}.bin", "rb") as shard:
                 shard.seek(offset)
                 lists.append((own, shard.read(length)))
-        step = self.manifest["features"]["frames_per_row"] / self.manifest["poses"]["fps"]
+        frames, fps = self.manifest["features"]["frames_per_row"], self.manifest["poses"]["fps"]
         hits = self._index.search(row, lists, count, by_clip)
-        return [Like(own, moment * step, distance) for own, moment, distance in hits]
+        return [Like(own, moment * frames / fps, distance) for own, moment, distance in hits]
 
     def _bytes(self, row: int, prefix: str) -> tuple[str, bytes]:
         columns = [prefix + name for name in ("shard", "offset", "length")]

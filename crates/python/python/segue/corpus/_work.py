@@ -1,4 +1,4 @@
-"""The work on files, and those who do it: threads of this process, or tasks of Ray."""
+"""The work on files, by threads of this process or by tasks of Ray."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def _make_one(source: Source, clean: bool, known: frozenset[str]) -> Made:
         data = read(source.place, source.member)
         beside = [(name, read(place, member)) for name, place, member in source.beside]
     except Exception as error:  # noqa: BLE001
-        # Whatever a disk, a zip or a network has to say: a row, and not the end.
+        # A failure of a disk, a zip or a network becomes a row; the build goes on.
         return Made(source, None, _core.corpus_failure(_reason(error)))
     name = source.member or source.path
     key = _core.corpus_key(name, data, beside, clean)
@@ -106,7 +106,7 @@ def made_by(workers: Any, sources: Sequence[Source]) -> Iterator[list[Made]]:
     size = workers.files_per_task
     parts = iter([sources[at : at + size] for at in range(0, len(sources), size)])
     waiting: dict[Any, Sequence[Source]] = {}
-    # A few tasks ahead keep everybody busy, and hold few results in memory.
+    # A few tasks ahead keep all workers busy, and few results are in memory.
     ahead = 3 * workers.workers
     while True:
         while len(waiting) < ahead and (part := next(parts, None)) is not None:
