@@ -10,6 +10,7 @@ use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{RichText, Ui};
 use segue_formats::ImportOptions;
+use segue_formats::robot_csv::HingeLimits;
 use segue_motion::clip::{Motion, UpAxis, ground_speed};
 use segue_motion::math::sort::sort_by_key;
 use segue_motion::skeleton::{Channel, Skeleton};
@@ -81,6 +82,9 @@ fn facts_ui(motion: &Motion, ui: &mut Ui) {
         kit::value_row_ui(label, &value, Word::new(unit), ui);
     }
     let muted = palette_of(ui).muted;
+    if HingeLimits::of(clip.skeleton()).is_some() {
+        sentence_ui(text::HINGE_COLORS, muted, ui);
+    }
     let channels = channels_in_words(clip.skeleton());
     if !channels.is_empty() {
         sentence_ui(&channels, muted, ui);
@@ -207,13 +211,18 @@ fn joints_ui(motion: &Motion, session: &Session, out: &mut Out, ui: &mut Ui) {
         chosen: joint_of(motion, session.params().text(Key::Joint)),
         max_height: TREE_HEIGHT * theme_of(ui).scale(),
     };
+    let hinges = HingeLimits::of(motion.clip().skeleton());
+    let range = |joint: usize| hinges.as_ref().and_then(|hinges| hinges.range_degrees(joint));
     let row = |joint: usize| TreeRow {
         name: joints[joint].name.clone(),
         detail: motion
             .roles()
             .role_of(joint)
             .map_or(Word::default(), |role| Word::new(role.name())),
-        hint: in_words(&joints[joint].channels),
+        hint: range(joint).map_or_else(
+            || in_words(&joints[joint].channels),
+            |[least, greatest]| msg!("turns from {least:.0}° to {greatest:.0}°", least, greatest),
+        ),
     };
     if let Some(joint) = kit::tree_ui(&tree, row, ui) {
         out.set_once(Key::Joint, Value::Text(word_of_joint(motion, joint).to_owned()));

@@ -69,31 +69,34 @@ fn add_mark(at: Vec3, color: Color, edge: Color, pane: &mut Pane) {
     }
 }
 
-/// Adds the bones of the figure of `motion` in its pose.
+/// Adds the bones of the figure of `motion` in its pose, each in the colour of the joint of the
+/// motion that moves it.
 pub(crate) fn add_bones(
     body: &Body,
     motion: &Motion,
     world: &WorldPose,
-    color: Color,
+    color_of: impl Fn(usize) -> Color,
     pane: &mut Pane,
 ) {
+    let color_of = |joint: usize| color_of(body.color_joint(joint));
     if motion.clip().is_of_points() {
-        for &at in world.positions.iter().skip(1) {
+        for (joint, &at) in world.positions.iter().enumerate().skip(1) {
             // A line so short that only its round ends are visible.
-            pane.add_line(at, at + Vec3::Y * 1e-4, color, 4.0, Layer::Over);
+            pane.add_line(at, at + Vec3::Y * 1e-4, color_of(joint), 4.0, Layer::Over);
         }
         return;
     }
     let (skeleton, _) = body.drawn_rig((motion.clip().skeleton(), motion.roles()));
     for (index, joint) in skeleton.joints().iter().enumerate() {
         if let Some(parent) = joint.parent {
-            pane.add_line(world.positions[parent], world.positions[index], color, 2.0, Layer::Over);
+            let (from, to) = (world.positions[parent], world.positions[index]);
+            pane.add_line(from, to, color_of(parent), 2.0, Layer::Over);
         }
         if let Some(end) = joint.end_site {
             pane.add_line(
                 world.positions[index],
                 world.point(index, end),
-                with_alpha(color, 0.6),
+                with_alpha(color_of(index), 0.6),
                 2.0,
                 Layer::Over,
             );

@@ -22,6 +22,9 @@ pub const fn with_alpha(color: Color, alpha: f32) -> Color {
     [color[0], color[1], color[2], alpha]
 }
 
+/// Share of the body colour in the colour of a limb that has its own.
+pub(crate) const CLAY_SHARE: f32 = 0.3;
+
 /// Returns the opaque colour between two at `share`.
 pub(crate) fn mixed(from: Color, to: Color, share: f32) -> Color {
     let between = |channel: usize| from[channel] + (to[channel] - from[channel]) * share;
@@ -37,9 +40,9 @@ pub struct Colors {
     pub b: Color,
     /// The path of the result, and the ring of a planted foot.
     pub result: Color,
-    /// The ring of a foot that slides.
+    /// The ring of a foot that slides, and a hinge beyond its limit.
     pub bad: Color,
-    /// The parts of a path that turn faster than the motion on it can.
+    /// The parts of a path that turn faster than the motion on it can, and a hinge at its limit.
     pub warning: Color,
     /// Extra characters and those of a crowd, in turn.
     pub others: [Color; 4],

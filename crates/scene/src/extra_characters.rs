@@ -50,7 +50,7 @@ pub(crate) fn add_character(
     pane: &mut Pane,
 ) {
     if context.params.choice::<Look>() == Look::Bones {
-        add_bones(body, motion, world, color, pane);
+        add_bones(body, motion, world, |_| color, pane);
     } else {
         pane.add_body(body, world, mixed(context.look.clay, color, share));
     }

@@ -79,6 +79,7 @@ mod extra_characters;
 mod framing;
 mod ground_path;
 mod highlights;
+mod hinges;
 mod labs;
 mod look;
 mod pane;

@@ -3,6 +3,7 @@
 use crate::annotations::{add_axes, add_bones, add_contacts, add_joint_trail};
 use crate::context::{DrawContext, PosedResult};
 use crate::ground_path::{add_ground_path, color_at};
+use crate::hinges::{hinge_color, hinge_states, limb_color};
 use crate::posing::twisted;
 use crate::{Pane, labs, sources, with_alpha};
 use segue_session::choices::Look;
@@ -20,16 +21,21 @@ pub(crate) fn add_result(shown: &PosedResult<'_>, context: &mut DrawContext<'_>,
     let twisted = twisted(rig, &shown.world, params.number(Key::Twist));
     let world = twisted.as_ref().unwrap_or(&shown.world);
     let figure = params.choice::<Look>();
+    let hinges = hinge_states(motion, *now);
     match (figure, outcome.layer().filter(|_| params.is_on(Key::MaskColors))) {
         (Look::Bones, _) => {}
         (Look::Both, _) => pane.add_glass(body, world, with_alpha(look.clay, GLASS_ALPHA)),
         (_, Some(layer)) => pane.add_colored_body(body, world, |joint| {
             labs::layers::share_color(layer, joint, look, colors)
         }),
-        (_, None) => pane.add_body(body, world, look.clay),
+        (_, None) if hinges.is_empty() => pane.add_body(body, world, look.clay),
+        (_, None) => {
+            pane.add_colored_body(body, world, |joint| limb_color(&hinges, joint, look, colors))
+        }
     }
     if matches!(figure, Look::Bones | Look::Both) {
-        add_bones(body, motion, world, colors.result, pane);
+        let color_of = |joint| hinge_color(&hinges, joint, colors).unwrap_or(colors.result);
+        add_bones(body, motion, world, color_of, pane);
     }
     if params.is_on(Key::Axes) {
         add_axes(world, colors, pane);

@@ -132,6 +132,9 @@ pub(crate) const FEET: Word = Word::new("Feet and ground");
 pub(crate) const MEAN_SPEED: Word = Word::new("Mean speed");
 pub(crate) const JOINTS: Word = Word::new("Joints");
 pub(crate) const JOINT_TREE: Word = Word::new("Joints of the clip");
+/// The colours of a robot's limbs.
+pub(crate) const HINGE_COLORS: Word =
+    Word::new("Limbs behind a hinge at its limit (within 1°) are amber, beyond its limit red.");
 pub(crate) const MADE_BODY: Word = Word::new("generated from the skeleton");
 pub(crate) const BODY_PARTS: Word = Word::new("Body parts");
 pub(crate) const UNIT: Word = Word::new("Unit");

@@ -2,6 +2,7 @@
 
 use super::COLUMNS;
 use super::g1::HINGES;
+use super::limits::TOLERANCE;
 use super::robot::{Robot, RobotPose};
 use crate::assemble::assemble;
 use crate::bvh::{MEMORY_FLOOR, MEMORY_PER_BYTE};
@@ -16,8 +17,6 @@ use segue_text::msg;
 /// Frames per second of retargeted sets without header, and of tables with one.
 const PLAIN_FPS: f64 = 30.0;
 const NAMED_FPS: f64 = 120.0;
-/// An angle beyond a limit by less than this is a rounding error, radians.
-const TOLERANCE: f64 = 1e-3;
 /// The least difference of the mean uprightness of two quaternion orders by which one is chosen.
 const CLEARLY_UPRIGHT: f64 = 0.05;
 /// The least travel that determines the robot's direction of motion, metres.

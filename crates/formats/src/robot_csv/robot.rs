@@ -3,7 +3,10 @@
 use super::g1::{Axis, FEET, HEAD_IN_TORSO, HINGES, TOE_IN_FOOT, TORSO};
 use crate::raw::RawMotion;
 use glam::{DQuat, DVec3, Quat, Vec3};
-use segue_motion::skeleton::Joint;
+use segue_motion::skeleton::{Joint, Skeleton};
+
+/// Joints of the robot are at most this far from their places in the model, metres.
+const SAME_PLACE_M: f32 = 1e-3;
 
 /// The pose of a robot in a frame, metres and radians, Z up.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,4 +87,33 @@ impl Robot {
         }
         raw
     }
+}
+
+/// Returns the angle of the part of a rotation that is about an axis, radians, from -2π to 2π.
+pub(super) fn angle_about(turn: DQuat, axis: DVec3) -> f64 {
+    2.0 * libm::atan2(turn.xyz().dot(axis), turn.w)
+}
+
+/// Returns a direction of the clip, which is Y up, with Z up.
+pub(super) fn direction(v: Vec3) -> DVec3 {
+    DVec3::new(v.x.into(), (-v.z).into(), v.y.into())
+}
+
+/// Returns a rotation of the clip, which is Y up, with Z up, of length 1.
+pub(super) fn z_up(q: Quat) -> DQuat {
+    let v = direction(Vec3::new(q.x, q.y, q.z));
+    let q = DQuat::from_xyzw(v.x, v.y, v.z, q.w.into());
+    let length = q.length();
+    if length > 1e-6 && length.is_finite() { q * length.recip() } else { DQuat::IDENTITY }
+}
+
+/// Returns whether a skeleton is the robot's.
+pub(super) fn is_robot(skeleton: &Skeleton, robot: &Robot) -> bool {
+    let (joints, expected) = (skeleton.joints(), robot.joints());
+    joints.len() == expected.len()
+        && joints.iter().zip(expected).all(|(own, expected)| {
+            let is_there = own.parent.is_none()
+                || direction(own.offset).as_vec3().distance(expected.offset) < SAME_PLACE_M;
+            own.name == expected.name && own.parent == expected.parent && is_there
+        })
 }

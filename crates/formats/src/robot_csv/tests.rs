@@ -63,6 +63,46 @@ fn tables_of_all_kinds_put_bodies_where_mujoco_does() {
 }
 
 #[test]
+fn hinges_at_and_beyond_their_limits_are_told_from_free_ones() {
+    use HingeState::{AtLimit, BeyondLimit, Free};
+    let row = |degrees: f64| {
+        let knee = (3..32).map(|hinge| if hinge == 6 { degrees.to_radians() } else { 0.0 });
+        let cells = [0.0, 0.0, 0.8, 0.0, 0.0, 0.0, 1.0].into_iter().chain(knee);
+        cells.map(|cell| cell.to_string()).collect::<Vec<_>>().join(",")
+    };
+    // The knee bends from -5° to 165°.
+    let expected = [
+        (0.0, Free),
+        (90.0, Free),
+        (163.5, Free),
+        (164.5, AtLimit),
+        (165.0, AtLimit),
+        (166.0, BeyondLimit),
+        (179.0, BeyondLimit),
+        (-3.5, Free),
+        (-4.5, AtLimit),
+        (-6.0, BeyondLimit),
+    ];
+    let rows: Vec<String> = expected.iter().map(|(degrees, _)| row(*degrees)).collect();
+    let file = opened(&rows.join("\n"));
+    let clip = &file.clips[0].clip;
+    let limits = HingeLimits::of(clip.skeleton()).unwrap();
+    let knee = clip.skeleton().find("left_knee").unwrap();
+    let range = limits.range_degrees(knee).unwrap().map(f64::round);
+    assert_eq!((range, limits.range_degrees(0)), ([-5.0, 165.0], None));
+    for (frame, (degrees, state)) in expected.into_iter().enumerate() {
+        let rotations = clip.rotations(frame);
+        assert_eq!(limits.state(knee, rotations[knee]), state, "{degrees}°");
+        assert_eq!(limits.state(knee, -rotations[knee]), state, "{degrees}°, negated");
+        let others = (0..rotations.len()).filter(|joint| *joint != knee);
+        let states = others.map(|joint| limits.state(joint, rotations[joint]));
+        assert!(states.into_iter().all(|state| state == Free), "{degrees}°");
+    }
+    let human = segue_motion::synth::humanoid(1.75).unwrap();
+    assert_eq!(HingeLimits::of(&human), None);
+}
+
+#[test]
 fn robot_has_the_roles_of_a_body() {
     let file = opened(LAST);
     let clip = &file.clips[0].clip;

@@ -1,17 +1,14 @@
 //! Writing of tables of the robot's hinges.
 
 use super::g1::HINGES;
-use super::robot::Robot;
-use glam::{DQuat, DVec3, Quat, Vec3};
+use super::robot::{Robot, angle_about, direction, is_robot, z_up};
+use glam::DQuat;
 use segue_motion::clip::{Clip, Interpolation, resample};
-use segue_motion::skeleton::Skeleton;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 /// Frames per second that programs assume: a table states none.
 const FPS: f64 = 30.0;
-/// Joints of the robot are at most this far from their places in the model, metres.
-const SAME_PLACE_M: f32 = 1e-3;
 /// A joint that turns about other axes than that of its hinge by more than this cannot be written,
 /// radians (2°).
 const MAX_OFF_AXIS: f64 = 0.035;
@@ -76,7 +73,7 @@ pub fn write_robot_csv(clip: &Clip, fps: Option<f64>) -> Result<String, RobotCsv
             if off > worst.map_or(MAX_OFF_AXIS, |(_, most, _)| most) {
                 worst = Some((hinge, off, frame));
             }
-            let angle = 2.0 * libm::atan2(along, turn.w);
+            let angle = angle_about(turn, *axis);
             angles[hinge] = angle + TAU * ((angles[hinge] - angle) / TAU).round();
         }
         out.push(',');
@@ -99,26 +96,4 @@ fn write_row(out: &mut String, values: impl Iterator<Item = f64>) {
         // Writing to a string cannot fail.
         write!(out, "{comma}{}", value as f32).ok();
     }
-}
-
-/// Returns a direction of the clip, which is Y up, with Z up.
-fn direction(v: Vec3) -> DVec3 {
-    DVec3::new(v.x.into(), (-v.z).into(), v.y.into())
-}
-
-fn z_up(q: Quat) -> DQuat {
-    let v = direction(Vec3::new(q.x, q.y, q.z));
-    let q = DQuat::from_xyzw(v.x, v.y, v.z, q.w.into());
-    let length = q.length();
-    if length > 1e-6 && length.is_finite() { q * length.recip() } else { DQuat::IDENTITY }
-}
-
-fn is_robot(skeleton: &Skeleton, robot: &Robot) -> bool {
-    let (joints, expected) = (skeleton.joints(), robot.joints());
-    joints.len() == expected.len()
-        && joints.iter().zip(expected).all(|(own, expected)| {
-            let is_there = own.parent.is_none()
-                || direction(own.offset).as_vec3().distance(expected.offset) < SAME_PLACE_M;
-            own.name == expected.name && own.parent == expected.parent && is_there
-        })
 }

@@ -1,11 +1,8 @@
 //! The Layers lab: each joint in the colour of the clip that moves it.
 
-use crate::color::mixed;
+use crate::color::{CLAY_SHARE, mixed};
 use crate::{Color, Colors, Look};
 use segue_session::LayerFacts;
-
-/// Share of the body colour in the colour of a limb.
-const CLAY_SHARE: f32 = 0.3;
 
 /// Returns the colour of a joint by B's share in it, from A's colour to B's, mixed with the body
 /// colour.
