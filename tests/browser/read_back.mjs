@@ -1,14 +1,17 @@
-// Comparison of exported files in three.js: BVH through its BVHLoader and GLB through its
-// GLTFLoader, against the positions that were exported as CSV. A test of the page uses it
+// Comparison of exported files in three.js: BVH through its BVHLoader, GLB through its GLTFLoader,
+// and VRM animations through the plug-in of three-vrm, against the positions that were exported as
+// CSV. A test of the page uses it
 // (exchange.test.mjs), and `cargo xtask test oracles` runs `node read_back.mjs FOLDER` on the files
 // that the core's tests leave in target/tmp/exchange.
 
 import { readFileSync } from "node:fs";
 import process from "node:process";
 import { pathToFileURL } from "node:url";
-import { PropertyBinding, Scene, Vector3 } from "three";
+import { PropertyBinding, Quaternion, Scene, Vector3 } from "three";
 import { BVHLoader } from "three/addons/loaders/BVHLoader.js";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
+import { VRMAnimationLoaderPlugin } from "@pixiv/three-vrm-animation";
+import { VRMHumanBoneParentMap } from "@pixiv/three-vrm-core";
 import validator from "gltf-validator";
 
 /** A thousandth of a centimetre, metres. */
@@ -46,6 +49,39 @@ export async function fromGlb(bytes, name) {
   const found = animations.filter((animation) => name === undefined || animation.name === name);
   if (!skin || found.length !== 1) throw new Error(`${found.length} animations, and ${skin ? "a" : "no"} skin`);
   return { joints: skin.skeleton.bones.map((bone) => bone.name), frames: frames(scene, skin.skeleton.bones, found[0], 1), skin };
+}
+
+/**
+ * Reads a VRM animation. Returns joints and frames as for CSV: the bones of a body that rests as
+ * the file does, and has the rotations that the plug-in hands to any body.
+ */
+export async function fromVrma(bytes) {
+  const loader = new GLTFLoader().register((parser) => new VRMAnimationLoaderPlugin(parser));
+  const buffer = bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength);
+  const { userData: { vrmAnimations: [animation] }, parser } = await loader.parseAsync(buffer, "");
+  const nodes = await parser.getDependencies("node");
+  const bones = new Map(Object.entries(parser.json.extensions.VRMC_vrm_animation.humanoid.humanBones)
+    .map(([bone, { node }]) => [bone, { name: parser.json.nodes[node].name, rest: nodes[node].getWorldPosition(new Vector3()) }]));
+  const { rotation, translation } = animation.humanoidTracks;
+  const hips = translation.get("hips").values;
+  const frameOf = (frame) => {
+    const placed = new Map();
+    const place = (bone) => {
+      if (placed.has(bone)) return placed.get(bone);
+      let above = VRMHumanBoneParentMap[bone];
+      while (above && !bones.has(above)) above = VRMHumanBoneParentMap[above];
+      const turn = new Quaternion().fromArray(rotation.get(bone)?.values ?? [0, 0, 0, 1], rotation.has(bone) ? 4 * frame : 0);
+      const parent = above ? place(above) : undefined;
+      const at = parent
+        ? bones.get(bone).rest.clone().sub(bones.get(above).rest).applyQuaternion(parent.turn).add(parent.at)
+        : new Vector3().fromArray(hips, 3 * frame);
+      const own = { at, turn: parent ? turn.premultiply(parent.turn) : turn };
+      placed.set(bone, own);
+      return own;
+    };
+    return [...bones.keys()].map((bone) => place(bone).at);
+  };
+  return { joints: [...bones.values()].map(({ name }) => name), frames: Array.from({ length: hips.length / 3 }, (_, frame) => frameOf(frame)) };
 }
 
 /** Returns the messages of Khronos' validator for a GLB file, none where it is valid. */
@@ -111,6 +147,10 @@ async function main(folder) {
   for (const name of readFileSync(`${folder}/together.txt`, "utf8").trim().split("\n")) {
     const expected = fromCsv(readFileSync(`${folder}/together ${name}.csv`, "utf8"));
     tell(`together.glb, ${name}`, farthest(expected, await fromGlb(together, name), byIndex));
+  }
+  for (const name of readFileSync(`${folder}/bones.txt`, "utf8").trim().split("\n")) {
+    const expected = fromCsv(readFileSync(`${folder}/bones ${name}.csv`, "utf8"));
+    tell(`${name}.vrma`, farthest(expected, await fromVrma(readFileSync(`${folder}/bones ${name}.vrma`))));
   }
   for (const complaint of await complaints(together)) {
     console.log(`together.glb: ${complaint}`);

@@ -13,7 +13,9 @@ use glam::{DMat4, DVec3};
 use segue_formats::bvh::{RotationOrder, WriteOptions, write};
 use segue_formats::csv::{CsvInputs, CsvOptions, write_csv};
 use segue_formats::fbx::{FbxOptions, write_fbx};
-use segue_formats::gltf::{GlbOptions, write_character_glb, write_clips_glb, write_glb};
+use segue_formats::gltf::{
+    GlbOptions, write_character_glb, write_clips_glb, write_glb, write_vrma,
+};
 use segue_formats::numpy::write_npz;
 use segue_formats::{ImportOptions, import};
 use segue_motion::clip::{Clip, Motion, UpAxis};
@@ -202,6 +204,18 @@ fn exported_files_are_left_for_other_readers() {
     save("csv", write_csv(&inputs, &CsvOptions::default()).as_bytes());
     writeln!(list, "character {}", unit(&clip, &WriteOptions::default())).unwrap();
     fs::write(folder.join("cases.txt"), list).unwrap();
+    // A VRM animation has bones alone, all of them those of the synthesised body.
+    let mut list = String::new();
+    for action in [Action::Walk, Action::Run, Action::Spin] {
+        let walk = synthesize(&Params::new(action)).unwrap().clip;
+        let bytes = write_vrma(&walk, &Roles::detect(walk.skeleton()), None).unwrap();
+        fs::write(folder.join(format!("bones {}.vrma", walk.name())), bytes).unwrap();
+        let inputs = CsvInputs { clip: &walk, contacts: None, columns: &[] };
+        let table = write_csv(&inputs, &CsvOptions::default());
+        fs::write(folder.join(format!("bones {}.csv", walk.name())), table).unwrap();
+        writeln!(list, "{}", walk.name()).unwrap();
+    }
+    fs::write(folder.join("bones.txt"), list).unwrap();
     // Two clips in one file, with a root bone on the ground.
     let clips = [Action::Walk, Action::Run]
         .map(|action| synthesize(&Params::new(action)).unwrap().clip.with_ground_root());
