@@ -13,8 +13,8 @@
 //! ahead or back, both stand, and then the direction of travel decides, with a warning.
 //!
 //! The clip's joints are the pelvis and the bodies behind each hinge, at rest with all angles 0.
-//! Angles beyond the limits of a hinge are kept, with a warning. [`HingeLimits`] finds the hinges that
-//! are at their limits in a pose.
+//! Angles beyond the limits of a hinge are kept, with a warning. [`HingeLimits`] finds the hinges
+//! that are at their limits in a pose.
 
 mod g1;
 mod limits;

@@ -30,7 +30,7 @@ pub(crate) fn add_result(shown: &PosedResult<'_>, context: &mut DrawContext<'_>,
         }),
         (_, None) if hinges.is_empty() => pane.add_body(body, world, look.clay),
         (_, None) => {
-            pane.add_colored_body(body, world, |joint| limb_color(&hinges, joint, look, colors))
+            pane.add_colored_body(body, world, |joint| limb_color(&hinges, joint, look, colors));
         }
     }
     if matches!(figure, Look::Bones | Look::Both) {

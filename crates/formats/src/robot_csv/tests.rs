@@ -84,7 +84,8 @@ fn hinges_at_and_beyond_their_limits_are_told_from_free_ones() {
         (-6.0, BeyondLimit),
     ];
     let rows: Vec<String> = expected.iter().map(|(degrees, _)| row(*degrees)).collect();
-    let file = opened(&rows.join("\n"));
+    let options = ImportOptions { drop_t_pose: false, ..ImportOptions::default() };
+    let file = import("robot.csv", rows.join("\n").as_bytes(), &options).unwrap();
     let clip = &file.clips[0].clip;
     let limits = HingeLimits::of(clip.skeleton()).unwrap();
     let knee = clip.skeleton().find("left_knee").unwrap();
