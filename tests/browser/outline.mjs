@@ -1,0 +1,64 @@
+// A measurement without bounds: what the elements for screen readers cost. Pages with and without
+// them take turns, play three panes, and then have a parameter dragged. "In the page" is the time of
+// web/js/outline.js alone, with the layout that it causes; the rest is the difference of frames.
+//
+//   node tests/browser/outline.mjs [--size 1280x800] [--frames 240] [--rounds 3]
+
+import process from "node:process";
+import { parseArgs } from "node:util";
+import { BACKENDS, close, openSegue } from "./segue.mjs";
+
+const { values } = parseArgs({
+  options: { size: { type: "string", default: "1280x800" }, frames: { type: "string", default: "240" }, rounds: { type: "string", default: "3" } },
+});
+const viewport = values.size.split("x").map(Number);
+const [frames, rounds] = [values.frames, values.rounds].map(Number);
+const UPDATE = "this.#update(JSON.parse(text))";
+const rows = {};
+
+try {
+  for (const backend of BACKENDS) {
+    for (let round = 1; round <= rounds; round++) {
+      for (const has of [true, false]) rows[`${backend} ${has ? "with" : "without"} ${round}`] = await measure(backend, has);
+    }
+  }
+} finally {
+  await close();
+}
+console.table(rows);
+process.exit();
+
+async function measure(backend, has) {
+  const prepare = (page) => page.route("**/outline*.js", async (route) => {
+    if (!has) return route.abort();
+    const response = await route.fetch();
+    const source = await response.text();
+    if (!source.includes(UPDATE)) throw new Error(`outline.js has no ${UPDATE}`);
+    const timed = `{ const began = performance.now(); ${UPDATE}; this.#root.getBoundingClientRect(); (window.outlineTimes ??= []).push(performance.now() - began); }`;
+    return route.fulfill({ response, body: source.replace(UPDATE, timed) });
+  });
+  const { page, segue } = await openSegue(backend, "compare=blend_window:30,15,10", { viewport, prepare });
+  const found = await drawn(page, segue);
+  const playing = await segue("stats");
+  const inPage = await page.evaluate(() => (window.outlineTimes ?? []).slice(-240));
+  await page.evaluate(() => { window.outlineTimes = []; });
+  await page.context().close();
+  const row = { "p50 ms": playing.frame_ms.p50, "p95 ms": playing.frame_ms.p95 };
+  for (const [name, share] of [["in the page p50", 0.5], ["in the page p95", 0.95]]) row[name] = part(inPage, share);
+  return Object.fromEntries([...Object.entries(row).map(([name, number]) => [name, Number(number.toFixed(2))]), ["updates", inPage.length], ["frames", found]]);
+}
+
+/** Waits until as many frames are drawn, so that those of the start no longer count. */
+async function drawn(page, segue) {
+  const start = (await segue("stats")).frames;
+  for (;;) {
+    await page.waitForTimeout(1000);
+    const now = (await segue("stats")).frames - start;
+    if (now >= frames) return now;
+  }
+}
+
+function part(times, share) {
+  const sorted = [...times].sort((a, b) => a - b);
+  return sorted.length === 0 ? NaN : sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))];
+}
