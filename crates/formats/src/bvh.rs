@@ -17,6 +17,8 @@ mod hierarchy;
 mod lexer;
 mod motion;
 mod number;
+#[cfg(feature = "parallel")]
+mod parallel;
 mod read;
 mod turns;
 mod write;

@@ -12,9 +12,17 @@ use segue_text::msg;
 const PROGRESS_STEP: usize = 1 << 18;
 
 /// A receiver of complete rows.
-pub(super) trait RowSink {
+pub(super) trait RowSink: Sized + Send {
     /// Takes one row, which ends at `end`; an error says why no more rows can be taken.
     fn row(&mut self, values: &[f64], end: usize) -> Result<(), Fault>;
+
+    /// Returns a sink without rows for those that lie in these bytes.
+    #[cfg(feature = "parallel")]
+    fn for_part(&self, bytes: std::ops::Range<usize>) -> Self;
+
+    /// Takes the rows of a part; an error says why they cannot be taken.
+    #[cfg(feature = "parallel")]
+    fn append(&mut self, part: Self) -> Result<(), Fault>;
 }
 
 /// A callback with the number of bytes read so far; it returns `false` to stop.
@@ -90,7 +98,7 @@ impl Rows<'_, '_> {
 
     fn by_line(&mut self, sink: &mut impl RowSink, progress: Progress<'_>) -> Result<usize, Stop> {
         let width = self.row.len();
-        let mut count = 0;
+        let mut count = self.plain_rows(sink)?;
         loop {
             self.lexer.skip_blank();
             let start = self.lexer.at;
@@ -153,6 +161,27 @@ impl Rows<'_, '_> {
             }
             return Ok(count);
         }
+    }
+
+    /// Reads plain rows on all cores, up to the first other line or near the end of the file.
+    /// Returns their number.
+    #[cfg(feature = "parallel")]
+    fn plain_rows(&mut self, sink: &mut impl RowSink) -> Result<usize, Fault> {
+        if self.lexer.commas {
+            return Ok(0);
+        }
+        let Self { lexer, row, .. } = self;
+        let (rows, end) = super::parallel::plain_rows(lexer.text, lexer.at, row, sink)?;
+        self.lexer.at = end;
+        self.values += (rows * self.row.len()) as u64;
+        Ok(rows)
+    }
+
+    /// Reads nothing: a browser has one core for a file.
+    #[cfg(not(feature = "parallel"))]
+    #[expect(clippy::unused_self, clippy::unnecessary_wraps, reason = "as where there are cores")]
+    fn plain_rows(&self, _sink: &impl RowSink) -> Result<usize, Fault> {
+        Ok(0)
     }
 
     fn truncated(&mut self, at: usize, found: usize) {
@@ -339,6 +368,17 @@ mod tests {
     impl RowSink for Kept {
         fn row(&mut self, values: &[f64], _end: usize) -> Result<(), Fault> {
             self.0.push(values.to_vec());
+            Ok(())
+        }
+
+        #[cfg(feature = "parallel")]
+        fn for_part(&self, _bytes: std::ops::Range<usize>) -> Self {
+            Self::default()
+        }
+
+        #[cfg(feature = "parallel")]
+        fn append(&mut self, part: Self) -> Result<(), Fault> {
+            self.0.extend(part.0);
             Ok(())
         }
     }
