@@ -51,6 +51,13 @@ export async function openSegue(backend, query = "", options = {}) {
   const context = await browser.newContext({
     viewport: { width, height }, deviceScaleFactor: scale, colorScheme: theme, reducedMotion: motion, serviceWorkers: keeps ? "allow" : "block",
   });
+  // A page that is loaded again has no API for a moment: calls wait for that of the new one.
+  await context.addInitScript(() => {
+    window.whenReady = async () => {
+      while (!("segueReady" in window)) await new Promise((resolve) => setTimeout(resolve, 10));
+      return window.segueReady;
+    };
+  });
   const page = await context.newPage();
   page.setDefaultTimeout(WAIT_TIMEOUT_MS);
   const log = [];
@@ -71,7 +78,7 @@ export async function openSegue(backend, query = "", options = {}) {
     /** Resolves when the page is ready, rejects with the page's own reason. */
     ready: async () => {
       await page.waitForFunction(() => "segueReady" in window);
-      return page.evaluate(() => window.segueReady.then(() => true));
+      return page.evaluate(() => window.whenReady().then(() => true));
     },
     /**
      * Calls the page's API: `segue("set", { lab: "blend" })`; a property by its name alone:
@@ -120,7 +127,7 @@ export async function drag(page, from, to, steps = 12) {
 
 function call(page, member, args) {
   return page.evaluate(async ([member, args]) => {
-    const segue = await window.segueReady;
+    const segue = await window.whenReady();
     const value = segue[member];
     const result = typeof value === "function" ? await value(...args) : value;
     return result instanceof Uint8Array ? { base64: btoa(Array.from(result, (byte) => String.fromCharCode(byte)).join("")) } : result;
@@ -129,14 +136,14 @@ function call(page, member, args) {
 
 function load(page, name, bytes) {
   return page.evaluate(async ([name, base64]) => {
-    const segue = await window.segueReady;
+    const segue = await window.whenReady();
     return segue.load(name, Uint8Array.from(atob(base64), (char) => char.charCodeAt(0)));
   }, [name, Buffer.from(bytes).toString("base64")]);
 }
 
 async function snapshot(page) {
   const base64 = await page.evaluate(async () => {
-    const blob = await (await window.segueReady).snapshot();
+    const blob = await (await window.whenReady()).snapshot();
     if (!(blob instanceof Blob) || blob.type !== "image/png") throw new Error(`no PNG: ${blob.type}`);
     return btoa(Array.from(new Uint8Array(await blob.arrayBuffer()), (byte) => String.fromCharCode(byte)).join(""));
   });
