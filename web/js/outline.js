@@ -83,9 +83,11 @@ export class Outline {
   #show(told) {
     const { number, role, name = "", description = "", value = "", range, state, expanded, popup, level, disabled, focusable, modal, place } = told;
     let element = this.#elements.get(number);
+    let before = this.#told.get(number);
     const tag = TAGS[role] ?? "div";
-    if (element?.localName !== tag || this.#told.get(number).role !== role) {
+    if (element?.localName !== tag || before.role !== role) {
       const old = element;
+      before = undefined;
       element = document.createElement(tag);
       element.dataset.number = number;
       old?.replaceWith(element);
@@ -94,13 +96,17 @@ export class Outline {
     }
     this.#told.set(number, told);
 
+    // While a motion plays, an element or two change in each frame, each in a value. What is written again has the browser lay out
+    // the page again.
     const set = (attribute, value) => {
       if (value === undefined || value === "" || value === false) element.removeAttribute(attribute);
-      else element.setAttribute(attribute, value);
+      else if (element.getAttribute(attribute) !== String(value)) element.setAttribute(attribute, value);
     };
     const isText = ["text", "alert", "status"].includes(role) && !told.children;
     if (isText) setText(element, name);
-    set("aria-label", isText ? "" : name);
+    // A value without an attribute of its own goes into the name, such as the choice of a combo box.
+    const hasOwnValue = isText || range || role === "slider" || role === "edit";
+    set("aria-label", isText ? "" : value && !hasOwnValue ? `${name}: ${value}` : name);
     set("aria-description", description);
     set("tabindex", focusable ? 0 : undefined);
     set("aria-disabled", disabled && "true");
@@ -123,13 +129,12 @@ export class Outline {
       set("aria-valuemin", range.min?.toString());
       set("aria-valuemax", range.max?.toString());
       set("aria-valuetext", value);
-    } else if (value && !isText) {
-      // A value without an attribute of its own goes into the name, such as the choice of a combo box.
-      set("aria-label", `${name}: ${value}`);
     }
     const [left, top, width, height] = place;
     // Not as an attribute: the page's policy forbids styles in its markup.
-    Object.assign(element.style, { left: `${left}px`, top: `${top}px`, width: `${width}px`, height: `${height}px` });
+    if (String(before?.place) !== String(place)) {
+      Object.assign(element.style, { left: `${left}px`, top: `${top}px`, width: `${width}px`, height: `${height}px` });
+    }
   }
 
   /**
