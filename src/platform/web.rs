@@ -11,6 +11,7 @@ mod pool;
 mod reader;
 mod snapshot;
 mod storage;
+mod stored_place;
 
 pub(crate) use fetch::{Fetch, fetch, load_language, load_lesson, load_sample};
 pub(crate) use files::{copy_text, download, open_files, read_dropped};

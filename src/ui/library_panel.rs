@@ -1,11 +1,9 @@
 //! The left panel: the library of clips.
 
-mod arrange;
+pub(in crate::ui) mod arrange;
 mod files;
 mod row;
 mod selection;
-
-pub(crate) use self::arrange::{Arranged, RowHeights};
 
 use self::arrange::{ArrangedFor, Row, Section, arrange};
 use self::files::files_ui;

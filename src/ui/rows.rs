@@ -5,13 +5,14 @@ mod footer;
 mod param;
 mod remedies;
 mod retarget;
+mod retarget_errors;
 mod save;
 
 pub(crate) use clip_sets::clip_sets_ui;
 pub(crate) use footer::{KeepOffer, footer_ui};
 pub(crate) use param::{Detail, compare_choice_ui, param_row_ui};
 pub(crate) use remedies::{body_parts_asked_for, remedy_buttons_ui};
-pub(crate) use retarget::{character_errors_ui, retarget_rows_ui};
+pub(crate) use retarget::retarget_rows_ui;
 pub(crate) use save::{format_rows_ui, save_rows_ui};
 
 use super::clip_drag::clip_dropped_on;

@@ -1,5 +1,6 @@
 //! The state of the interface between frames.
 
+pub(in crate::ui) mod clip_order;
 mod convert;
 mod library;
 mod notices;
@@ -7,8 +8,9 @@ mod presenter;
 mod strip;
 mod swipe;
 
+pub(crate) use clip_order::ClipOrder;
 pub(crate) use convert::{ConvertShown, ConvertState};
-pub(crate) use library::{ClipOrder, HeldKeys, LibraryState};
+pub(crate) use library::{HeldKeys, LibraryState};
 pub(crate) use notices::NoticePlace;
 pub(crate) use presenter::Presenter;
 pub(crate) use strip::StripState;

@@ -20,6 +20,7 @@ mod number;
 #[cfg(feature = "parallel")]
 mod parallel;
 mod read;
+mod row_sink;
 mod turns;
 mod write;
 

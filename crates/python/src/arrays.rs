@@ -45,3 +45,37 @@ pub(crate) fn components(vectors: Vec<Vec3>) -> Vec<f32> {
 pub(crate) fn wxyz<'a>(quats: impl Iterator<Item = &'a Quat>) -> Vec<f32> {
     quats.flat_map(|quat| [quat.w, quat.x, quat.y, quat.z]).collect()
 }
+
+/// Checks the shape of an array.
+pub(crate) fn expect_shape(name: &str, found: &[usize], expected: &[usize]) -> PyResult<()> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(PyValueError::new_err(format!("{name}: found shape {found:?}, expected {expected:?}")))
+}
+
+/// Returns vectors of three finite numbers each.
+pub(crate) fn vectors(name: &str, values: impl Iterator<Item = f32>) -> PyResult<Vec<Vec3>> {
+    let values: Vec<f32> = values.collect();
+    if values.iter().any(|value| !value.is_finite()) {
+        return Err(PyValueError::new_err(format!("{name}: expected finite numbers")));
+    }
+    Ok(values.chunks_exact(3).map(Vec3::from_slice).collect())
+}
+
+/// Returns unit quaternions of numbers in the order w x y z.
+pub(crate) fn unit_quaternions(values: impl Iterator<Item = f32>) -> PyResult<Vec<Quat>> {
+    let values: Vec<f32> = values.collect();
+    let of_four = |four: &[f32]| {
+        let [w, x, y, z] = *four else {
+            return Quat::IDENTITY;
+        };
+        Quat::from_xyzw(x, y, z, w)
+    };
+    let quats: Vec<Quat> = values.chunks_exact(4).map(of_four).collect();
+    // Single precision keeps a length to 1e-6; a length that is off by more is another thing.
+    if !quats.iter().all(|quat| (quat.length() - 1.0).abs() < 1e-3) {
+        return Err(PyValueError::new_err("rotations: expected unit quaternions, w x y z"));
+    }
+    Ok(quats.into_iter().map(|quat| quat / quat.length()).collect())
+}

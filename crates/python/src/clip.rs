@@ -1,9 +1,10 @@
 //! Clips: a motion with where it comes from, as arrays.
 
-use crate::arrays::{array, components, fixed_array, wxyz};
-use crate::errors::write_error;
-use crate::load::clips_of_bytes;
-use crate::save::SaveOptions;
+use crate::arrays::{
+    array, components, expect_shape, fixed_array, unit_quaternions, vectors, wxyz,
+};
+use crate::errors::{read_error, unusable, write_error};
+use crate::save::{SaveOptions, bytes_of};
 use glam::{Quat, Vec3};
 use numpy::{
     PyArray1, PyArray2, PyArray3, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods as _,
@@ -19,7 +20,8 @@ use segue_formats::numpy::write_npz;
 use segue_motion::clip::Motion;
 use segue_motion::skeleton::{Joint, Role, Side, Skeleton, WorldPose};
 use segue_motion::skin::Character;
-use segue_session::reading::ReadFile;
+use segue_session::file_id;
+use segue_session::reading::{ReadFile, ReadReport, ReadSetup, read};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -34,6 +36,9 @@ pub(crate) struct Origin {
     /// The files that the id names.
     pub(crate) files: Vec<Arc<ReadFile>>,
 }
+
+/// The clips of a file, or the reason why there are none.
+pub(crate) type Loaded = Result<Vec<Clip>, PyErr>;
 
 /// A motion on a skeleton: rotations of joints, and the way of the first joint, frame by frame.
 ///
@@ -99,43 +104,60 @@ impl Clip {
     /// by that file, and `save` writes the same.
     fn of_npz(clip: &segue_motion::clip::Clip) -> PyResult<Self> {
         let name = format!("{}.npz", clip.name());
-        let mut clips = clips_of_bytes(&name, &write_npz(clip), ImportOptions::default())?;
+        let mut clips = Self::read_all(&name, &write_npz(clip), ImportOptions::default())?;
         clips.pop().ok_or_else(|| write_error("it has no frames"))
     }
-}
 
-/// Checks the shape of an array.
-fn expect_shape(name: &str, found: &[usize], expected: &[usize]) -> PyResult<()> {
-    if found == expected {
-        return Ok(());
+    /// Reads the clips of a file from memory.
+    pub(crate) fn read_all(name: &str, bytes: &[u8], options: ImportOptions) -> Loaded {
+        let setup = ReadSetup { options, ..ReadSetup::default() };
+        let report = read(name, bytes, &setup, &mut |_| true).unwrap_or_default();
+        Self::of_report(name, report)
     }
-    Err(PyValueError::new_err(format!("{name}: found shape {found:?}, expected {expected:?}")))
-}
 
-/// Returns vectors of three finite numbers each.
-fn vectors(name: &str, values: impl Iterator<Item = f32>) -> PyResult<Vec<Vec3>> {
-    let values: Vec<f32> = values.collect();
-    if values.iter().any(|value| !value.is_finite()) {
-        return Err(PyValueError::new_err(format!("{name}: expected finite numbers")));
+    /// Returns the clips of a report; an archive's clips in its order.
+    pub(crate) fn of_report(name: &str, report: ReadReport) -> Loaded {
+        let mut clips = Vec::new();
+        for file in report.files {
+            match &file.result {
+                Err(error) => return Err(read_error(error)),
+                Ok(read) if read.awaits_skeleton => {
+                    let how = "put it beside, or name it by skeleton=";
+                    let reason =
+                        format!("{}: it needs its skeleton, an ASF file: {how}", file.name);
+                    return Err(unusable(&file.name, reason));
+                }
+                Ok(_) => clips.extend(Self::of_file(file)),
+            }
+        }
+        if clips.is_empty() {
+            return Err(unusable(name, format!("{name}: it has no motion")));
+        }
+        Ok(clips)
     }
-    Ok(values.chunks_exact(3).map(Vec3::from_slice).collect())
-}
 
-/// Returns unit quaternions of numbers in the order w x y z.
-fn unit_quaternions(values: impl Iterator<Item = f32>) -> PyResult<Vec<Quat>> {
-    let values: Vec<f32> = values.collect();
-    let of_four = |four: &[f32]| {
-        let [w, x, y, z] = *four else {
-            return Quat::IDENTITY;
+    /// Returns the clips of a file that was read.
+    fn of_file(mut file: ReadFile) -> Vec<Self> {
+        file.unpacked = None;
+        let file = Arc::new(file);
+        let Ok(read) = &file.result else {
+            return Vec::new();
         };
-        Quat::from_xyzw(x, y, z, w)
-    };
-    let quats: Vec<Quat> = values.chunks_exact(4).map(of_four).collect();
-    // Single precision keeps a length to 1e-6; a length that is off by more is another thing.
-    if !quats.iter().all(|quat| (quat.length() - 1.0).abs() < 1e-3) {
-        return Err(PyValueError::new_err("rotations: expected unit quaternions, w x y z"));
+        let warnings: Vec<String> = read.warnings.iter().map(ToString::to_string).collect();
+        let clips = read.clips.iter().enumerate().map(|(index, own)| {
+            let character = own.mesh.as_ref().map(|mesh| {
+                Arc::new(Character {
+                    skeleton: own.motion.clip().skeleton().clone(),
+                    roles: own.motion.roles().clone(),
+                    mesh: mesh.clone(),
+                })
+            });
+            let id = Some(file_id(&file.name, &file.sha256, index));
+            let origin = Origin { id, files: vec![Arc::clone(&file)] };
+            Self::new(Arc::new(own.motion.clone()), character, origin, warnings.clone())
+        });
+        clips.collect()
     }
-    Ok(quats.into_iter().map(|quat| quat / quat.length()).collect())
 }
 
 #[pymethods]
@@ -369,7 +391,7 @@ impl Clip {
         body: Option<String>,
     ) -> PyResult<PathBuf> {
         let options = SaveOptions { format, unit, up, fps, root, body }.read(Some(&path))?;
-        let bytes = py.detach(|| crate::save::bytes_of(self, &options))?;
+        let bytes = py.detach(|| bytes_of(&self.motion, self.character.as_deref(), &options))?;
         py.detach(|| std::fs::write(&path, bytes))?;
         Ok(path)
     }
@@ -398,7 +420,7 @@ impl Clip {
         body: Option<String>,
     ) -> PyResult<Py<PyBytes>> {
         let options = SaveOptions { format: Some(format), unit, up, fps, root, body }.read(None)?;
-        let bytes = py.detach(|| crate::save::bytes_of(self, &options))?;
+        let bytes = py.detach(|| bytes_of(&self.motion, self.character.as_deref(), &options))?;
         Ok(PyBytes::new(py, &bytes).unbind())
     }
 

@@ -3,7 +3,8 @@
 use crate::arrays::{array, fixed_array};
 use crate::clip::Clip;
 use crate::errors::lab_error;
-use crate::labs::{LabResult, Recipe, collect, lab_of, values_of};
+use crate::labs::{LabResult, Recipe, collect, values_of};
+use crate::words::lab_of;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use rayon::prelude::*;

@@ -3,6 +3,7 @@
 use crate::clip::{Clip, Origin};
 use crate::errors::{batch_error, lab_error};
 use crate::metrics::MetricValue;
+use crate::words::lab_of;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -254,14 +255,6 @@ pub(crate) fn values_of(lab: LabId, values: &[(String, String)]) -> PyResult<Vec
         Ok((key, value))
     };
     values.iter().map(read).collect()
-}
-
-/// Returns the lab of a word in links.
-pub(crate) fn lab_of(word: &str) -> PyResult<LabId> {
-    LabId::from_word(word).ok_or_else(|| {
-        let known: Vec<&str> = LabId::ALL.iter().map(|lab| lab.word()).collect();
-        PyValueError::new_err(format!("there is no lab {word:?}, only {}", known.join(", ")))
-    })
 }
 
 fn origins(clips: &[PyRef<'_, Clip>]) -> Vec<Origin> {

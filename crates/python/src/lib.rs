@@ -17,6 +17,7 @@ mod load;
 mod matching;
 mod metrics;
 mod save;
+mod words;
 
 use pyo3::prelude::*;
 

@@ -1,23 +1,14 @@
 //! Reading of files into clips.
 
-use crate::clip::{Clip, Origin};
-use crate::errors::{batch_error, file_error, read_error, unusable};
+use crate::clip::{Clip, Loaded};
+use crate::errors::{batch_error, file_error};
+use crate::words::unit_of;
 use pyo3::exceptions::{PyFileNotFoundError, PyValueError};
 use pyo3::prelude::*;
-use segue_batch::{Input, Inputs, Reader, for_each, parse_rate, parse_unit, parse_up, shown};
+use segue_batch::{Input, Inputs, Reader, for_each, parse_rate, parse_up, shown};
 use segue_formats::ImportOptions;
-use segue_motion::skin::Character;
-use segue_session::file_id;
-use segue_session::reading::{ReadFile, ReadReport, ReadSetup, read};
 use std::ffi::OsString;
 use std::path::PathBuf;
-use std::sync::Arc;
-
-/// Returns a unit of length in metres: a name such as "cm", or a number.
-pub(crate) fn unit_of(unit: &Bound<'_, PyAny>) -> PyResult<f64> {
-    let text = unit.str()?.to_string();
-    parse_unit(&text).map_err(|reason| PyValueError::new_err(format!("unit: {reason}")))
-}
 
 /// Returns the options of reading.
 fn options_of(
@@ -35,9 +26,6 @@ fn options_of(
         ..ImportOptions::default()
     })
 }
-
-/// The clips of a file, or the reason why there are none.
-type Loaded = Result<Vec<Clip>, PyErr>;
 
 /// Reads files on all cores. Returns for each, in their order, a list of its clips or the exception
 /// why there are none.
@@ -95,64 +83,14 @@ pub(crate) fn read_bytes(
     fps: Option<f64>,
 ) -> PyResult<Vec<Clip>> {
     let options = options_of(unit.as_ref(), up.as_deref(), fps)?;
-    py.detach(|| clips_of_bytes(name, data, options))
-}
-
-/// Reads the clips of a file from memory.
-pub(crate) fn clips_of_bytes(name: &str, bytes: &[u8], options: ImportOptions) -> Loaded {
-    let setup = ReadSetup { options, ..ReadSetup::default() };
-    let report = read(name, bytes, &setup, &mut |_| true).unwrap_or_default();
-    clips_of_report(name, report)
+    py.detach(|| Clip::read_all(name, data, options))
 }
 
 /// Reads the clips of a file from disk.
 fn clips_of(reader: &Reader, input: &Input) -> Loaded {
     match reader.read(input) {
-        Some(Ok(report)) => clips_of_report(&input.name, report),
+        Some(Ok(report)) => Clip::of_report(&input.name, report),
         Some(Err(error)) => Err(file_error(error)),
         None => Ok(Vec::new()),
     }
-}
-
-/// Returns the clips of a report; an archive's clips in its order.
-fn clips_of_report(name: &str, report: ReadReport) -> Loaded {
-    let mut clips = Vec::new();
-    for file in report.files {
-        match &file.result {
-            Err(error) => return Err(read_error(error)),
-            Ok(read) if read.awaits_skeleton => {
-                let how = "put it beside, or name it by skeleton=";
-                let reason = format!("{}: it needs its skeleton, an ASF file: {how}", file.name);
-                return Err(unusable(&file.name, reason));
-            }
-            Ok(_) => clips.extend(clips_of_file(file)),
-        }
-    }
-    if clips.is_empty() {
-        return Err(unusable(name, format!("{name}: it has no motion")));
-    }
-    Ok(clips)
-}
-
-/// Returns the clips of a file that was read.
-fn clips_of_file(mut file: ReadFile) -> Vec<Clip> {
-    file.unpacked = None;
-    let file = Arc::new(file);
-    let Ok(read) = &file.result else {
-        return Vec::new();
-    };
-    let warnings: Vec<String> = read.warnings.iter().map(ToString::to_string).collect();
-    let clips = read.clips.iter().enumerate().map(|(index, own)| {
-        let character = own.mesh.as_ref().map(|mesh| {
-            Arc::new(Character {
-                skeleton: own.motion.clip().skeleton().clone(),
-                roles: own.motion.roles().clone(),
-                mesh: mesh.clone(),
-            })
-        });
-        let id = Some(file_id(&file.name, &file.sha256, index));
-        let origin = Origin { id, files: vec![Arc::clone(&file)] };
-        Clip::new(Arc::new(own.motion.clone()), character, origin, warnings.clone())
-    });
-    clips.collect()
 }

@@ -1,7 +1,7 @@
 //! The numbers of motions, and the tables of what there is.
 
 use crate::clip::Clip;
-use crate::labs::lab_of;
+use crate::words::lab_of;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;

@@ -1,11 +1,12 @@
 //! Writing of clips.
 
-use crate::clip::Clip;
 use crate::errors::write_error;
-use crate::load::unit_of;
+use crate::words::unit_of;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use segue_batch::{parse_rate, parse_root, parse_up};
+use segue_motion::clip::Motion;
+use segue_motion::skin::Character;
 use segue_session::export::{ExportBody, ExportFormat, ExportOptions, export};
 use std::path::Path;
 
@@ -58,14 +59,17 @@ impl SaveOptions<'_> {
     }
 }
 
-/// Returns the bytes of a clip's file.
+/// Returns the bytes of a motion's file, with the character of its own.
 ///
 /// # Errors
 /// `segue.WriteError` if the format cannot hold the motion.
-pub(crate) fn bytes_of(clip: &Clip, options: &ExportOptions) -> PyResult<Vec<u8>> {
-    if clip.motion.clip().frames() == 0 {
+pub(crate) fn bytes_of(
+    motion: &Motion,
+    character: Option<&Character>,
+    options: &ExportOptions,
+) -> PyResult<Vec<u8>> {
+    if motion.clip().frames() == 0 {
         return Err(write_error("it has no frames"));
     }
-    export(&clip.motion, clip.character.as_deref(), &[], options)
-        .map_err(|error| write_error(error.to_string()))
+    export(motion, character, &[], options).map_err(|error| write_error(error.to_string()))
 }

@@ -2,7 +2,7 @@
 //! motion is not in memory.
 
 use crate::bone_map::rig_of;
-use crate::memory::motion_bytes;
+use glam::{Quat, Vec3};
 use segue_motion::clip::{Motion, ground_speed};
 use serde::{Deserialize, Serialize};
 
@@ -69,6 +69,14 @@ impl ClipFacts {
 /// Returns a number, or 0 in place of one that JSON does not have.
 fn sayable(number: f32) -> f32 {
     if number.is_finite() { number } else { 0.0 }
+}
+
+/// Returns the memory of a motion, bytes: a rotation for each joint, a position for the root and
+/// for each other joint that moves, the character's ground frame and the contacts of two feet.
+pub(crate) fn motion_bytes(frames: usize, joints: usize, moving: usize) -> u64 {
+    let per_frame =
+        size_of::<Quat>() * joints + size_of::<Vec3>() * (moving + 1) + 3 * size_of::<f64>() + 2;
+    (frames as u64).saturating_mul(per_frame as u64)
 }
 
 #[cfg(test)]

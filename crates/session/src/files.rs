@@ -2,10 +2,12 @@
 //! that the page has for them.
 
 mod admission;
+mod arrivals;
 mod corrections;
 mod idle;
 mod intake;
 mod messages;
+mod motion_uses;
 mod reread;
 mod roles;
 mod samples;

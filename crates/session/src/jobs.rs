@@ -10,13 +10,15 @@
 //! which answers arrive; and it equals, to the last bit, what the labs compute in slices where no
 //! worker takes jobs ([`Session::set_workers`](crate::Session::set_workers)).
 //!
-//! A new job is a file with a [`Task`](task::Task), and a row of the table in `task.rs`.
+//! A new job is a file with a [`Task`](task::Task), and a row of the table in `any_task.rs`.
 
+mod any_task;
 mod board;
 mod candidates;
 mod clip_parcel;
 mod database_clip;
 mod distances;
+mod error;
 mod motion_parcel;
 mod parcel;
 mod registration;
@@ -25,12 +27,15 @@ mod task;
 #[cfg(test)]
 mod tests;
 mod worker;
+mod worker_memory;
 
+pub use any_task::{Answer, Job};
 pub(crate) use board::{JobBoard, Taken, Ticket};
 pub(crate) use database_clip::DatabaseClipTask;
 pub(crate) use distances::DistanceTask;
+pub use error::JobError;
 pub use parcel::{Parcel, ParcelError};
 pub(crate) use registration::{RegistrationAnswer, RegistrationTask};
 pub(crate) use stream::StreamTask;
-pub use task::{Answer, Job, JobClip};
-pub use worker::{JobError, Worker};
+pub use task::JobClip;
+pub use worker::Worker;

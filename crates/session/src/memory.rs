@@ -1,8 +1,8 @@
 //! Memory of the page: its size, the part in use, and the expected need of a file.
 
+use super::clip_facts::motion_bytes;
 use super::library::{Entry, Library, Origin};
 use super::reading::Content;
-use glam::{Quat, Vec3};
 use segue_motion::clip::Clip;
 use segue_motion::math::sort::sort_by_key;
 use segue_text::{Message, msg};
@@ -87,14 +87,6 @@ impl Memory {
 
 fn clip_bytes(clip: &Clip) -> u64 {
     motion_bytes(clip.frames(), clip.skeleton().len(), clip.translations().len())
-}
-
-/// Returns the memory of a motion, bytes: a rotation for each joint, a position for the root and
-/// for each other joint that moves, the character's ground frame and the contacts of two feet.
-pub(super) fn motion_bytes(frames: usize, joints: usize, moving: usize) -> u64 {
-    let per_frame =
-        size_of::<Quat>() * joints + size_of::<Vec3>() * (moving + 1) + 3 * size_of::<f64>() + 2;
-    (frames as u64).saturating_mul(per_frame as u64)
 }
 
 /// Returns the expected memory of a file's clips, bytes, from its name and size alone. The clips of

@@ -3,7 +3,7 @@
 
 use super::js_error_text;
 use super::page::{listen, window};
-use super::storage::stored_place;
+use super::stored_place::stored_place;
 use crate::platform::begun::Begun;
 use crate::platform::{FileBytes, Inbox, Incoming, ReadError, ReadEvent};
 use js_sys::{Array, Function, Object, Reflect, Uint8Array};

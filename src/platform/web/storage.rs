@@ -6,6 +6,7 @@
 //! what other windows have stored; its transaction has to read first, and may be too late.
 
 use super::reader::LargeFile;
+use super::stored_place::{DATABASE, FILES};
 use crate::platform::motion_files::abbreviated;
 use crate::platform::records::{
     ClipRecord, ExitRecord, LATEST, Records, clip_id, clip_key, exit_key, is_exit_key,
@@ -16,7 +17,7 @@ use idb::{
     Database, DatabaseEvent as _, Error, Factory, ObjectStoreParams, Transaction, TransactionMode,
     TransactionResult,
 };
-use js_sys::{Date, Math, Object, Reflect, Uint8Array};
+use js_sys::{Date, Math, Uint8Array};
 use segue_session::{Saved, SavedEntry, StorageState};
 use segue_text::{Message, msg};
 use std::cell::RefCell;
@@ -27,10 +28,8 @@ use wasm_bindgen::prelude::{Closure, wasm_bindgen};
 use wasm_bindgen_futures::spawn_local;
 use web_sys::MessageEvent;
 
-const DATABASE: &str = "segue";
 const VERSION: u32 = 1;
 const WORK: &str = "work";
-const FILES: &str = "files";
 /// The most clips that one transaction writes.
 const MAX_WRITTEN_AT_ONCE: usize = 32;
 
@@ -562,15 +561,6 @@ fn exception_name(error: &Error) -> Option<String> {
 fn stored_file(sha256: String) -> (String, FileBytes) {
     let file = LargeFile::stored(&sha256);
     (sha256, FileBytes::Large(file))
-}
-
-/// Returns where workers find a file in the storage: `{ database, store, key }`.
-pub(super) fn stored_place(sha256: &str) -> Result<JsValue, JsValue> {
-    let place = Object::new();
-    for (name, value) in [("database", DATABASE), ("store", FILES), ("key", sha256)] {
-        Reflect::set(&place, &JsValue::from(name), &JsValue::from(value))?;
-    }
-    Ok(place.into())
 }
 
 /// Opens the database, and creates its stores on the first visit.

@@ -1,6 +1,6 @@
 //! The order of the library's list: searched, sorted, and in groups.
 
-use crate::ui::state::ClipOrder;
+use crate::ui::state::clip_order::ClipOrder;
 use crate::ui::text;
 use segue_motion::math::sort::sort_by;
 use segue_session::{ClipGroup, Entry, Origin};

@@ -1,9 +1,9 @@
 //! One parameter of the table as a row of a panel.
 
+use super::retarget_errors::character_errors_ui;
 use crate::ui::kit::{self, Button, Icon, Mark, SliderResponse, SliderRow, Source};
 use crate::ui::language::{Text, Word};
 use crate::ui::out::Out;
-use crate::ui::rows::character_errors_ui;
 use crate::ui::text;
 use crate::ui::theme::palette_of;
 use eframe::egui::Ui;

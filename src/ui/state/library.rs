@@ -1,22 +1,9 @@
 //! The state of the library between frames.
 
-use crate::ui::library_panel::{Arranged, RowHeights};
+use super::clip_order::ClipOrder;
+use crate::ui::library_panel::arrange::{Arranged, RowHeights};
 use std::collections::BTreeSet;
 use std::sync::Arc;
-
-/// The order of the clips in the list.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum ClipOrder {
-    /// In the order in which they were added.
-    #[default]
-    Added,
-    /// By name.
-    Name,
-    /// By length, the shortest first.
-    Length,
-    /// By mean speed over the ground, the slowest first.
-    Speed,
-}
 
 /// The state of the library: what is searched, folded and selected.
 #[derive(Clone, Debug, Default)]

@@ -1,7 +1,7 @@
 //! Conversion of rows of channels to rotations and translations, one row at a time.
 
 use super::hierarchy::{Column, Hierarchy};
-use super::motion::RowSink;
+use super::row_sink::RowSink;
 use super::turns::Turns;
 use crate::error::Fault;
 use crate::raw::RawMotion;

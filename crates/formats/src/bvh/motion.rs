@@ -3,6 +3,7 @@
 use super::decimal::{Lines, MAX_MAGNITUDE};
 use super::lexer::{Lexer, Stop};
 use super::number::{Scan, scan};
+use super::row_sink::RowSink;
 use crate::error::Fault;
 use crate::text::is_space;
 use crate::warning::WarningKind;
@@ -10,20 +11,6 @@ use segue_text::msg;
 
 /// Bytes between two reports of progress.
 const PROGRESS_STEP: usize = 1 << 18;
-
-/// A receiver of complete rows.
-pub(super) trait RowSink: Sized + Send {
-    /// Takes one row, which ends at `end`; an error says why no more rows can be taken.
-    fn row(&mut self, values: &[f64], end: usize) -> Result<(), Fault>;
-
-    /// Returns a sink without rows for those that lie in these bytes.
-    #[cfg(feature = "parallel")]
-    fn for_part(&self, bytes: std::ops::Range<usize>) -> Self;
-
-    /// Takes the rows of a part; an error says why they cannot be taken.
-    #[cfg(feature = "parallel")]
-    fn append(&mut self, part: Self) -> Result<(), Fault>;
-}
 
 /// A callback with the number of bytes read so far; it returns `false` to stop.
 pub(super) type Progress<'a> = &'a mut dyn FnMut(usize) -> bool;

@@ -5,7 +5,7 @@
 //! of parts.
 
 use super::decimal::Lines;
-use super::motion::RowSink;
+use super::row_sink::RowSink;
 use crate::error::Fault;
 use crate::text::is_space;
 use rayon::prelude::*;

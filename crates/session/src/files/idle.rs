@@ -9,23 +9,6 @@ use segue_motion::math::sort::sort_by_key;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The uses of the motions of files, and the memory for those that are not used.
-#[derive(Debug)]
-pub(super) struct MotionUses {
-    /// The number of the present round of use.
-    round: u64,
-    /// The round in which a clip was used last, by its id; a clip that was never used has none.
-    last: BTreeMap<String, u64>,
-    /// The most memory of motions that are not used, bytes.
-    pub(super) max_idle_bytes: u64,
-}
-
-impl Default for MotionUses {
-    fn default() -> Self {
-        Self { round: 1, last: BTreeMap::new(), max_idle_bytes: u64::MAX }
-    }
-}
-
 /// The share of the memory for idle motions that is used after some were dropped: the next ones
 /// then have room for a while.
 const LEFT_OVER: f64 = 0.75;

@@ -1,8 +1,8 @@
 //! The files that are being added to the library.
 
-use super::idle::MotionUses;
+use super::arrivals::Arrivals;
+use super::motion_uses::MotionUses;
 use super::setup::setup_for_new;
-use super::tasks::Arrivals;
 use crate::bone_map::is_bone_map;
 use crate::command::{CommandError, FileCommand, Request};
 use crate::document::Document;
@@ -307,7 +307,7 @@ impl FileIntake {
         let reading = Reading { task, done: 0, purpose };
         if reading.is_new() {
             let is_first = !self.is_reading_new();
-            self.arrivals.add(&reading, is_first);
+            self.arrivals.add(reading.task.size, is_first);
         }
         self.reading.insert(reading.task.id, reading);
     }

@@ -1,6 +1,7 @@
 //! Files that are read elsewhere: progress, end and cancellation.
 
 use super::admission::refill;
+use super::arrivals::Arrivals;
 use super::intake::{FileIntake, LoadedFile, Purpose, Reading};
 use super::messages::notify_unread;
 use super::setup::{lacks_skeleton, setup_for_new, setup_of};
@@ -134,7 +135,7 @@ impl FileIntake {
                     && lacks_skeleton(&document.library, &report, &task.setup) =>
             {
                 let setup = setup_for_new(&document.library);
-                self.arrivals.take_back(&task);
+                self.arrivals.take_back(task.size);
                 self.request(ReadTask { content, setup, ..task }, purpose);
                 return None;
             }
@@ -281,31 +282,6 @@ impl FileIntake {
 
 /// The number of files to join the library from which on they are one job.
 const MIN_TOGETHER: usize = 5;
-
-/// The files that were to join the library since none was being read.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Arrivals {
-    files: usize,
-    /// The number of their bytes.
-    bytes: u64,
-}
-
-impl Arrivals {
-    /// Adds a file, which may be the first since none was being read.
-    pub(super) fn add(&mut self, reading: &Reading, is_first: bool) {
-        if is_first {
-            *self = Self::default();
-        }
-        self.files += 1;
-        self.bytes = self.bytes.saturating_add(reading.task.size);
-    }
-
-    /// Takes back a file that is read once more.
-    fn take_back(&mut self, task: &ReadTask) {
-        self.files = self.files.saturating_sub(1);
-        self.bytes = self.bytes.saturating_sub(task.size);
-    }
-}
 
 /// Records in the clips of a file why they have no motion, so that it is not read over and over.
 fn mark_unread(library: &mut Library, sha256: &str, why: Option<&Message>) {

@@ -1,6 +1,7 @@
 //! The jobs that wait for workers, those that run, and the answers.
 
-use super::task::{Answer, AnyTask, Job, JobClip, Task};
+use super::any_task::{Answer, AnyTask, Job, Kind};
+use super::task::JobClip;
 use segue_motion::clip::Motion;
 use std::collections::{BTreeMap, VecDeque};
 use std::marker::PhantomData;
@@ -100,7 +101,7 @@ impl JobBoard {
     }
 
     /// Offers a job, behind those that wait.
-    pub(crate) fn offer<T: Task>(&mut self, task: T, motions: &[Arc<Motion>]) -> Ticket<T> {
+    pub(crate) fn offer<T: Kind>(&mut self, task: T, motions: &[Arc<Motion>]) -> Ticket<T> {
         self.last_number += 1;
         let clip = |motion: &Arc<Motion>| JobClip {
             number: self.clips.of(motion),
@@ -119,7 +120,7 @@ impl JobBoard {
     }
 
     /// Takes the answer of a job, if it is there.
-    pub(crate) fn take<T: Task>(&mut self, ticket: &Ticket<T>) -> Taken<T::Answer> {
+    pub(crate) fn take<T: Kind>(&mut self, ticket: &Ticket<T>) -> Taken<T::Answer> {
         debug_assert!(Arc::strong_count(&ticket.wanted) > 0);
         match self.finished.remove(&ticket.number) {
             None => Taken::Waits,

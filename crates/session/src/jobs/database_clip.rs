@@ -1,9 +1,10 @@
 //! The measurement of one clip of a database for motion matching.
 
 use super::clip_parcel::{ClipHead, put_clip};
+use super::error::JobError;
 use super::parcel::{put, split_floats, take, take_floats};
 use super::task::{JobClip, Task};
-use super::worker::{JobError, WorkerMemory};
+use super::worker_memory::WorkerMemory;
 use super::{Parcel, ParcelError};
 use glam::{DVec2, Vec3};
 use segue_motion::clip::{Clip, Contacts, Motion};

@@ -2,9 +2,10 @@
 //! transitions.
 
 use super::candidates::{CandidatesHead, put_candidates};
+use super::error::JobError;
 use super::parcel::{put, take, take_floats};
 use super::task::{JobClip, Task};
-use super::worker::{JobError, WorkerMemory};
+use super::worker_memory::WorkerMemory;
 use super::{Parcel, ParcelError};
 use segue_motion::clip::Motion;
 use segue_motion::graph::{

@@ -1,8 +1,9 @@
 //! The registration of two clips.
 
+use super::error::JobError;
 use super::parcel::{put, take};
 use super::task::{JobClip, Task};
-use super::worker::{JobError, WorkerMemory};
+use super::worker_memory::WorkerMemory;
 use super::{Parcel, ParcelError};
 use crate::labs::{DistanceMap, RegistrationRequest, registered, terms_of};
 use segue_motion::registration::{

@@ -1,9 +1,10 @@
 //! Rows of the comparison of all windows of clips that are too long for storing the distances.
 
 use super::candidates::{CandidatesHead, put_candidates};
+use super::error::JobError;
 use super::parcel::{put, take, take_floats};
 use super::task::{JobClip, Task};
-use super::worker::{JobError, WorkerMemory};
+use super::worker_memory::WorkerMemory;
 use super::{Parcel, ParcelError};
 use segue_motion::clip::Motion;
 use segue_motion::graph::{

@@ -1,6 +1,6 @@
 //! Tests of jobs: results do not depend on where and in which order they are run.
 
-use super::task::Kind as _;
+use super::any_task::Kind as _;
 use super::*;
 use crate::fixtures::*;
 use crate::labs::Distances;

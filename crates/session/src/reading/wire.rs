@@ -8,8 +8,8 @@ pub use parcel::Parcel;
 pub use unpacker::Unpacker;
 
 use super::{About, SkeletonFile};
+use crate::clip_facts::motion_bytes;
 use crate::convert::ConvertedClip;
-use crate::memory::motion_bytes;
 use segue_formats::{FileKind, ImportError};
 use segue_motion::clip::{ClipError, Provenance};
 use segue_motion::skeleton::{FoldedChain, Joint, Roles, SkeletonError};
