@@ -5,7 +5,7 @@ mod files;
 mod row;
 mod selection;
 
-use self::arrange::{ArrangedFor, Row, Section, arrange};
+use self::arrange::{Arranged, ArrangedFor, Row, Section, arrange};
 use self::files::files_ui;
 use self::row::entry_ui;
 use self::selection::selection_ui;

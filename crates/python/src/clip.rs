@@ -5,7 +5,7 @@ use crate::arrays::{
 };
 use crate::errors::{read_error, unusable, write_error};
 use crate::save::{SaveOptions, bytes_of};
-use glam::{Quat, Vec3};
+use glam::Quat;
 use numpy::{
     PyArray1, PyArray2, PyArray3, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods as _,
 };

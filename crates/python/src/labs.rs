@@ -4,7 +4,6 @@ use crate::clip::{Clip, Origin};
 use crate::errors::{batch_error, lab_error};
 use crate::metrics::MetricValue;
 use crate::words::lab_of;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
@@ -14,7 +13,7 @@ use segue_batch::{
 };
 use segue_motion::clip::Motion;
 use segue_motion::skin::Character;
-use segue_session::choices::{LabId, Selected as _};
+use segue_session::choices::LabId;
 use segue_session::reading::ReadFile;
 use segue_session::{FoundFault, Key, Outcome, Session, Transition, Value};
 use std::sync::Arc;
