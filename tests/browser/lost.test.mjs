@@ -161,14 +161,14 @@ onBackend("both", "WebGL 2 draws after two lost WebGPU devices within 10 s", asy
 
 // Fails when the page waits for ever for a device that does not come.
 onBackend("both", "WebGL 2 draws where a lost WebGPU device has no successor", async ({ open }) => {
-  const { page, segue, load, evaluate } = surviving(await open("lab=blend", { ...SMALL, prepare }));
+  const { page, segue, load } = surviving(await open("lab=blend", { ...SMALL, prepare }));
   const { clips: [own] } = await load("own.bvh", striding({ frames: 40 }));
   await segue("set", { a: own.id, blend_window: 23 });
   await page.evaluate(() => {
     GPUAdapter.prototype.requestDevice = () => new Promise(() => {});
     window.lose("webgpu");
   });
-  await until("WebGL 2 draws", async () => (await evaluate(() => window.segue?.stats().backend)) === "webgl2");
+  await until("WebGL 2 draws", async () => (await segue("stats")).backend === "webgl2");
   const { a, blend_window } = await segue("params");
   assert.deepEqual({ a, blend_window }, { a: own.id, blend_window: 23 });
 });
