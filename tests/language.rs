@@ -13,7 +13,7 @@ use std::path::Path;
 /// reports, and the page's API and its test programs, whose messages are English.
 const NOT_SHOWN: [&str; 18] = [
     "crates/session/src/jobs/parcel.rs",
-    "crates/session/src/jobs/worker.rs",
+    "crates/session/src/jobs/error.rs",
     "crates/formats/src/fbx/write/records.rs",
     "crates/session/src/report.rs",
     "src/app/api.rs",

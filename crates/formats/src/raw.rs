@@ -91,7 +91,8 @@ impl RawMotion {
             *self = other;
             return Ok(());
         }
-        self.reserve(other.frames())?;
+        // Many parts come one after the other.
+        self.reserve(other.frames().max(self.frames() / 2))?;
         self.rotations.extend(other.rotations);
         self.root_translations.extend(other.root_translations);
         for ((_, track), (_, more)) in self.tracks.iter_mut().zip(other.tracks) {

@@ -12,10 +12,24 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// The least size of a part, bytes: reading less takes about as long as handing it out.
-const MIN_PART_BYTES: usize = 1 << 19;
+const MIN_PART_BYTES: usize = 3 << 18;
+/// The greatest size of a part, bytes: progress is reported, and cancelling possible, between rounds
+/// of parts.
+const MAX_PART_BYTES: usize = 4 << 20;
 
-/// Reads plain rows into `sink`, from the offset `start` on. `row` becomes the values of the last
-/// one. Returns the number of rows, and the offset behind the last one.
+/// The plain rows of a round of parts.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct PlainRows {
+    /// Their number.
+    pub(super) rows: usize,
+    /// The offset behind the last one.
+    pub(super) end: usize,
+    /// Whether there was nothing else, so that another round may follow.
+    pub(super) is_complete: bool,
+}
+
+/// Reads plain rows into `sink`, from the offset `start` on: a part for each core. `row` becomes the
+/// values of the last row.
 ///
 /// # Errors
 /// The sink's, when it cannot hold the rows.
@@ -24,7 +38,7 @@ pub(super) fn plain_rows<S: RowSink + Send>(
     start: usize,
     row: &mut [f64],
     sink: &mut S,
-) -> Result<(usize, usize), Fault> {
+) -> Result<PlainRows, Fault> {
     let most = rayon::current_num_threads();
     plain_rows_in(parts(text, start, most), text, start, row, sink)
 }
@@ -35,10 +49,10 @@ fn plain_rows_in<S: RowSink + Send>(
     start: usize,
     row: &mut [f64],
     sink: &mut S,
-) -> Result<(usize, usize), Fault> {
-    let (mut rows, mut end) = (0, start);
+) -> Result<PlainRows, Fault> {
+    let mut found = PlainRows { rows: 0, end: start, is_complete: false };
     if parts.len() < 2 {
-        return Ok((rows, end));
+        return Ok(found);
     }
     let tasks: Vec<(Range<usize>, S)> =
         parts.into_iter().map(|part| (part.clone(), sink.for_part(part))).collect();
@@ -49,24 +63,25 @@ fn plain_rows_in<S: RowSink + Send>(
         if part.rows > 0 {
             sink.append(part.sink)?;
             row.copy_from_slice(&part.last);
-            (rows, end) = (rows + part.rows, part.end);
+            (found.rows, found.end) = (found.rows + part.rows, part.end);
         }
-        if !part.is_complete {
+        found.is_complete = part.is_complete;
+        if !found.is_complete {
             break;
         }
     }
-    Ok((rows, end))
+    Ok(found)
 }
 
 /// Returns up to `most` parts of a text from an offset on, which begin behind line ends.
 fn parts(text: &[u8], start: usize, most: usize) -> Vec<Range<usize>> {
-    let size = text.len().saturating_sub(start);
+    let size = text.len().saturating_sub(start).min(most.saturating_mul(MAX_PART_BYTES));
     let count = (size / MIN_PART_BYTES).min(most);
     let mut parts = Vec::with_capacity(count);
     let mut begin = start;
     for number in 1..=count {
         let rest = text.get(start + size / count * number..).unwrap_or_default();
-        let line_end = rest.iter().position(|b| *b == b'\n').filter(|_| number < count);
+        let line_end = rest.iter().position(|b| *b == b'\n');
         let end = line_end.map_or(text.len(), |at| text.len() - rest.len() + at + 1);
         if end > begin {
             parts.push(begin..end);
@@ -154,20 +169,23 @@ mod tests {
             let parts: Vec<_> = bounds.windows(2).map(|pair| pair[0]..pair[1]).collect();
             prop_assume!(parts.len() > 1);
             let (mut kept, mut row) = (Kept::default(), [0.0; 3]);
-            let (rows, end) = plain_rows_in(parts, &text, 0, &mut row, &mut kept).unwrap();
+            let found = plain_rows_in(parts, &text, 0, &mut row, &mut kept).unwrap();
             let whole = at_once(&text, 3);
-            prop_assert_eq!((rows, &kept), (whole.rows, &whole.sink));
-            if rows > 0 {
-                prop_assert_eq!((end, row.to_vec()), (whole.end, whole.last));
+            prop_assert_eq!((found.rows, &kept), (whole.rows, &whole.sink));
+            prop_assert_eq!(found.is_complete, whole.is_complete);
+            if found.rows > 0 {
+                prop_assert_eq!((found.end, row.to_vec()), (whole.end, whole.last));
             }
         }
 
         #[test]
         fn parts_cover_the_text_and_begin_behind_line_ends(most in 1..9_usize, start in 0..9_usize) {
-            let text: Vec<u8> = b"1.25 -3.5\n".iter().copied().cycle().take(3_000_000).collect();
+            let text: Vec<u8> = b"1.25 -3.5\n".iter().copied().cycle().take(9_000_000).collect();
             let found = parts(&text, start, most);
-            prop_assert_eq!(found.len(), most.min(5));
-            prop_assert_eq!((found[0].start, found[found.len() - 1].end), (start, text.len()));
+            prop_assert_eq!((found.len(), found[0].start), (most, start));
+            let end = found[most - 1].end;
+            prop_assert!(end == text.len() || end >= most * MAX_PART_BYTES);
+            prop_assert_eq!(text[end - 1], b'\n');
             for pair in found.windows(2) {
                 prop_assert_eq!(pair[0].end, pair[1].start);
                 prop_assert_eq!(text[pair[1].start - 1], b'\n');
@@ -178,7 +196,7 @@ mod tests {
     #[test]
     fn small_texts_are_one_part() {
         assert_eq!(parts(b"1 2\n3 4\n", 0, 8).len(), 0);
-        let (rows, end) = plain_rows(b"1 2\n", 0, &mut [0.0; 2], &mut Kept::default()).unwrap();
-        assert_eq!((rows, end), (0, 0));
+        let found = plain_rows(b"1 2\n", 0, &mut [0.0; 2], &mut Kept::default()).unwrap();
+        assert_eq!(found, PlainRows { rows: 0, end: 0, is_complete: false });
     }
 }
