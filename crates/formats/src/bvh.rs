@@ -17,10 +17,7 @@ mod hierarchy;
 mod lexer;
 mod motion;
 mod number;
-#[cfg(feature = "parallel")]
-mod parallel;
 mod read;
-mod row_sink;
 mod turns;
 mod write;
 

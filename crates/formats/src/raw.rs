@@ -83,26 +83,6 @@ impl RawMotion {
         })
     }
 
-    /// Appends the frames of another motion of the same joints.
-    #[cfg(feature = "parallel")]
-    pub(super) fn append(&mut self, other: Self) -> Result<(), Fault> {
-        if self.frames() == 0 {
-            // Its joints are the same.
-            *self = other;
-            return Ok(());
-        }
-        // Many parts come one after the other.
-        self.reserve(other.frames().max(self.frames() / 2))?;
-        self.rotations.extend(other.rotations);
-        self.root_translations.extend(other.root_translations);
-        for ((_, track), (_, more)) in self.tracks.iter_mut().zip(other.tracks) {
-            track.extend(more);
-        }
-        self.wild_angles.rows += other.wild_angles.rows;
-        self.wild_angles.degrees = self.wild_angles.degrees.max(other.wild_angles.degrees);
-        Ok(())
-    }
-
     /// Returns the local rotations of a frame; empty if there is no such frame.
     pub(super) fn pose(&self, frame: usize) -> &[Quat] {
         let joints = self.joints.len();

@@ -1,7 +1,7 @@
 //! Conversion of rows of channels to rotations and translations, one row at a time.
 
 use super::hierarchy::{Column, Hierarchy};
-use super::row_sink::RowSink;
+use super::motion::RowSink;
 use super::turns::Turns;
 use crate::error::Fault;
 use crate::raw::RawMotion;
@@ -41,7 +41,6 @@ enum Source {
 }
 
 /// One character of the file, in file units and file axes.
-#[cfg_attr(feature = "parallel", derive(Clone))]
 struct Character {
     turns: Turns,
     /// The position of the root, then that of each joint that has a track, in the order of the
@@ -51,7 +50,6 @@ struct Character {
 }
 
 /// The collection of rows as rotations.
-#[cfg_attr(feature = "parallel", derive(Clone))]
 pub(super) struct Converter {
     characters: Vec<Character>,
     /// The number of rows according to the header.
@@ -147,19 +145,6 @@ impl Converter {
         Ok(())
     }
 
-    /// Checks that so many more rows are within the limit.
-    fn check_size(&self, rows: usize) -> Result<(), Fault> {
-        if ((self.rows + rows) as u64).saturating_mul(self.bytes_per_row) <= self.limit {
-            return Ok(());
-        }
-        let found = msg!(
-            "a motion of more than {mb} MB, most of it in joints without channels",
-            mb = self.limit >> 20
-        );
-        Err(Fault::new(0, found, "a motion that fits into memory")
-            .with_hint("export fewer frames or fewer joints"))
-    }
-
     /// Returns the initial values of channels: positions are the OFFSET, rotations 0.
     pub(super) fn first_row(tree: &Hierarchy) -> Vec<f64> {
         let value = |column: &Column| match column.channel.map(kind) {
@@ -182,30 +167,15 @@ impl Converter {
 }
 
 impl RowSink for Converter {
-    #[cfg(feature = "parallel")]
-    fn for_part(&self, bytes: Range<usize>) -> Self {
-        let share = bytes.len() as f64 / self.bytes.len().max(1) as f64;
-        Self {
-            declared: self.declared * share,
-            limit: (self.limit as f64 * share) as u64,
-            bytes,
-            ..self.clone()
-        }
-    }
-
-    #[cfg(feature = "parallel")]
-    fn append(&mut self, part: Self) -> Result<(), Fault> {
-        self.check_size(part.rows)?;
-        for (own, part) in self.characters.iter_mut().zip(part.characters) {
-            own.raw.append(part.raw)?;
-        }
-        self.rows += part.rows;
-        self.room = self.rows;
-        Ok(())
-    }
-
     fn row(&mut self, values: &[f64], end: usize) -> Result<(), Fault> {
-        self.check_size(1)?;
+        if (self.rows as u64 + 1).saturating_mul(self.bytes_per_row) > self.limit {
+            let found = msg!(
+                "a motion of more than {mb} MB, most of it in joints without channels",
+                mb = self.limit >> 20
+            );
+            return Err(Fault::new(0, found, "a motion that fits into memory")
+                .with_hint("export fewer frames or fewer joints"));
+        }
         if self.rows == self.room {
             self.make_room(end)?;
         }

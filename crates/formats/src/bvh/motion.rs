@@ -3,7 +3,6 @@
 use super::decimal::{Lines, MAX_MAGNITUDE};
 use super::lexer::{Lexer, Stop};
 use super::number::{Scan, scan};
-use super::row_sink::RowSink;
 use crate::error::Fault;
 use crate::text::is_space;
 use crate::warning::WarningKind;
@@ -11,6 +10,12 @@ use segue_text::msg;
 
 /// Bytes between two reports of progress.
 const PROGRESS_STEP: usize = 1 << 18;
+
+/// A receiver of complete rows.
+pub(super) trait RowSink {
+    /// Takes one row, which ends at `end`; an error says why no more rows can be taken.
+    fn row(&mut self, values: &[f64], end: usize) -> Result<(), Fault>;
+}
 
 /// A callback with the number of bytes read so far; it returns `false` to stop.
 pub(super) type Progress<'a> = &'a mut dyn FnMut(usize) -> bool;
@@ -85,7 +90,7 @@ impl Rows<'_, '_> {
 
     fn by_line(&mut self, sink: &mut impl RowSink, progress: Progress<'_>) -> Result<usize, Stop> {
         let width = self.row.len();
-        let mut count = self.plain_rows(sink, progress)?;
+        let mut count = 0;
         loop {
             self.lexer.skip_blank();
             let start = self.lexer.at;
@@ -148,35 +153,6 @@ impl Rows<'_, '_> {
             }
             return Ok(count);
         }
-    }
-
-    /// Reads plain rows on all cores, up to the first other line or near the end of the file.
-    /// Returns their number.
-    #[cfg(feature = "parallel")]
-    fn plain_rows(
-        &mut self,
-        sink: &mut impl RowSink,
-        progress: Progress<'_>,
-    ) -> Result<usize, Stop> {
-        let mut rows = 0;
-        let mut goes_on = !self.lexer.commas;
-        while goes_on {
-            let Self { lexer, row, .. } = self;
-            let found = super::parallel::plain_rows(lexer.text, lexer.at, row, sink)?;
-            self.lexer.at = found.end;
-            self.values += (found.rows * self.row.len()) as u64;
-            rows += found.rows;
-            goes_on = found.is_complete;
-            self.report(progress)?;
-        }
-        Ok(rows)
-    }
-
-    /// Reads nothing: a browser has one core for a file.
-    #[cfg(not(feature = "parallel"))]
-    #[expect(clippy::unused_self, clippy::unnecessary_wraps, reason = "as where there are cores")]
-    fn plain_rows(&self, _sink: &impl RowSink, _progress: Progress<'_>) -> Result<usize, Stop> {
-        Ok(0)
     }
 
     fn truncated(&mut self, at: usize, found: usize) {
@@ -365,38 +341,6 @@ mod tests {
             self.0.push(values.to_vec());
             Ok(())
         }
-
-        #[cfg(feature = "parallel")]
-        fn for_part(&self, _bytes: std::ops::Range<usize>) -> Self {
-            Self::default()
-        }
-
-        #[cfg(feature = "parallel")]
-        fn append(&mut self, part: Self) -> Result<(), Fault> {
-            self.0.extend(part.0);
-            Ok(())
-        }
-    }
-
-    /// A sink that counts.
-    struct Count(usize);
-
-    impl RowSink for Count {
-        fn row(&mut self, _values: &[f64], _end: usize) -> Result<(), Fault> {
-            self.0 += 1;
-            Ok(())
-        }
-
-        #[cfg(feature = "parallel")]
-        fn for_part(&self, _bytes: std::ops::Range<usize>) -> Self {
-            Self(0)
-        }
-
-        #[cfg(feature = "parallel")]
-        fn append(&mut self, part: Self) -> Result<(), Fault> {
-            self.0 += part.0;
-            Ok(())
-        }
     }
 
     fn read(text: &str, width: usize) -> Result<(Vec<Vec<f64>>, Vec<String>), Stop> {
@@ -496,15 +440,6 @@ mod tests {
         })
         .unwrap();
         assert_eq!(seen.len(), 3);
-        let large = "1 2\n".repeat(6_000_000);
-        let mut lexer = Lexer::new(large.as_bytes(), false);
-        let mut reports = 0;
-        let count = rows(&mut lexer, vec![0.0; 2], &mut Count(0), &mut |_| {
-            reports += 1;
-            true
-        });
-        // Also where all cores read.
-        assert!(count == Ok(6_000_000) && reports >= 1, "{count:?} {reports}");
         let mut lexer = Lexer::new(text.as_bytes(), false);
         assert_eq!(
             rows(&mut lexer, vec![0.0; 2], &mut Kept::default(), &mut |_| { false }),

@@ -7,7 +7,7 @@ use glam::{Mat4, Quat, Vec4};
 const LANES: usize = 4;
 
 /// Consecutive joints with the same rotation axes.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 struct Run {
     joints: usize,
     /// The axes (0 to 2) of the rotations of each joint, in order.
@@ -15,7 +15,7 @@ struct Run {
 }
 
 /// The rotation channels of a character, with buffers for one row.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(super) struct Turns {
     runs: Vec<Run>,
     /// The columns of the angles: run by run, within a run four joints at a time, and of these for
