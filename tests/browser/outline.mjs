@@ -1,6 +1,6 @@
-// A measurement without bounds: what the elements for screen readers cost. Pages with and without
-// them take turns, play three panes, and then have a parameter dragged. "In the page" is the time of
-// web/js/outline.js alone, with the layout that it causes; the rest is the difference of frames.
+// A measurement without bounds: the cost of the elements for screen readers. Pages with and without
+// them take turns and play three panes. "In the page" is the time of web/js/outline.js, with the
+// layout that it causes; the other cost is the difference between the frames of both pages.
 //
 //   node tests/browser/outline.mjs [--size 1280x800] [--frames 240] [--rounds 3]
 
@@ -41,7 +41,6 @@ async function measure(backend, has) {
   const found = await drawn(page, segue);
   const playing = await segue("stats");
   const inPage = await page.evaluate(() => (window.outlineTimes ?? []).slice(-240));
-  await page.evaluate(() => { window.outlineTimes = []; });
   await page.context().close();
   const row = { "p50 ms": playing.frame_ms.p50, "p95 ms": playing.frame_ms.p95 };
   for (const [name, share] of [["in the page p50", 0.5], ["in the page p95", 0.95]]) row[name] = part(inPage, share);

@@ -199,9 +199,9 @@ fn browser(report: &mut Report) {
         let server = server::Server::bind(0, dist::folder())?;
         let address = server.address();
         std::thread::spawn(move || server.run());
-        // Two files at once: each draws in software on all cores, but some wait for seconds, for a
-        // limit of time or for a device.
-        let mut node = command("node", &["--test", "--test-reporter=spec", "--test-concurrency=2"]);
+        // One file after the other: each starts browsers that draw in software, and those use all
+        // cores.
+        let mut node = command("node", &["--test", "--test-reporter=spec", "--test-concurrency=1"]);
         node.current_dir(root().join("tests/browser"))
             .env("SEGUE_URL", address)
             .env("SEGUE_PROGRAM", program)

@@ -4,12 +4,12 @@ use super::g1::HINGES;
 use super::robot::{Robot, angle_about, is_robot, z_up};
 use glam::{DVec3, Quat};
 use segue_motion::skeleton::Skeleton;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// An angle beyond a limit by less than this is a rounding error, radians.
 pub(super) const TOLERANCE: f64 = 1e-3;
 /// An angle this near to a limit is at it, radians (1°).
-const NEAR: f64 = 0.017_453_292_519_943_295;
+const NEAR: f64 = PI / 180.0;
 
 /// The place of a hinge's angle between its limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,7 +33,7 @@ impl HingeLimits {
     /// hinges are known.
     #[must_use]
     pub fn of(skeleton: &Skeleton) -> Option<Self> {
-        // Most skeletons have another number of joints, and a frame asks for each.
+        // The stage asks in every frame: counting is cheaper than comparing names.
         if skeleton.len() != HINGES.len() + 1 {
             return None;
         }

@@ -66,11 +66,11 @@ fn tables_of_all_kinds_put_bodies_where_mujoco_does() {
 fn hinges_at_and_beyond_their_limits_are_told_from_free_ones() {
     use HingeState::{AtLimit, BeyondLimit, Free};
     let row = |degrees: f64| {
-        let knee = (3..32).map(|hinge| if hinge == 6 { degrees.to_radians() } else { 0.0 });
+        let knee = (0..29).map(|hinge| if hinge == 3 { degrees.to_radians() } else { 0.0 });
         let cells = [0.0, 0.0, 0.8, 0.0, 0.0, 0.0, 1.0].into_iter().chain(knee);
         cells.map(|cell| cell.to_string()).collect::<Vec<_>>().join(",")
     };
-    // The knee bends from -5° to 165°.
+    // The left knee, hinge 3, bends from -5° to 165°.
     let expected = [
         (0.0, Free),
         (90.0, Free),

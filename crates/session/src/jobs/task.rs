@@ -1,4 +1,4 @@
-//! What a job computes, and the clips that it needs.
+//! The trait of tasks, and the clips of a job.
 
 use super::error::JobError;
 use super::motion_parcel;
