@@ -20,6 +20,19 @@ export async function until(what, ask, limitMs = WAIT_TIMEOUT_MS) {
 }
 
 /**
+ * Starts to measure how long the page's thread computes, and returns a function that returns the
+ * seconds since then. They are those of the thread's own clock, which stands still while other
+ * programs have the processor, so that a busy machine does not lengthen them.
+ */
+export async function computingTime(page) {
+  const client = await page.context().newCDPSession(page);
+  await client.send("Performance.enable", { timeDomain: "threadTicks" });
+  const secs = async () => (await client.send("Performance.getMetrics")).metrics.find(({ name }) => name === "TaskDuration").value;
+  const start = await secs();
+  return async () => (await secs()) - start;
+}
+
+/**
  * Returns the contents of the browser's storage: the link, the ids of the clips, the SHA-256 of the
  * files.
  */
