@@ -161,13 +161,18 @@ onBackend("both", "WebGL 2 draws after two lost WebGPU devices within 10 s", asy
 
 // Fails when the page waits for ever for a device that does not come.
 onBackend("both", "WebGL 2 draws where a lost WebGPU device has no successor", async ({ open }) => {
-  const { page, segue, load } = surviving(await open("lab=blend", { ...SMALL, prepare }));
+  const { page, segue, load } = surviving(await open("lab=blend", { ...SMALL, prepare: (page) => Promise.all([prepare(page), page.clock.install()]) }));
   const { clips: [own] } = await load("own.bvh", striding({ frames: 40 }));
   await segue("set", { a: own.id, blend_window: 23 });
   await page.evaluate(() => {
-    GPUAdapter.prototype.requestDevice = () => new Promise(() => {});
+    GPUAdapter.prototype.requestDevice = () => {
+      window.isAsked = true;
+      return new Promise(() => {});
+    };
     window.lose("webgpu");
   });
+  await page.waitForFunction(() => window.isAsked);
+  await page.clock.fastForward(30_000);
   await until("WebGL 2 draws", async () => (await segue("stats")).backend === "webgl2");
   const { a, blend_window } = await segue("params");
   assert.deepEqual({ a, blend_window }, { a: own.id, blend_window: 23 });
