@@ -1,25 +1,28 @@
 // A measurement without bounds: the cost of the elements for screen readers. Pages with and without
 // them take turns and play three panes. "In the page" is the time of web/js/outline.js, with the
-// layout that it causes; the other cost is the difference between the frames of both pages.
+// layout that it causes; the other cost is the difference between the frames of both pages. A page
+// of another build, served at an address of its own, takes turns with them.
 //
-//   node tests/browser/outline.mjs [--size 1280x800] [--frames 240] [--rounds 3]
+//   node tests/browser/outline.mjs [--size 1280x800] [--frames 240] [--rounds 3] [--other ADDRESS]
 
 import process from "node:process";
 import { parseArgs } from "node:util";
 import { BACKENDS, close, openSegue } from "./segue.mjs";
 
 const { values } = parseArgs({
-  options: { size: { type: "string", default: "1280x800" }, frames: { type: "string", default: "240" }, rounds: { type: "string", default: "3" } },
+  options: { size: { type: "string", default: "1280x800" }, frames: { type: "string", default: "240" }, rounds: { type: "string", default: "3" }, other: { type: "string" } },
 });
 const viewport = values.size.split("x").map(Number);
 const [frames, rounds] = [values.frames, values.rounds].map(Number);
+/** The kinds of pages: whether they have the elements, and their address where they are not of this build. */
+const PAGES = { with: { has: true }, without: { has: false }, ...(values.other && { other: { has: true, base: values.other } }) };
 const UPDATE = "this.#update(JSON.parse(text))";
 const rows = {};
 
 try {
   for (const backend of BACKENDS) {
     for (let round = 1; round <= rounds; round++) {
-      for (const has of [true, false]) rows[`${backend} ${has ? "with" : "without"} ${round}`] = await measure(backend, has);
+      for (const [name, kind] of Object.entries(PAGES)) rows[`${backend} ${name} ${round}`] = await measure(backend, kind);
     }
   }
 } finally {
@@ -28,8 +31,8 @@ try {
 console.table(rows);
 process.exit();
 
-async function measure(backend, has) {
-  const prepare = (page) => page.route("**/outline*.js", async (route) => {
+async function measure(backend, { has, base }) {
+  const prepare = base ? undefined : (page) => page.route("**/outline*.js", async (route) => {
     if (!has) return route.abort();
     const response = await route.fetch();
     const source = await response.text();
@@ -37,7 +40,7 @@ async function measure(backend, has) {
     const timed = `{ const began = performance.now(); ${UPDATE}; this.#root.getBoundingClientRect(); (window.outlineTimes ??= []).push(performance.now() - began); }`;
     return route.fulfill({ response, body: source.replace(UPDATE, timed) });
   });
-  const { page, segue } = await openSegue(backend, "compare=blend_window:30,15,10", { viewport, prepare });
+  const { page, segue } = await openSegue(backend, "compare=blend_window:30,15,10", { viewport, prepare, base });
   const found = await drawn(page, segue);
   const playing = await segue("stats");
   const inPage = await page.evaluate(() => (window.outlineTimes ?? []).slice(-240));
