@@ -3,6 +3,7 @@
 //! `segue --help` lists the commands; the crate's README has the tour.
 
 mod convert;
+mod corpus;
 mod info;
 mod labs;
 mod lint;
@@ -89,7 +90,17 @@ fn parser() -> Command {
             None => lab,
         });
     }
+    let build = corpus::BuildArgs::augment_args(command("build"))
+        .about("Makes a corpus of motion files, or adds to it what is new")
+        .after_help(corpus::EXAMPLES);
     parser
+        .subcommand(
+            command("corpus")
+                .about("Makes a corpus of thousands of files, to be searched and opened in the page")
+                .subcommand_required(true)
+                .arg_required_else_help(true)
+                .subcommand(build),
+        )
         .subcommand(
             open::OpenArgs::augment_args(command("open"))
                 .about("Opens files in the page, served by this machine for itself")
@@ -113,6 +124,11 @@ fn run(matches: &ArgMatches) -> Result<Status, Failure> {
         "convert" => convert::run(&args(matches)?),
         "lint" => lint::run(&args(matches)?),
         "open" => open::run(&args(matches)?),
+        "corpus" => {
+            let build = matches.subcommand_matches("build");
+            let unknown = || Failure::usage("`segue corpus` is followed by `build`");
+            corpus::build(&args(build.ok_or_else(unknown)?)?)
+        }
         "completions" => complete(matches),
         _ => {
             let (name, matches) = match matches.subcommand() {

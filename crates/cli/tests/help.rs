@@ -25,6 +25,7 @@ fn every_command_teaches_by_an_example() {
         let inner: &[&str] = match command.as_str() {
             "graph" => &["walk"],
             "match" => &["bench"],
+            "corpus" => &["build"],
             _ => &[],
         };
         let words = [&[command.as_str()], inner, &["--help"]].concat();
