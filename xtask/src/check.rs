@@ -92,7 +92,7 @@ fn lint(report: &mut Report) {
     report.step("clippy, web", || {
         tools::ensure_wasm_target()?;
         tools::clang()?;
-        let modules = ["--bin=segue-app", "--bin=reader", "--bin=compute"];
+        let modules = ["--bin=segue-app", "--bin=reader", "--bin=compute", "--bin=corpus"];
         shell::run(&mut clippy(&[&["--target=wasm32-unknown-unknown"], &modules[..]].concat()))
     });
 }

@@ -45,7 +45,7 @@ pub fn build(profile: Profile, modules: Modules) -> Result<()> {
             progress::run(vec![
                 Build {
                     name: "Segue for the web",
-                    cargo: app(profile, &["--bin=reader", "--bin=compute"]),
+                    cargo: app(profile, &["--bin=reader", "--bin=compute", "--bin=corpus"]),
                 },
                 Build { name: "its JavaScript's writer", cargo: bindgen() },
             ])

@@ -1,6 +1,7 @@
 //! `cargo xtask quality`, `clean-quality`, `match-quality` and `match-speed`: measurements of every
 //! lab on any motion, of faults found and mended, of characters driven by recorded input, and of
-//! searches. `make-corpus` writes the files of a large library.
+//! searches. `make-corpus` writes the files of a large library,
+//! `make-large-corpus` a corpus of them.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -64,6 +65,14 @@ pub fn make_corpus(args: &[&str]) -> Result<()> {
         return fail("make-corpus is followed by a number of files and a folder");
     };
     let mut tool = tool("make_corpus", "release");
+    run(tool.arg("--").arg(count).arg(std::path::absolute(folder)?))
+}
+
+pub fn make_large_corpus(args: &[&str]) -> Result<()> {
+    let &[count, folder] = args else {
+        return fail("make-large-corpus is followed by a number of clips and a folder");
+    };
+    let mut tool = tool("make_large_corpus", "quality");
     run(tool.arg("--").arg(count).arg(std::path::absolute(folder)?))
 }
 

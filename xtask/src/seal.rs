@@ -12,9 +12,9 @@ use crate::shell::{Result, fail};
 
 /// Folders whose files are fetched on request, and cached from then on.
 const LATER: [&str; 3] = ["samples/", "lessons/", "lang/"];
-/// The folder of the page's scripts with the WebAssembly of the workers that compute, which are
-/// made for the first long work.
-const COMPUTE: &str = "/compute/";
+/// Folders of the page's scripts that are fetched on request: the workers that compute, which are
+/// made for the first long work, and what shows a corpus.
+const LATER_SCRIPTS: [&str; 2] = ["/compute/", "/corpus/"];
 /// The beginning of the names of the app's module with WebGL 2, and of that without it.
 const WEBGL2: &str = "segue-";
 const WEBGPU: &str = "webgpu-";
@@ -61,7 +61,8 @@ pub fn seal(folder: &Path, is_release: bool) -> Result<()> {
         files.iter().filter(|file| names.iter().any(|name| file.starts_with(name))).collect()
     };
     let (mut later, webgl2, webgpu) = (with(&LATER), with(&[WEBGL2]), with(&[WEBGPU]));
-    later.extend(files.iter().filter(|file| file.contains(COMPUTE)));
+    let is_later = |file: &&String| LATER_SCRIPTS.iter().any(|name| file.contains(name));
+    later.extend(files.iter().filter(is_later));
     let is_first = |file: &&String| {
         *file != WORKER && ![&later, &webgl2, &webgpu].iter().any(|other| other.contains(file))
     };
@@ -150,6 +151,7 @@ mod tests {
         let folder = std::env::temp_dir().join(format!("segue-seal-{}-{name}", std::process::id()));
         drop(fs::remove_dir_all(&folder));
         fs::create_dir_all(folder.join("js/compute")).unwrap();
+        fs::create_dir_all(folder.join("js/corpus")).unwrap();
         fs::create_dir_all(folder.join("samples")).unwrap();
         for (file, text) in [
             (
@@ -158,6 +160,7 @@ mod tests {
             ),
             ("js/boot.js", boot),
             ("js/compute/compute_bg.wasm", "\0asm"),
+            ("js/corpus/corpus_bg.wasm", "\0asm"),
             ("segue-1.wasm", "\0asm"),
             ("webgpu-2.wasm", "\0asm"),
             ("samples/walk.gz", "packed"),
@@ -199,6 +202,7 @@ mod tests {
             !first.contains("compute") && later.contains("/compute/compute_bg.wasm"),
             "{worker}"
         );
+        assert!(later.contains("/corpus/corpus_bg.wasm"), "{worker}");
         assert!(!worker.contains("sw.js"), "{worker}");
         let policy = page.find("Content-Security-Policy").unwrap();
         assert!(

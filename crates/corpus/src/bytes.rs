@@ -15,6 +15,11 @@ impl<'a> Reader<'a> {
         Self { bytes, what }
     }
 
+    /// Returns the name of the bytes in errors.
+    pub(crate) const fn what(&self) -> &'static str {
+        self.what
+    }
+
     /// Returns the next bytes.
     pub(crate) fn take(&mut self, count: usize) -> Result<&'a [u8], CorpusError> {
         let (taken, rest) =
@@ -39,6 +44,23 @@ impl<'a> Reader<'a> {
 
     pub(crate) fn u32(&mut self) -> Result<u32, CorpusError> {
         Ok(u32::from_le_bytes(self.array()?))
+    }
+
+    /// Returns a number of [`push_varint`].
+    pub(crate) fn varint(&mut self) -> Result<u32, CorpusError> {
+        let mut value = 0;
+        for shift in (0..u32::BITS).step_by(7) {
+            let [byte] = self.array()?;
+            let bits = u32::from(byte & 0x7f);
+            if bits.leading_zeros() < shift {
+                break;
+            }
+            value |= bits << shift;
+            if byte & 0x80 == 0 {
+                return Ok(value);
+            }
+        }
+        Err(CorpusError::Damaged { what: self.what })
     }
 
     pub(crate) fn f32(&mut self) -> Result<f32, CorpusError> {
@@ -70,11 +92,6 @@ pub(crate) fn f32s(bytes: &[u8]) -> impl Iterator<Item = f32> + '_ {
 }
 
 /// Returns the numbers of bytes; an incomplete last one is left out.
-pub(crate) fn u32s(bytes: &[u8]) -> impl Iterator<Item = u32> + '_ {
-    words(bytes).map(u32::from_le_bytes)
-}
-
-/// Returns the numbers of bytes; an incomplete last one is left out.
 pub(crate) fn i32s(bytes: &[u8]) -> impl Iterator<Item = i32> + '_ {
     words(bytes).map(i32::from_le_bytes)
 }
@@ -97,4 +114,14 @@ pub(crate) fn push_u32(out: &mut Vec<u8>, value: usize) -> Result<(), CorpusErro
 /// Appends numbers.
 pub(crate) fn push_f32s(out: &mut Vec<u8>, values: impl IntoIterator<Item = f32>) {
     out.extend(values.into_iter().flat_map(f32::to_le_bytes));
+}
+
+/// Appends a number in as many bytes as it needs: seven bits each, the lowest first, and a bit that
+/// says whether another byte follows.
+pub(crate) fn push_varint(out: &mut Vec<u8>, mut value: u32) {
+    while value >= 0x80 {
+        out.push((value & 0x7f) as u8 | 0x80);
+        value >>= 7;
+    }
+    out.push(value as u8);
 }

@@ -35,6 +35,12 @@ pub enum CorpusError {
         /// The version that is read.
         expected: u32,
     },
+    /// Bytes that cannot be unpacked, or contradict each other.
+    #[error("{what}: the bytes are damaged")]
+    Damaged {
+        /// The name of the bytes.
+        what: &'static str,
+    },
     /// Numbers that contradict each other.
     #[error("{what}: found {found}, expected {expected}")]
     Mismatch {
@@ -45,8 +51,11 @@ pub enum CorpusError {
         /// The number that was expected.
         expected: usize,
     },
+    /// A column that the table does not have, or one of another kind.
+    #[error("the table has no column `{0}` of this kind")]
+    NoColumn(String),
     /// Text that is no JSON of this kind.
-    #[error("the text of a record cannot be read: {0}")]
+    #[error("the text cannot be read: {0}")]
     Json(#[from] serde_json::Error),
     /// A count or a size that does not fit into 32 bits.
     #[error("a corpus has at most 4,294,967,295 clips, frames, and bytes of a clip")]

@@ -2,6 +2,7 @@
 
 use crate::index::{self, MomentRows};
 use crate::manifest::{Counts, manifest};
+use crate::map;
 use crate::pack::{Packer, Piece, Slot};
 use crate::signature::MAX_SECS_APART;
 use crate::{
@@ -49,6 +50,8 @@ pub struct CorpusRow {
     pub thumbnail: Option<Slot>,
     /// The number of its moments in the index.
     pub moments: usize,
+    /// Its place on the map, x and y from -1 to 1; `None` without moments.
+    pub map: Option<[f32; 2]>,
     /// The id of the clip of which it is a copy: an earlier row.
     pub copy_of: Option<String>,
     /// Whether it is a mirrored copy.
@@ -134,6 +137,7 @@ impl Gatherer {
                     poses: poses.add(piece(), clip.poses),
                     thumbnail: thumbnails.add(piece(), clip.thumbnail),
                     moments: count,
+                    map: None,
                     copy_of: None,
                     is_mirrored: false,
                     row: clip.row,
@@ -148,9 +152,13 @@ impl Gatherer {
         }
         let all = features.iter().flat_map(|own| own.chunks_exact(dims));
         let scaling = Scaling::of(self.body.layout(), all);
-        let mut scaled = features.concat();
-        drop(features);
+        let mut scaled = Vec::with_capacity(features.iter().map(Vec::len).sum());
+        // One after the other, so that all of them are not in memory twice.
+        features.into_iter().for_each(|own| scaled.extend(own));
         scaled.chunks_exact_mut(dims).for_each(|row| scaling.apply(row));
+        for (row, place) in rows.iter_mut().zip(map::places(&scaled, dims, &moments)) {
+            row.map = place;
+        }
         let index = index::build(&scaled, dims, &moments)?;
         let (pose_shards, thumbnail_shards) = (poses.finish(), thumbnails.finish());
         let with = |status| rows.iter().filter(|row| row.row.status == status).count();
@@ -165,6 +173,7 @@ impl Gatherer {
                 .sum(),
             moments: scaled.len() / dims,
             lists: index.count,
+            probes: index.probes,
             pose_shards: pose_shards.len(),
             thumbnail_shards: thumbnail_shards.len(),
             list_files: index.lists.len(),

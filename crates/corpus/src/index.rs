@@ -6,6 +6,8 @@
 
 mod build;
 mod centroids;
+mod list;
+mod probes;
 mod search;
 #[cfg(test)]
 mod tests;
@@ -16,14 +18,23 @@ pub use search::{Hit, Index, ListPlace};
 /// The first bytes of the centroids.
 const MARK: [u8; 4] = *b"SGCE";
 /// The version of the index.
-const VERSION: u32 = 1;
-/// Bytes of a moment beside its numbers: clip and row (u32), and the step of its bytes (f32).
-const HEAD_BYTES: usize = 12;
-/// The probes with which a search finds at least 95 % of the ten nearest moments: the tests hold
-/// it.
-pub(crate) const PROBES: usize = 16;
+const VERSION: u32 = 2;
+/// The numbers that are added side by side.
+const LANES: usize = 8;
 
 /// Returns the square of the distance of two rows.
 fn squared(a: &[f32], b: &[f32]) -> f32 {
-    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
+    // Sums side by side, which a processor adds at once, in an order that is always the same.
+    let mut sums = [0.0f32; LANES];
+    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
+    for (a, b) in a.iter().zip(b) {
+        for ((sum, a), b) in sums.iter_mut().zip(a).zip(b) {
+            *sum += (a - b) * (a - b);
+        }
+    }
+    for ((sum, a), b) in sums.iter_mut().zip(a_rest).zip(b_rest) {
+        *sum += (a - b) * (a - b);
+    }
+    let [a, b, c, d, e, f, g, h] = sums;
+    ((a + b) + (c + d)) + ((e + f) + (g + h))
 }

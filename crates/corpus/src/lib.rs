@@ -12,7 +12,8 @@
 //! ```text
 //! bytes → clips → artefacts, size, rate, rig → (cleaned) → standard body → contacts, features
 //!       → poses, thumbnail, signature                                        = FileRecord
-//! all records, by hash → shards of poses · copies · scales → centroids → lists = Gathered
+//! all records, by hash → shards of poses · copies · scales → map, centroids → lists = Gathered
+//! its rows, with paths and labels → columns                                     = columns.bin
 //! ```
 //!
 //! - *Standard body*: the synthesiser's, 22 joints, 1.75 m tall. Motions are put on it by
@@ -23,6 +24,10 @@
 //! - *Index* ([`Index`]): an inverted file. Moments are sorted into lists by their nearest
 //!   centroid; a search reads the centroids and a few lists.
 //! - *Copies* ([`Signature`]): hands, feet and head at eight moments, compared in centimetres.
+//! - *Columns* ([`write_columns`], [`Table`]): what a page shows of all rows, in a few bytes each:
+//!   texts by what they share with their neighbours, numbers in one byte.
+//! - *Map*: two principal components of the mean features of clips.
+//! - *Page* ([`CorpusPage`]): a corpus whose bytes come by ranges.
 //!
 //! The files and their bytes are described in `docs/corpus.md`.
 //!
@@ -58,9 +63,9 @@
 //! # Accuracy and cost
 //!
 //! Rotations are kept to 0.01°. Distances in the index are those of the features to a few
-//! thousandths. With the probes that `corpus.json` states, a search finds more than 95 % of the ten
-//! nearest moments on synthesised corpora. Reading is most of the time; gathering is O(moments ×
-//! √lists).
+//! thousandths. With the probes that `corpus.json` states, which are measured on the corpus, a
+//! search finds more than 95 % of the ten nearest moments of synthesised motion. In the columns,
+//! metrics are kept to 2 %. Reading is most of the time; gathering is O(moments × √lists).
 //!
 //! # What it does not do
 //!
@@ -71,14 +76,20 @@
 //!
 //! Jégou, Douze, Schmid, "Product quantization for nearest neighbor search", 2011, section IV (the
 //! inverted file with residuals). Clavet, "Motion Matching and The Road to Next-Gen Animation", GDC
-//! 2016 (features). Lloyd, "Least squares quantization in PCM", 1982.
+//! 2016 (features). Lloyd, "Least squares quantization in PCM", 1982. Witten, Moffat, Bell,
+//! "Managing Gigabytes", 1999, section 4.1 (front coding). Pearson, "On lines and planes of closest
+//! fit to systems of points in space", 1901 (principal components).
 
 mod bytes;
+mod columns;
 mod error;
 mod gather;
 mod index;
 mod manifest;
+mod map;
 mod pack;
+mod packed;
+mod page;
 mod pose;
 mod process;
 mod record;
@@ -86,13 +97,16 @@ mod rotation;
 mod scaling;
 mod signature;
 mod standard;
+mod table;
 mod thumbnail;
 
+pub use columns::{RowTexts, write_columns};
 pub use error::{CorpusError, PlaceError};
 pub use gather::{CorpusRow, Gathered, Gatherer};
 pub use index::{Hit, Index, ListPlace};
-pub use manifest::{FORMAT, column_rows};
+pub use manifest::{COLUMNS, FORMAT, column_rows};
 pub use pack::{Piece, SHARD_BYTES, Slot};
+pub use page::{CorpusPage, PageError};
 pub use pose::{PoseClip, decode_poses, encode_poses};
 pub use process::{Options, process_file, work_key};
 pub use record::{ClipRecord, ClipRow, FileRecord, Status};
@@ -100,4 +114,5 @@ pub use rotation::{decode_rotation, encode_rotation};
 pub use scaling::Scaling;
 pub use signature::{MAX_DISTANCE_CM, Signature};
 pub use standard::{FEATURE_STEP, POSE_FPS, PlacedClip, StandardBody};
+pub use table::{Cells, Column, ColumnKind, Copies, Filter, Sort, Table};
 pub use thumbnail::{THUMBNAIL_POSES, THUMBNAIL_SIZE, thumbnail};

@@ -1,6 +1,5 @@
 //! `corpus.json`: all that is needed to read the other files.
 
-use crate::index::PROBES;
 use crate::{
     FEATURE_STEP, MAX_DISTANCE_CM, Options, POSE_FPS, SHARD_BYTES, Scaling, StandardBody,
     THUMBNAIL_POSES, THUMBNAIL_SIZE,
@@ -10,7 +9,10 @@ use segue_session::metrics::METRICS;
 use serde_json::{Value as Json, json};
 
 /// The version of the format.
-pub const FORMAT: u32 = 1;
+pub const FORMAT: u32 = 2;
+
+/// The name of the file with the columns for a page.
+pub const COLUMNS: &str = "columns.bin";
 
 /// Numbers of a corpus.
 #[derive(Clone, Debug)]
@@ -23,6 +25,7 @@ pub(crate) struct Counts {
     pub(crate) seconds: f64,
     pub(crate) moments: usize,
     pub(crate) lists: usize,
+    pub(crate) probes: usize,
     pub(crate) pose_shards: usize,
     pub(crate) thumbnail_shards: usize,
     pub(crate) list_files: usize,
@@ -71,6 +74,7 @@ pub(crate) fn manifest(
             "moments": counts.moments,
         },
         "clips": { "file": "clips.parquet" },
+        "page": { "columns": COLUMNS },
         "body": { "joints": joints },
         "poses": {
             "fps": POSE_FPS,
@@ -91,7 +95,7 @@ pub(crate) fn manifest(
         "index": {
             "lists": counts.lists,
             "files": counts.list_files,
-            "probes": PROBES,
+            "probes": counts.probes,
         },
         "copies": { "most_cm": MAX_DISTANCE_CM },
     })

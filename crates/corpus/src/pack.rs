@@ -23,30 +23,43 @@ pub struct Piece {
     pub clip: usize,
 }
 
-/// Places bytes one after the other.
+/// Finds places for bytes, one after the other.
+#[derive(Debug, Default)]
+pub(crate) struct Placer(Slot);
+
+impl Placer {
+    /// Returns the place of some bytes; `None` if there are none.
+    pub(crate) fn add(&mut self, length: usize) -> Option<Slot> {
+        if length == 0 {
+            return None;
+        }
+        let next = &mut self.0;
+        if next.offset > 0 && next.offset.saturating_add(length) > SHARD_BYTES {
+            *next = Slot { shard: next.shard + 1, ..Slot::default() };
+        }
+        let slot = Slot { length, ..*next };
+        next.offset = next.offset.saturating_add(length);
+        Some(slot)
+    }
+}
+
+/// Places bytes one after the other, and keeps whose they are.
 #[derive(Debug, Default)]
 pub(crate) struct Packer {
-    next: Slot,
+    placer: Placer,
     shards: Vec<Vec<Piece>>,
 }
 
 impl Packer {
     /// Places bytes; `None` if there are none.
     pub(crate) fn add(&mut self, piece: Piece, length: usize) -> Option<Slot> {
-        if length == 0 {
-            return None;
-        }
-        if self.next.offset > 0 && self.next.offset + length > SHARD_BYTES {
-            self.next = Slot { shard: self.next.shard + 1, ..Slot::default() };
-        }
-        if self.shards.len() <= self.next.shard {
+        let slot = self.placer.add(length)?;
+        if self.shards.len() <= slot.shard {
             self.shards.push(Vec::new());
         }
         if let Some(last) = self.shards.last_mut() {
             last.push(piece);
         }
-        let slot = Slot { length, ..self.next };
-        self.next.offset += length;
         Some(slot)
     }
 

@@ -10,6 +10,8 @@ use std::sync::Arc;
 
 /// The first bytes of a clip.
 const MARK: [u8; 4] = *b"SGPO";
+/// Bytes before the frames of a clip.
+const HEAD_BYTES: usize = 16;
 /// Bytes of a rotation.
 const ROTATION_BYTES: usize = 6;
 
@@ -43,6 +45,11 @@ pub fn encode_poses(clip: &Clip, contacts: &Contacts) -> Result<Vec<u8>, CorpusE
         out.extend(clip.rotations(frame).iter().flat_map(|own| encode_rotation(*own)));
     }
     Ok(out)
+}
+
+/// Returns the number of bytes of a clip.
+pub(crate) const fn poses_bytes(frames: usize, joints: usize) -> usize {
+    HEAD_BYTES + frames * (12 + 1 + joints * ROTATION_BYTES)
 }
 
 /// Reads a clip: the range of a shard that its row names.

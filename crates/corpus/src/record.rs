@@ -22,6 +22,18 @@ pub enum Status {
     Unreadable,
 }
 
+impl Status {
+    /// Returns the name in the table.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ok => "ok",
+            Self::Unplaced => "unplaced",
+            Self::Unreadable => "unreadable",
+        }
+    }
+}
+
 /// A row of the table: a clip, or a file that cannot be read.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ClipRow {

@@ -1,5 +1,6 @@
 //! Features of a corpus in one scale, in which Euclidean distances are costs of matching.
 
+use crate::standard::row_at;
 use crate::{CorpusError, PlaceError, StandardBody};
 use segue_motion::clip::Motion;
 use segue_motion::matching::{Layout, Normalisation, Weights};
@@ -63,9 +64,7 @@ impl Scaling {
         let features = body.place(motion)?.features;
         let dims = body.layout().dims();
         let rows = features.len() / dims;
-        let rate = crate::POSE_FPS as f64 / crate::FEATURE_STEP as f64;
-        // The clamp maps negative times and NaN to row 0: `max` returns the other operand.
-        let row = (secs * rate).round().max(0.0).min(rows.saturating_sub(1) as f64) as usize;
+        let row = row_at(secs).min(rows.saturating_sub(1));
         Ok(features.chunks_exact(dims).nth(row).map(|row| {
             let mut row = row.to_vec();
             self.apply(&mut row);

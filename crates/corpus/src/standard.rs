@@ -19,6 +19,17 @@ const MAX_SECS: f64 = 7_200.0;
 /// The number of frames at the rate of matching from one frame of poses to the next.
 const RATIO: usize = RATE / POSE_FPS;
 
+/// Rows before and after a moment that its features depend on: their trajectory is one second
+/// long, and smoothed over 0.8 s to either side.
+const BEFORE_ROWS: usize = 20;
+const AFTER_ROWS: usize = 40;
+
+/// Returns the row of features that is nearest to a time.
+pub(crate) fn row_at(secs: f64) -> usize {
+    // Negative times and NaN are row 0: `max` returns the other operand.
+    (secs * POSE_FPS as f64 / FEATURE_STEP as f64).round().max(0.0) as usize
+}
+
 /// The standard body.
 #[derive(Clone, Debug)]
 pub struct StandardBody {
@@ -65,6 +76,36 @@ impl StandardBody {
     #[must_use]
     pub fn layout(&self) -> &Layout {
         &self.layout
+    }
+
+    /// Returns the raw features of a moment of a clip on this body at [`POSE_FPS`]: those of the
+    /// nearest row, from the part of the clip that they depend on. `None` if the clip is shorter
+    /// than their trajectory.
+    ///
+    /// # Errors
+    /// [`PlaceError`] if the clip has no features.
+    pub fn moment(&self, clip: &Clip, secs: f64) -> Result<Option<Vec<f32>>, PlaceError> {
+        let fine = clip.frames().saturating_sub(1) * RATIO + 1;
+        let rows = fine.saturating_sub(self.layout.horizon()).div_ceil(RATIO * FEATURE_STEP);
+        let Some(last) = rows.checked_sub(1).filter(|_| clip.frames() > 0) else {
+            return Ok(None);
+        };
+        let row = row_at(secs).min(last);
+        // Whole rows before it.
+        let first = row.saturating_sub(BEFORE_ROWS);
+        let end = clip.frames().min((row + AFTER_ROWS) * FEATURE_STEP);
+        let features = self.features(&clip.crop(first * FEATURE_STEP..end)?)?;
+        Ok(features.chunks_exact(self.layout.dims()).nth(row - first).map(<[f32]>::to_vec))
+    }
+
+    /// Returns the raw features of a clip on this body, as [`place`](Self::place) does: of every
+    /// [`FEATURE_STEP`]th frame at [`POSE_FPS`] whose trajectory lies inside the clip.
+    ///
+    /// # Errors
+    /// [`PlaceError`] if the clip has no features.
+    pub fn features(&self, clip: &Clip) -> Result<Vec<f32>, PlaceError> {
+        let fine = resample(clip, RATE as f64, Interpolation::Cubic)?;
+        Ok(feature_rows(&fine, self.roles(), &self.layout, RATIO * FEATURE_STEP)?)
     }
 
     /// Puts a motion on the body: it is resampled to the rate of matching, retargeted, and every

@@ -9,14 +9,14 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use segue_corpus::{
-    CorpusError, CorpusRow, FileRecord, Gatherer, Index, Options, Piece, Scaling, Slot,
-    StandardBody, decode_poses, process_file, work_key,
+    COLUMNS, CorpusError, CorpusRow, FORMAT, FileRecord, Gatherer, Index, Options, Piece, RowTexts,
+    Scaling, Slot, StandardBody, decode_poses, process_file, work_key, write_columns,
 };
 use segue_formats::{ARCHIVE_ENDINGS, ImportOptions, MOTION_ENDINGS};
 use segue_motion::clip::Motion;
 use segue_session::reading::SkeletonFile;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 fn value_error(error: impl ToString) -> PyErr {
     PyValueError::new_err(error.to_string())
@@ -85,6 +85,12 @@ pub(crate) fn corpus_parts<'py>(
     Ok(record.clips.iter().map(|clip| (bytes(&clip.poses), bytes(&clip.thumbnail))).collect())
 }
 
+/// Returns the version of the format, and the name of the file with the columns for a page.
+#[pyfunction]
+pub(crate) fn corpus_format() -> (u32, &'static str) {
+    (FORMAT, COLUMNS)
+}
+
 /// Returns the columns of the table that are metrics: name, label, unit, help.
 #[pyfunction]
 pub(crate) fn corpus_columns() -> Vec<[&'static str; 4]> {
@@ -93,21 +99,25 @@ pub(crate) fn corpus_columns() -> Vec<[&'static str; 4]> {
 
 /// Gathers records.
 #[pyclass(module = "segue", frozen)]
-pub(crate) struct CorpusGatherer(Mutex<Option<Gatherer>>);
+pub(crate) struct CorpusGatherer {
+    gatherer: Mutex<Option<Gatherer>>,
+    /// The rows of the corpus, when it is made.
+    rows: Mutex<Vec<CorpusRow>>,
+}
 
 #[pymethods]
 impl CorpusGatherer {
     #[new]
     fn new(clean: bool) -> PyResult<Self> {
         let gatherer = Gatherer::new(Options { clean }).map_err(value_error)?;
-        Ok(Self(Mutex::new(Some(gatherer))))
+        Ok(Self { gatherer: Mutex::new(Some(gatherer)), rows: Mutex::default() })
     }
 
     /// Adds a record.
     fn add(&self, py: Python<'_>, key: &str, record: &[u8]) -> PyResult<()> {
         py.detach(|| {
             let record = FileRecord::from_bytes(record)?;
-            match self.lock().as_mut() {
+            match locked(&self.gatherer).as_mut() {
                 Some(gatherer) => gatherer.add(key, &record),
                 None => Ok(()),
             }
@@ -117,7 +127,7 @@ impl CorpusGatherer {
 
     /// Makes the corpus. A gatherer is used up by that.
     fn finish<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let taken = self.lock().take();
+        let taken = locked(&self.gatherer).take();
         let gatherer = taken.ok_or_else(|| value_error("this corpus is made already"))?;
         let made = py.detach(|| gatherer.finish()).map_err(value_error)?;
         let dict = PyDict::new(py);
@@ -136,14 +146,28 @@ impl CorpusGatherer {
         let lists: Vec<_> = made.lists.iter().map(|list| PyBytes::new(py, list)).collect();
         dict.set_item("lists", lists)?;
         dict.set_item("manifest", format!("{:#}\n", made.manifest))?;
+        *locked(&self.rows) = made.rows;
         Ok(dict)
+    }
+
+    /// Returns the columns for a page, given path, name and labels of each row of the corpus that
+    /// was made.
+    fn columns<'py>(
+        &self,
+        py: Python<'py>,
+        texts: Vec<(String, String, Vec<String>)>,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        let made = py.detach(|| {
+            let of_row = |(path, name, labels)| RowTexts { path, name, labels };
+            let texts: Vec<RowTexts> = texts.into_iter().map(of_row).collect();
+            write_columns(&locked(&self.rows), &texts)
+        });
+        Ok(PyBytes::new(py, &made.map_err(value_error)?))
     }
 }
 
-impl CorpusGatherer {
-    fn lock(&self) -> std::sync::MutexGuard<'_, Option<Gatherer>> {
-        self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
-    }
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Returns a row of the table by its columns; metrics lie in a dictionary of their own.
@@ -170,6 +194,8 @@ fn row_as_dict<'py>(py: Python<'py>, row: &CorpusRow) -> PyResult<Bound<'py, PyD
     dict.set_item("mended", own.mended)?;
     dict.set_item("warnings", &own.warnings)?;
     dict.set_item("moments", row.moments)?;
+    dict.set_item("map_x", row.map.map(|place| place[0]))?;
+    dict.set_item("map_y", row.map.map(|place| place[1]))?;
     dict.set_item("copy_of", &row.copy_of)?;
     dict.set_item("is_mirrored", row.is_mirrored)?;
     let place = |slot: Option<Slot>| slot.map(|slot| (slot.shard, slot.offset, slot.length));

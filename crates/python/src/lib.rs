@@ -29,7 +29,7 @@ mod _core {
     #[pymodule_export]
     use super::corpus::{
         CorpusGatherer, CorpusIndex, corpus_clip, corpus_columns, corpus_endings, corpus_failure,
-        corpus_key, corpus_parts, corpus_query, corpus_record,
+        corpus_format, corpus_key, corpus_parts, corpus_query, corpus_record,
     };
     #[pymodule_export]
     use super::graph::{Graph, distance_matrix, graph};

@@ -1,5 +1,6 @@
 """Corpora: the same bytes whoever builds them, and what can be done with them."""
 
+import json
 import os
 import signal
 import subprocess
@@ -100,6 +101,46 @@ def test_bytes_do_not_depend_on_workers(takes, built, tmp_path):
     named = tmp_path / "named"
     build([word for word in words if not word.endswith(".txt")], named, workers=2)
     assert content(named)["poses-00000.bin"] == content(two)["poses-00000.bin"]
+
+
+def test_page_gets_columns_of_all_rows(takes, built, tmp_path):
+    out, report = built
+    corpus = Corpus(out)
+    assert corpus.manifest["page"] == {"columns": "columns.bin"}
+    columns = (out / "columns.bin").read_bytes()
+    assert columns[:4] == b"SGCO"
+    assert int.from_bytes(columns[8:12], "little") == report.rows
+    # They have paths, names and labels, which records have not.
+    other = tmp_path / "labelled"
+    build(takes, other, labels={"run.bvh": "fast"})
+    assert (other / "columns.bin").read_bytes() != columns
+    assert content(other)["poses-00000.bin"] == content(out)["poses-00000.bin"]
+    rows = corpus.table(["moments", "map_x", "map_y"]).to_pylist()
+    for row in rows:
+        if row["moments"]:
+            assert -1 <= row["map_x"] <= 1 and -1 <= row["map_y"] <= 1
+        else:
+            assert row["map_x"] is None and row["map_y"] is None
+
+
+@pytest.mark.parametrize(("format", "message"), [(1, "build it again"), (99, "newer Segue")])
+def test_corpus_of_another_format_is_refused(built, tmp_path, format, message):
+    manifest = dict(Corpus(built[0]).manifest, format=format)
+    (tmp_path / "corpus.json").write_text(json.dumps(manifest))
+    with pytest.raises(ValueError, match=message):
+        Corpus(tmp_path)
+
+
+def test_corpus_of_an_older_format_is_gathered_again(takes, built, tmp_path, monkeypatch):
+    from segue.corpus import _write
+
+    out = tmp_path / "out"
+    monkeypatch.setattr(_write, "_FORMAT", 1)
+    build(takes, out)
+    monkeypatch.undo()
+    report = build(takes, out)
+    assert (report.made, report.is_written) == (0, True)
+    assert content(out) == content(built[0])
 
 
 def test_second_build_does_nothing(takes, built, tmp_path):

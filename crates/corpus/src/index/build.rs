@@ -1,13 +1,15 @@
 //! Construction of the index.
 
 use super::centroids::Centroids;
-use super::{HEAD_BYTES, MARK, VERSION};
+use super::list::{self, Member};
+use super::{MARK, VERSION, probes};
 use crate::CorpusError;
 use crate::bytes::{push_f32s, push_u32};
 use crate::pack::SHARD_BYTES;
+use crate::packed::{push_numbers, push_packed};
 
-/// The greatest number of lists: their centroids are a megabyte.
-const MAX_LISTS: usize = 8_192;
+/// The greatest number of lists.
+const MAX_LISTS: usize = 16_384;
 
 /// The scaled features of a clip's moments.
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +29,8 @@ pub(crate) struct IndexFiles {
     pub(crate) lists: Vec<Vec<u8>>,
     /// The number of lists.
     pub(crate) count: usize,
+    /// The number of lists that a search reads.
+    pub(crate) probes: usize,
 }
 
 /// Builds the index of moments: `rows` has their scaled features (row-major, `dims` numbers each),
@@ -40,73 +44,87 @@ pub(crate) fn build(
     clips: &[MomentRows],
 ) -> Result<IndexFiles, CorpusError> {
     let moments = rows.len() / dims;
-    let centroids = Centroids::find(rows, dims, list_count(moments));
+    let mut centroids = Centroids::find(rows, dims, list_count(moments));
+    let rounded = Rounded::of(&mut centroids.lists, dims);
     let count = centroids.lists.len() / dims;
-    let mut members: Vec<Vec<(usize, usize, usize)>> = vec![Vec::new(); count];
-    let owners = clips.iter().flat_map(|own| (0..own.count).map(move |moment| (own.clip, moment)));
-    for (at, ((clip, moment), row)) in owners.zip(rows.chunks_exact(dims)).enumerate() {
-        if let Some(list) = centroids.list_of(row) {
-            members[list].push((clip, moment, at));
+    let list_of: Vec<Option<usize>> =
+        rows.chunks_exact(dims).map(|row| centroids.list_of(row)).collect();
+    let mut members: Vec<Vec<Member<'_>>> = vec![Vec::new(); count];
+    let mut all = rows.chunks_exact(dims).zip(&list_of);
+    for own in clips {
+        let clip = u32::try_from(own.clip).map_err(|_| CorpusError::TooLarge)?;
+        for (moment, (row, list)) in (0..).zip(all.by_ref().take(own.count)) {
+            if let Some(list) = list {
+                members[*list].push(Member { clip, moment, row });
+            }
+        }
+    }
+    let mut lists: Vec<Vec<u8>> = vec![Vec::new()];
+    let mut lengths = Vec::with_capacity(count);
+    for (centre, members) in centroids.lists.chunks_exact(dims).zip(&members) {
+        let bytes = list::encode(centre, members)?;
+        lengths.push(u32::try_from(bytes.len()).map_err(|_| CorpusError::TooLarge)?);
+        let is_full = |last: &Vec<u8>| !last.is_empty() && last.len() + bytes.len() > SHARD_BYTES;
+        if lists.last().is_none_or(is_full) {
+            lists.push(Vec::new());
+        }
+        if let Some(last) = lists.last_mut() {
+            last.extend(bytes);
         }
     }
     let mut out = MARK.to_vec();
     for number in [VERSION as usize, dims, count, moments] {
         push_u32(&mut out, number)?;
     }
-    push_f32s(&mut out, centroids.lists.iter().copied());
-    let mut lists: Vec<Vec<u8>> = vec![Vec::new()];
-    for (list, members) in members.iter().enumerate() {
-        let centre = &centroids.lists[list * dims..(list + 1) * dims];
-        let bytes = encode(rows, centre, members)?;
-        if lists
-            .last()
-            .is_none_or(|last| !last.is_empty() && last.len() + bytes.len() > SHARD_BYTES)
-        {
-            lists.push(Vec::new());
-        }
-        let file = lists.len() - 1;
-        let offset = lists[file].len();
-        for number in [file, offset, members.len()] {
-            push_u32(&mut out, number)?;
-        }
-        lists[file].extend(bytes);
-    }
-    Ok(IndexFiles { centroids: out, lists, count })
+    rounded.push(&mut out)?;
+    push_numbers(&mut out, &lengths)?;
+    let probes = probes::needed(rows, dims, clips, &list_of, &centroids.lists);
+    Ok(IndexFiles { centroids: out, lists, count, probes })
 }
 
-/// Returns the number of lists of some moments: a search then reads about as much of the centroids
-/// as of the lists.
+/// Returns the number of lists of some moments: a search then reads less of the centroids than of
+/// the lists, because a centroid has as many bytes as a moment.
 fn list_count(moments: usize) -> usize {
-    (2 * moments.isqrt()).clamp(1, MAX_LISTS)
+    (4 * moments.isqrt()).clamp(1, MAX_LISTS)
 }
 
-/// Returns the bytes of a list: clips, then moments (u32), then steps (f32), then the differences
-/// from the centroid in steps, an `i8` for each dimension.
-fn encode(
-    rows: &[f32],
-    centre: &[f32],
-    members: &[(usize, usize, usize)],
-) -> Result<Vec<u8>, CorpusError> {
-    let dims = centre.len();
-    let mut out = Vec::with_capacity(members.len() * (HEAD_BYTES + dims));
-    for (clip, _, _) in members {
-        push_u32(&mut out, *clip)?;
+/// Centroids in one byte a dimension.
+struct Rounded {
+    /// The least value of each dimension, and its step.
+    scales: Vec<[f32; 2]>,
+    /// The bytes of each dimension.
+    codes: Vec<Vec<u8>>,
+}
+
+impl Rounded {
+    /// Rounds centroids, which become those that a reader has: moments are sorted by them.
+    fn of(centroids: &mut [f32], dims: usize) -> Self {
+        let (mut scales, mut codes) = (Vec::new(), Vec::new());
+        for dim in 0..dims {
+            let own = || centroids.chunks_exact(dims).map(move |centre| centre[dim]);
+            let low = own().fold(f32::INFINITY, f32::min);
+            let high = own().fold(f32::NEG_INFINITY, f32::max);
+            let step = if high > low { (high - low) / 255.0 } else { 0.0 };
+            let low = if low.is_finite() { low } else { 0.0 };
+            let code = |value: f32| if step > 0.0 { ((value - low) / step).round() } else { 0.0 };
+            let rounded: Vec<u8> = own().map(|value| code(value) as u8).collect();
+            for (centre, code) in centroids.chunks_exact_mut(dims).zip(&rounded) {
+                centre[dim] = value([low, step], *code);
+            }
+            scales.push([low, step]);
+            codes.push(rounded);
+        }
+        Self { scales, codes }
     }
-    for (_, moment, _) in members {
-        push_u32(&mut out, *moment)?;
+
+    /// Appends scales, then the bytes of each dimension.
+    fn push(&self, out: &mut Vec<u8>) -> Result<(), CorpusError> {
+        push_f32s(out, self.scales.iter().flatten().copied());
+        self.codes.iter().try_for_each(|codes| push_packed(out, codes))
     }
-    let (mut steps, mut codes) = (Vec::new(), Vec::new());
-    for (_, _, at) in members {
-        let row = &rows[at * dims..(at + 1) * dims];
-        let apart = || row.iter().zip(centre).map(|(value, centre)| value - centre);
-        let step = apart().fold(0.0f32, |most, apart| most.max(apart.abs())) / 127.0;
-        steps.push(step);
-        codes.extend(apart().map(|apart| {
-            let code = if step > 0.0 { (apart / step).round().clamp(-127.0, 127.0) } else { 0.0 };
-            (code as i8).to_le_bytes()[0]
-        }));
-    }
-    push_f32s(&mut out, steps);
-    out.extend(codes);
-    Ok(out)
+}
+
+/// Returns the value of a byte, given the least value and the step.
+pub(super) fn value(scale: [f32; 2], code: u8) -> f32 {
+    scale[0] + scale[1] * f32::from(code)
 }

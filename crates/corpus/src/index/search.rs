@@ -1,10 +1,16 @@
 //! Search of the index by ranges of its files.
 
-use super::{HEAD_BYTES, MARK, VERSION, squared};
-use crate::CorpusError;
-use crate::bytes::{Reader, f32s, u32s};
+use super::build::value;
+use super::{MARK, VERSION, list, squared};
+use crate::bytes::Reader;
+use crate::pack::Placer;
+use crate::{CorpusError, Slot};
 use std::collections::BTreeSet;
 use std::ops::Range;
+
+/// The greatest number of dimensions, and of lists, that is read.
+const MAX_DIMS: usize = 1_024;
+const MAX_LISTS: usize = 1 << 16;
 
 /// A moment that was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,18 +66,29 @@ impl Index {
         }
         let [dims, lists, moments] =
             [reader.u32()? as usize, reader.u32()? as usize, reader.u32()? as usize];
-        if dims == 0 {
-            return Err(CorpusError::Mismatch { what: "dimensions", found: 0, expected: 1 });
+        if !(1..=MAX_DIMS).contains(&dims) {
+            return Err(CorpusError::Mismatch { what: "dimensions", found: dims, expected: 1 });
         }
-        let numbers = lists.checked_mul(dims).ok_or(CorpusError::Truncated { what })?;
-        let centroids = reader.f32s(numbers)?;
-        let places: Vec<u32> = u32s(reader.take_items(lists, 12)?).collect();
+        if lists > MAX_LISTS {
+            return Err(CorpusError::Mismatch { what: "lists", found: lists, expected: MAX_LISTS });
+        }
+        let scales = reader.f32s(2 * dims)?;
+        let codes: Vec<Vec<u8>> =
+            (0..dims).map(|_| reader.packed(lists)).collect::<Result<_, _>>()?;
+        let lengths = reader.numbers(lists)?;
         reader.end()?;
-        let place = |place: &[u32]| {
-            let [file, offset, count] = [place[0], place[1], place[2]].map(|own| own as usize);
-            ListPlace { file, offset, length: count.saturating_mul(HEAD_BYTES + dims) }
+        let mut centroids = vec![0.0; lists * dims];
+        for (dim, (scale, codes)) in scales.as_chunks().0.iter().zip(codes).enumerate() {
+            for (centre, code) in centroids.chunks_exact_mut(dims).zip(codes) {
+                centre[dim] = value(*scale, code);
+            }
+        }
+        let mut placer = Placer::default();
+        let mut place = |length: &u32| {
+            let Slot { shard, offset, length } = placer.add(*length as usize).unwrap_or_default();
+            ListPlace { file: shard, offset, length }
         };
-        let places = places.chunks_exact(3).map(place).collect();
+        let places = lengths.iter().map(&mut place).collect();
         Ok(Self { dims, moments, centroids, places })
     }
 
@@ -146,7 +163,7 @@ impl Index {
                 let (found, expected) = (bytes.len(), place.length);
                 return Err(CorpusError::Mismatch { what: "bytes of a list", found, expected });
             }
-            self.scan(query, *list, bytes, &mut hits);
+            self.scan(query, *list, bytes, &mut hits)?;
         }
         hits.sort_by(|a, b| {
             let by_place = || (a.clip, a.moment).cmp(&(b.clip, b.moment));
@@ -173,22 +190,23 @@ impl Index {
         Ok(hits)
     }
 
-    /// Adds the moments of a list. Its bytes are as many as it has.
-    fn scan(&self, query: &[f32], list: usize, bytes: &[u8], hits: &mut Vec<Hit>) {
-        let members = bytes.len() / (HEAD_BYTES + self.dims);
-        let (clips, rest) = bytes.split_at(4 * members);
-        let (moments, rest) = rest.split_at(4 * members);
-        let (steps, codes) = rest.split_at(4 * members);
+    /// Adds the moments of a list.
+    fn scan(
+        &self,
+        query: &[f32],
+        list: usize,
+        bytes: &[u8],
+        hits: &mut Vec<Hit>,
+    ) -> Result<(), CorpusError> {
         let centre = &self.centroids[list * self.dims..(list + 1) * self.dims];
         let from_centre: Vec<f32> = query.iter().zip(centre).map(|(own, at)| own - at).collect();
-        let places = u32s(clips).zip(u32s(moments)).zip(f32s(steps));
-        for (((clip, moment), step), codes) in places.zip(codes.chunks_exact(self.dims)) {
-            let apart = codes.iter().zip(&from_centre).map(|(code, query)| {
-                let value = f32::from(i8::from_le_bytes([*code])) * step;
+        list::decode(bytes, self.dims, |clip, moment, size, steps| {
+            let apart = steps.iter().zip(&from_centre).map(|(steps, query)| {
+                let value = f32::from(i8::from_le_bytes([*steps])) * size;
                 (query - value) * (query - value)
             });
             hits.push(Hit { clip, moment, distance: apart.sum::<f32>().sqrt() });
-        }
+        })
     }
 
     fn check(&self, query: &[f32]) -> Result<(), CorpusError> {

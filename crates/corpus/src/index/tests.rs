@@ -89,7 +89,7 @@ fn search_with_the_stated_probes_finds_95_percent_of_the_ten_nearest() {
         }
         found as f64 / (10 * queries) as f64
     };
-    let found = [1, PROBES, index.lists()].map(recall);
+    let found = [1, files.probes, index.lists()].map(recall);
     // One list is not enough, so that this can fail; all lists lose by rounding alone.
     assert!(found[0] < 0.9 && found[1] >= 0.95 && found[2] >= 0.98, "{found:?}");
 }

@@ -40,6 +40,11 @@ class Corpus:
     folder : path
         Its folder.
 
+    Raises
+    ------
+    ValueError
+        It was built by an older Segue, or by a newer one.
+
     Attributes
     ----------
     manifest : dict
@@ -49,6 +54,11 @@ class Corpus:
     def __init__(self, folder: str | os.PathLike[str]) -> None:
         self.folder = Path(folder)
         self.manifest: dict[str, Any] = json.loads((self.folder / "corpus.json").read_text())
+        found, known = self.manifest["format"], _core.corpus_format()[0]
+        if found < known:
+            raise ValueError("this corpus was built by an older Segue: build it again")
+        if found > known:
+            raise ValueError("this corpus was built by a newer Segue: update this one")
         self._index = _core.CorpusIndex((self.folder / "index" / "centroids.bin").read_bytes())
 
     def table(self, columns: list[str] | None = None) -> Any:

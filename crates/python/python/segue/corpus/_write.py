@@ -21,6 +21,8 @@ Column = tuple[str, Any, Callable[[dict[str, Any]], Any]]
 
 #: Rows of the table that are read together.
 _ROWS_PER_GROUP = 1 << 16
+#: The version of the format, and the name of the file with the columns for a page.
+_FORMAT, _COLUMNS = _core.corpus_format()
 #: The content of the last build, with the sizes of its files.
 _DONE = "done.json"
 
@@ -67,7 +69,8 @@ class Gathered:
         digest = hashlib.sha256()
         paths = {key: [own.path for own in sources] for key, sources in self._sources.items()}
         failed = {key: hashlib.sha256(own).hexdigest() for key, own in self._failures.items()}
-        about = [_core.__version__, pyarrow.__version__, self._clean, paths, failed, self._labels]
+        made_by = [_core.__version__, _FORMAT, pyarrow.__version__]
+        about = [made_by, self._clean, paths, failed, self._labels]
         digest.update(json.dumps(about, sort_keys=True).encode())
         return digest.hexdigest()
 
@@ -91,7 +94,11 @@ class Gathered:
                 record = make(sources[:1], self._clean, frozenset())[0].record or b""
                 self._store.put(key, record)
                 gatherer.add(key, record)
-        return gatherer.finish()
+        made = gatherer.finish()
+        made["columns"] = gatherer.columns(
+            [(self._paths(row)[0], self._name(row), self._labels_of(row)) for row in made["rows"]]
+        )
+        return made
 
     def _write_files(self, made: dict[str, Any]) -> None:
         out = self._store.out
@@ -103,6 +110,7 @@ class Gathered:
         write_whole(out / "index" / "centroids.bin", [made["centroids"]])
         for number, content in enumerate(made["lists"]):
             write_whole(out / _lists(number), [content])
+        write_whole(out / _COLUMNS, [made["columns"]])
         self._write_table(made["rows"])
         # Last: a corpus that has it is complete.
         write_whole(out / "corpus.json", [made["manifest"].encode()])
@@ -120,7 +128,7 @@ class Gathered:
             yield known[1][clip][part]
 
     def _names(self, made: dict[str, Any]) -> list[str]:
-        names = ["corpus.json", "clips.parquet", "index/centroids.bin"]
+        names = ["corpus.json", "clips.parquet", _COLUMNS, "index/centroids.bin"]
         for part, name in [("poses", _poses), ("thumbnails", _thumbnails), ("lists", _lists)]:
             names.extend(name(number) for number in range(len(made[part])))
         return names
@@ -161,6 +169,7 @@ class Gathered:
             ("mended", count),
             ("warnings", texts),
             ("moments", count),
+            ("map_x map_y", number),
             ("copy_of", text),
             ("is_mirrored", arrow.bool_()),
         ]:
