@@ -74,7 +74,7 @@ onOneBackend("corpus opens as a table that is searched, sorted and filtered", as
     await page.mouse.up();
     const fewer = await rowsAre(page, "the range leaves fewer", ({ count }) => count < first.count);
     assert.match(fewer.status, new RegExp(`^${fewer.count} of ${first.count} clips`));
-    await page.locator("#corpus .active button").first().click();
+    await page.locator("#corpus .set-filters button").first().click();
     await rowsAre(page, "the range is gone", ({ count }) => count === first.count);
     const slider = histogram.getByRole("slider").first();
     await slider.focus();

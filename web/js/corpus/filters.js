@@ -8,8 +8,10 @@ export const BINS = 48;
 /** How near the pointer takes an end of the range, pixels. */
 const NEAR = 12;
 /** The choices in the order in which they stand; others are left out. */
-const CHOICES = ["labels", "format", "rig", "status"];
+const CHOICES = ["labels", "format", "status", "rig"];
 const MAX_CHIPS = 60;
+/** Columns of numbers that come last: few look for them. */
+export const LAST = ["frames", "fps", "height_m"];
 
 export class Filters {
   root;
@@ -27,14 +29,18 @@ export class Filters {
    */
   constructor(columns, filter, changed) {
     [this.#columns, this.#filter, this.#changed] = [columns, filter, changed];
-    this.#histograms = columns.filter(({ kind, min, max }) => kind === "number" && min < max).map((column) => new Histogram(column, filter, changed));
+    const numbers = columns.filter(({ kind, min, max }) => kind === "number" && min < max);
+    const isLast = ({ name }) => Number(LAST.includes(name));
+    this.#histograms = numbers.sort((one, other) => isLast(one) - isLast(other)).map((column) => new Histogram(column, filter, changed));
     const known = columns.filter(({ kind, name, values = [] }) => kind === "choice" && CHOICES.includes(name) && values.length > 1);
     this.#choices = known.sort((one, other) => CHOICES.indexOf(one.name) - CHOICES.indexOf(other.name)).map((column) => new Choice(column, filter, changed));
     this.#copies = this.#copiesElement();
     this.root = element("div", { class: "filters", role: "group", "aria-label": sentence("filters") }, [
       this.#copies,
-      ...this.#choices.map(({ root }) => root),
+      ...this.#choices.filter(({ column }) => column.name !== "rig").map(({ root }) => root),
       element("div", { class: "histograms" }, this.#histograms.map(({ root }) => root)),
+      // Digits that few know.
+      ...this.#choices.filter(({ column }) => column.name === "rig").map(({ root }) => root),
     ]);
   }
 
@@ -94,10 +100,11 @@ class Choice {
 
   constructor(column, filter, changed) {
     [this.column, this.#filter, this.#changed] = [column, filter, changed];
-    this.#chips = column.values.slice(0, MAX_CHIPS).map((value) => {
+    const values = column.values.map((value, at) => ({ value, at })).filter(({ value }) => value !== "");
+    this.#chips = values.slice(0, MAX_CHIPS).map(({ value, at }) => {
       const text = column.name === "format" ? value.toUpperCase() : column.name === "status" ? sentence(value) : value;
       const chip = element("button", { type: "button", class: "chip", onclick: () => this.#toggle(value) }, [element("span", { textContent: text }), element("small")]);
-      return { value, chip };
+      return { value, at, chip };
     });
     this.root = element("div", { class: "choice" }, [
       element("span", { class: "label", textContent: columnName(column) }),
@@ -123,7 +130,7 @@ class Choice {
 
   update() {
     const chosen = this.#filter.choices[this.column.name] ?? [];
-    this.#chips.forEach(({ value, chip }, at) => {
+    this.#chips.forEach(({ value, at, chip }) => {
       chip.setAttribute("aria-pressed", String(chosen.includes(value)));
       const count = this.#counts?.[at];
       chip.lastChild.textContent = count === undefined ? "" : number(count);

@@ -9,7 +9,7 @@ const MAX_ZOOM = 400;
 const NEAR = 14;
 /** How far the pointer may move in a click, pixels. */
 const CLICK = 5;
-/** The part of the smaller side that all points take. */
+/** The part of the canvas that all points take. */
 const FILL = 0.94;
 /** The share of the ink that a point has, of those that fit the filters and of the others. */
 const INK = { bright: 0.85, faint: 0.22 };
@@ -75,9 +75,10 @@ export class ClipMap {
     this.#frame = requestAnimationFrame(() => this.#draw());
   }
 
+  /** Pixels for a unit along x and y. The axes have no common measure, so that both fill the canvas. */
   get #scale() {
     const { clientWidth, clientHeight } = this.#canvas;
-    return (Math.min(clientWidth, clientHeight) / 2) * FILL * this.#zoom;
+    return [clientWidth, clientHeight].map((side) => (side / 2) * FILL * this.#zoom);
   }
 
   /** Returns the place of a row on the canvas, pixels; undefined if it has none. */
@@ -85,12 +86,13 @@ export class ClipMap {
     const [x, y] = [this.#points[2 * row], this.#points[2 * row + 1]];
     if (Number.isNaN(x)) return undefined;
     const { clientWidth, clientHeight } = this.#canvas;
-    return [clientWidth / 2 + (x - this.#centre[0]) * this.#scale, clientHeight / 2 - (y - this.#centre[1]) * this.#scale];
+    const [across, up] = this.#scale;
+    return [clientWidth / 2 + (x - this.#centre[0]) * across, clientHeight / 2 - (y - this.#centre[1]) * up];
   }
 
   #draw() {
     const canvas = this.#canvas;
-    if (!canvas.isConnected || !canvas.clientWidth) return;
+    if (!canvas.isConnected || !canvas.clientWidth || !canvas.clientHeight) return;
     const context = contextOf(canvas);
     this.#drawPoints(context);
     const ring = (row, radius, paint) => {
@@ -117,11 +119,11 @@ export class ClipMap {
     // Few points, and those that are looked at closely, are drawn larger.
     const radius = ratio * Math.min(Math.max(900 / Math.max(count, 1), 1.1) ** 0.5 * this.#zoom ** 0.3 * 1.1, 4.5);
     const dot = dotOf(radius);
-    const scale = this.#scale * ratio;
-    const [left, top] = [width / 2 - this.#centre[0] * scale, height / 2 + this.#centre[1] * scale];
+    const [across, up] = this.#scale.map((scale) => scale * ratio);
+    const [left, top] = [width / 2 - this.#centre[0] * across, height / 2 + this.#centre[1] * up];
     for (let row = 0; row < count; row++) {
-      const x = Math.round(left + this.#points[2 * row] * scale);
-      const y = Math.round(top - this.#points[2 * row + 1] * scale);
+      const x = Math.round(left + this.#points[2 * row] * across);
+      const y = Math.round(top - this.#points[2 * row + 1] * up);
       // Not a number fails the comparison.
       if (!(x > -radius && y > -radius && x < width + radius && y < height + radius)) continue;
       const ink = this.#bright[row] ? bright : faint;
@@ -152,10 +154,14 @@ export class ClipMap {
   #find([x, y], near = NEAR) {
     let found;
     let least = near * near;
+    const [across, up] = this.#scale;
+    const { clientWidth, clientHeight } = this.#canvas;
+    // The place in units, so that nothing is computed for each row but a difference.
+    const [ownX, ownY] = [this.#centre[0] + (x - clientWidth / 2) / across, this.#centre[1] - (y - clientHeight / 2) / up];
     for (let row = 0; row < this.#bright.length; row++) {
-      const place = this.#place(row);
-      if (!place) continue;
-      const distance = (place[0] - x) ** 2 + (place[1] - y) ** 2 + (this.#bright[row] ? 0 : (near * near) / 2);
+      const [dx, dy] = [(this.#points[2 * row] - ownX) * across, (this.#points[2 * row + 1] - ownY) * up];
+      const distance = dx * dx + dy * dy + (this.#bright[row] ? 0 : NEAR * NEAR / 2);
+      // Not a number fails the comparison.
       if (distance < least) [found, least] = [row, distance];
     }
     return found;
@@ -200,8 +206,9 @@ export class ClipMap {
   }
 
   #pan(dx, dy) {
-    this.#centre[0] = Math.min(Math.max(this.#centre[0] - dx / this.#scale, -1), 1);
-    this.#centre[1] = Math.min(Math.max(this.#centre[1] + dy / this.#scale, -1), 1);
+    const [across, up] = this.#scale;
+    this.#centre[0] = Math.min(Math.max(this.#centre[0] - dx / across, -1), 1);
+    this.#centre[1] = Math.min(Math.max(this.#centre[1] + dy / up, -1), 1);
     this.draw();
   }
 
@@ -212,8 +219,9 @@ export class ClipMap {
     const before = this.#scale;
     this.#zoom = Math.min(Math.max(this.#zoom * factor, 1), MAX_ZOOM);
     const [fromLeft, fromTop] = [x - clientWidth / 2, y - clientHeight / 2];
-    this.#centre[0] += fromLeft / before - fromLeft / this.#scale;
-    this.#centre[1] -= fromTop / before - fromTop / this.#scale;
+    const after = this.#scale;
+    this.#centre[0] += fromLeft / before[0] - fromLeft / after[0];
+    this.#centre[1] -= fromTop / before[1] - fromTop / after[1];
     if (this.#zoom === 1) this.#centre = [0, 0];
     this.draw();
   }

@@ -4,7 +4,7 @@ import { corpusAddress, corpusName, clipAddress } from "./address.js";
 import { clipsRead, corpusAt, corpusOf } from "./client.js";
 import { Dock, lengthText } from "./dock.js";
 import { button, delayed, element, icon } from "./elements.js";
-import { BINS, Filters, segments } from "./filters.js";
+import { BINS, Filters, LAST, segments } from "./filters.js";
 import { chooseFolder, filesOfEntry } from "./folder.js";
 import { ClipMap } from "./map.js";
 import { Player } from "./player.js";
@@ -20,8 +20,6 @@ const PHONE = window.matchMedia("(max-width: 700px)");
 /** The widths of what a row has beside its numbers, and of a number, pixels. */
 const ROW_REST = 456;
 const NUMBER_WIDTH = 72;
-/** Columns of numbers that come last: few look for them. */
-const LAST = ["frames", "fps", "height_m"];
 const HITS = 40;
 
 export class Panel {
@@ -132,7 +130,7 @@ export class Panel {
       if (this.#place !== place) return;
       [this.#client, this.#facts] = [client, facts];
       await loadCatalogue();
-      this.#filter = newFilter();
+      [this.#filter, this.#filtersOpen] = [newFilter(), false];
       this.#build(this.#content());
       await this.#refresh();
       client.call("prepare").catch((reason) => console.info(reason));
@@ -246,7 +244,7 @@ export class Panel {
     parts.filtersButton = button({ icon: "filter", text: sentence("filters"), "aria-expanded": String(this.#filtersOpen), onclick: () => this.#toggleFilters() });
     parts.filters = new Filters(columns, this.#filter, () => this.#changed());
     parts.filters.root.hidden = !this.#filtersOpen;
-    parts.chips = element("div", { class: "active" });
+    parts.chips = element("div", { class: "set-filters" });
     parts.count = element("p", { class: "count", role: "status" });
     parts.problem = element("p", { class: "problem", role: "alert" });
     parts.table = new ClipTable({
@@ -277,6 +275,7 @@ export class Panel {
 
   #build(content) {
     this.#root.setAttribute("aria-label", sentence("corpus"));
+    this.#root.classList.toggle("filtering", this.#filtersOpen);
     const views = this.#client && [
       { text: sentence("table"), isChosen: this.#view === "table", choose: () => this.#choose("table") },
       { text: sentence("map"), isChosen: this.#view === "map", choose: () => this.#choose("map") },
@@ -430,6 +429,7 @@ export class Panel {
     this.#filtersOpen = !this.#filtersOpen;
     const { filters, filtersButton } = this.#parts;
     filters.root.hidden = !this.#filtersOpen;
+    this.#root.classList.toggle("filtering", this.#filtersOpen);
     filtersButton.setAttribute("aria-expanded", String(this.#filtersOpen));
     if (this.#filtersOpen) {
       if (this.#list) this.#list = undefined;
@@ -464,7 +464,7 @@ export class Panel {
 
   /** Returns the hint of a point on the map. */
   async #describe(row) {
-    const [[cell], picture] = await Promise.all([this.#client.call("cells", { rows: [row] }), this.#thumbnail(row)]);
+    const [[cell], picture] = await Promise.all([this.#client.call("cells", { rows: [row] }), this.#thumbnail(row).catch(() => null)]);
     const image = picture && element("canvas", { width: 264, height: 48 });
     image?.getContext("2d").drawImage(picture, 0, 0);
     const facts = [`${cell.seconds?.toFixed(2) ?? "–"} s`, cell.format?.toUpperCase(), cell.labels?.join(", ")].filter(Boolean);
