@@ -262,12 +262,12 @@ onOneBackend("hosts without ranges and damaged files are told in a sentence", as
   await told({ change: (name, bytes) => (name === "corpus.json" ? null : bytes) }, /There is no corpus\.json at this address/);
   await told({ change: (name, bytes) => (name === "corpus.json" ? Buffer.from("{") : bytes) }, /is no JSON/);
   await told({ change: (name, bytes) => (name === "corpus.json" ? Buffer.from("{}") : bytes) }, /older version of Segue/);
-  await told({ change: (name, bytes) => (name === "columns.bin" ? bytes.subarray(0, bytes.length / 2) : bytes) }, /columns\.bin/);
+  await told({ change: (name, bytes) => (name === "columns.bin" ? bytes.subarray(0, bytes.length / 2) : bytes) }, /The corpus is damaged: columns\.bin/);
   await told({ change: (name, bytes) => (name === "columns.bin" ? Buffer.alloc(bytes.length, 7) : bytes) }, /columns\.bin/);
   await told({ ranges: false, stated: (name) => (name.startsWith("poses") ? 64 << 20 : undefined) }, /sends whole files instead of the parts/, play);
   await told({ change: (name, bytes) => (name.startsWith("poses") ? bytes.subarray(0, 100) : bytes) }, /is shorter than corpus\.json says/, play);
   await told({ change: (name, bytes) => (name.startsWith("poses") ? Buffer.alloc(bytes.length, 0xff) : bytes) }, /could not be played/, play);
-  await told({ change: (name, bytes) => (name.endsWith("centroids.bin") ? bytes.subarray(0, 10) : bytes) }, /./, async () => {
+  await told({ change: (name, bytes) => (name.endsWith("centroids.bin") ? bytes.subarray(0, 10) : bytes) }, /The corpus is damaged: centroids/, async () => {
     await opened(page);
     await page.getByRole("button", { name: "More like this moment" }).click();
   });

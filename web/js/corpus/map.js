@@ -20,6 +20,8 @@ export class ClipMap {
   #points;
   #canvas;
   #tip;
+  /** How it is worked, until it is. */
+  #hint = element("p", { class: "hint", textContent: sentence("mapHelp") });
   #bright;
   #current;
   #hits = [];
@@ -46,7 +48,7 @@ export class ClipMap {
     this.#tip = element("div", { class: "tip", hidden: true });
     this.root = element("div", { class: "map" }, [
       this.#canvas, this.#tip,
-      element("p", { class: "hint", textContent: sentence("mapHelp") }),
+      this.#hint,
       element("div", { class: "zoom" }, [
         button({ icon: "plus", name: sentence("zoomIn"), onclick: () => this.#zoomBy(1.6) }),
         button({ icon: "minus", name: sentence("zoomOut"), onclick: () => this.#zoomBy(1 / 1.6) }),
@@ -169,6 +171,7 @@ export class ClipMap {
 
   #press(event) {
     if (event.button !== 0) return;
+    this.#hint.hidden = true;
     this.#canvas.setPointerCapture(event.pointerId);
     this.#pointers.set(event.pointerId, this.#at(event));
     this.#moved = this.#pointers.size > 1 ? Infinity : 0;
@@ -201,6 +204,7 @@ export class ClipMap {
 
   #wheel(event) {
     event.preventDefault();
+    this.#hint.hidden = true;
     const step = event.deltaMode === 1 ? 16 * event.deltaY : event.deltaY;
     this.#zoomBy(Math.exp(-Math.min(Math.max(step, -120), 120) / 300), this.#at(event));
   }

@@ -63,7 +63,7 @@ const calls = {
     const named = columnsOf(text);
     const bytes = named === COLUMNS ? await columns : await source.whole(named, signal);
     await started;
-    corpus = new Corpus(text, bytes);
+    corpus = readable(() => new Corpus(text, bytes));
     return [{ rows: corpus.rows(), summary: JSON.parse(corpus.summary()), columns: JSON.parse(corpus.columns()) }];
   },
 
@@ -118,7 +118,7 @@ const calls = {
     const [{ name, status, message }] = JSON.parse(corpus.cells(Uint32Array.of(row)));
     const bytes = await posesOf(row, signal);
     if (!bytes) throw new SourceError("noPoses", { name, reason: message ?? status });
-    const npz = corpus.npz(name, bytes, range?.[0], range?.[1]);
+    const npz = readable(() => corpus.npz(name, bytes, range?.[0], range?.[1]));
     const sha256 = await digest(npz);
     return [{ row, name, bytes: npz, sha256 }, [npz.buffer]];
   },
@@ -135,7 +135,7 @@ const calls = {
       const [list, file, offset, length] = places.subarray(at, at + 4);
       wanted.push(list);
       if (!lists.has(list)) {
-        const reading = source.range(shardName("index/lists", file), offset, length).then((bytes) => corpus.takeList(list, bytes));
+        const reading = source.range(shardName("index/lists", file), offset, length).then((bytes) => readable(() => corpus.takeList(list, bytes)));
         lists.set(list, reading);
         reading.catch(() => lists.delete(list));
       }
@@ -152,6 +152,17 @@ const calls = {
     return [undefined];
   },
 };
+
+/** Returns what the WebAssembly makes of bytes of the corpus, which may be damaged. */
+function readable(act) {
+  try {
+    return act();
+  } catch (reason) {
+    // A corpus of another version says itself what to do.
+    if (typeof reason !== "string" || reason.includes("Segue:")) throw reason;
+    throw new SourceError("damaged", { reason });
+  }
+}
 
 /** Returns the name of the columns that corpus.json has. */
 function columnsOf(manifest) {
@@ -180,7 +191,7 @@ async function posesOf(row, signal) {
 }
 
 function indexRead() {
-  index ??= source.whole("index/centroids.bin").then((bytes) => corpus.setIndex(bytes));
+  index ??= source.whole("index/centroids.bin").then((bytes) => readable(() => corpus.setIndex(bytes)));
   index.catch(() => { index = undefined; });
   return index;
 }
