@@ -89,6 +89,8 @@ pub(crate) struct Segue {
     /// Whether the session has begun, with the stored work and the link or without them.
     has_begun: bool,
     languages: LanguageLoader,
+    /// The address of the corpus that the page was last told to show.
+    corpus: String,
     /// The recording of the page that is under way.
     film: Option<platform::Film>,
     /// Whether the link at the start says that the page is embedded. Then nothing is stored, and
@@ -180,6 +182,7 @@ impl Segue {
             copied: ui::LINK_COPIED,
             has_begun: false,
             languages: LanguageLoader::new(),
+            corpus: String::new(),
         }
     }
 
@@ -249,7 +252,19 @@ impl Segue {
         self.clock.left_work = more.then_some(now_ms);
         // The work may have made new requests.
         self.send_requests();
+        self.show_corpus();
         more
+    }
+
+    /// Has the platform show the corpus that the parameters name, if it is another one now. A frame
+    /// of another page has the stage alone.
+    fn show_corpus(&mut self) {
+        let params = self.session.params();
+        let address = if params.is_on(Key::Embed) { "" } else { params.text(Key::Corpus) };
+        if address != self.corpus {
+            self.corpus = address.to_owned();
+            platform::show_corpus(address, &self.inbox);
+        }
     }
 
     /// Takes in the answers of the platform. Those of files wait for the next frame once that has

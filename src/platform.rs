@@ -33,6 +33,8 @@ pub(crate) use native::*;
 #[cfg(target_arch = "wasm32")]
 pub(crate) use web::*;
 
+#[cfg(target_arch = "wasm32")]
+pub(crate) use address::corpus_clip_of;
 pub(crate) use address::file_name_of;
 pub(crate) use file_bytes::{FileBytes, LargeFileStore, StoredFiles};
 pub(crate) use inbox::{Inbox, Incoming};

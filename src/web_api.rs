@@ -8,12 +8,13 @@ use crate::app::{Event, Segue, Shared};
 use crate::outline::{Deed, Outline};
 use crate::platform::{
     Area, FileBytes, Inbox, LargeFile, area_of, confirm_leaving_while, inline_picture,
-    js_error_text, next_frame, next_turn, now_ms, set_computer_factory, set_worker_factory, sleep,
-    snapshot, wasm_memory_bytes, watch_folders, watch_hiding,
+    js_error_text, next_frame, next_turn, now_ms, set_computer_factory, set_corpora,
+    set_worker_factory, sleep, snapshot, wasm_memory_bytes, watch_folders, watch_hiding,
 };
 use eframe::WebRunner;
 use eframe::egui::Modifiers;
 use js_sys::{Error, Function, Uint8Array};
+use segue_session::Command;
 use serde::Serialize;
 use serde_wasm_bindgen::Serializer;
 use std::cell::{Cell, RefCell};
@@ -69,14 +70,16 @@ fn to_js(value: &impl Serialize) -> Result<JsValue, JsValue> {
 #[wasm_bindgen]
 impl SegueHandle {
     /// Starts the app on a canvas. `new_reader` makes the worker that reads files, `new_computer`
-    /// one of those that compute.
+    /// one of those that compute; `corpora` calls the modules that show corpora and read them.
     pub async fn start(
         canvas: HtmlCanvasElement,
         new_reader: Function,
         new_computer: Function,
+        corpora: Function,
     ) -> Result<SegueHandle, JsValue> {
         set_worker_factory(new_reader);
         set_computer_factory(new_computer);
+        set_corpora(corpora);
         let inbox = Inbox::default();
         let handle = Self {
             runner: WebRunner::new(),
@@ -318,6 +321,12 @@ impl SegueHandle {
     pub async fn metrics(&self) -> Result<JsValue, JsValue> {
         self.results_read().await?;
         to_js(&self.borrow()?.metrics().map_err(error)?)
+    }
+
+    /// Takes a clip out of the library that was only looked at: without a notice, and without a
+    /// step of undo.
+    pub fn discard(&self, id: String) -> Result<(), JsValue> {
+        self.change(|segue| Ok(segue.apply(Command::Discard(id))?))
     }
 
     /// Stops reading or fetching a file.

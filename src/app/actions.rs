@@ -24,6 +24,7 @@ impl Segue {
                 self.warn_of_host();
                 platform::open_files(&self.inbox);
             }
+            Action::ChooseCorpus => platform::choose_corpus(&self.inbox),
             Action::OpenPage(address) => platform::open_page(address, ctx),
             Action::StopFetching(name) => self.stop_fetching(name),
             Action::StopLesson => self.stop_lessons(),

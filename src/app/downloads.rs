@@ -22,6 +22,8 @@ struct Download {
     address: String,
     done: u64,
     total: Option<u64>,
+    /// Its name, where the address has another one.
+    name: Option<String>,
     fetched: Option<FetchResult>,
     /// Dropping it stops the transfer.
     _fetch: Fetch,
@@ -38,6 +40,7 @@ impl Downloads {
             address,
             done: 0,
             total: None,
+            name: None,
             fetched: None,
             _fetch: fetch,
         });
@@ -77,10 +80,11 @@ impl Downloads {
         Some((file_name_of(address), download.progress()))
     }
 
-    /// Records that a file was fetched, or has failed.
-    pub(crate) fn finished(&mut self, address: &str, fetched: FetchResult) {
+    /// Records that a file was fetched, or has failed. `name` is that of the file, where the address
+    /// has another one.
+    pub(crate) fn finished(&mut self, address: &str, name: Option<String>, fetched: FetchResult) {
         if let Some(download) = self.find(address) {
-            download.fetched = Some(fetched);
+            (download.name, download.fetched) = (name, Some(fetched));
         }
     }
 
@@ -88,7 +92,8 @@ impl Downloads {
     pub(crate) fn next_ready(&mut self) -> Option<(String, FetchResult)> {
         self.files.front()?.fetched.as_ref()?;
         let download = self.files.pop_front()?;
-        Some((file_name_of(&download.address), download.fetched?))
+        let name = download.name.unwrap_or_else(|| file_name_of(&download.address));
+        Some((name, download.fetched?))
     }
 
     /// Returns the name and the progress of every file under way.

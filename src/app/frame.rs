@@ -88,6 +88,7 @@ impl Segue {
         self.panels.fetching = self.downloads.under_way().collect();
         self.panels.convert.shown = self.converter.shown();
         self.panels.stored = self.autosave.progress();
+        self.panels.shows_corpora = platform::SHOWS_CORPORA;
         if self.session.is_driven() {
             self.panels.gamepad = platform::gamepad().map(|pad| ui::Gamepad {
                 walk: pad.left,

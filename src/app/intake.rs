@@ -74,8 +74,8 @@ impl Segue {
                     self.events.push(Event::Progress { name, progress });
                 }
             }
-            Incoming::Fetched { address, result } => {
-                self.downloads.finished(&address, result);
+            Incoming::Fetched { address, name, result } => {
+                self.downloads.finished(&address, name, result);
                 while let Some((name, fetched)) = self.downloads.next_ready() {
                     match fetched {
                         Ok(FileBytes::Here(bytes)) => self.load(&name, bytes, true),

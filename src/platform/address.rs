@@ -66,8 +66,21 @@ fn bare(query: &str) -> &str {
     query.strip_prefix('?').unwrap_or(query)
 }
 
-/// Returns the name of the file at an address.
+/// Returns the part of a clip's address in a corpus that names the clip, such as `3fa9c1d2@1.5-4`;
+/// `None` if it is not the address of such a clip.
+pub(crate) fn corpus_clip_of(address: &str) -> Option<&str> {
+    let (file, clip) = address.split_once('#')?;
+    let path = file.split('?').next().unwrap_or(file);
+    (path.ends_with("/corpus.json") && !clip.is_empty()).then_some(clip)
+}
+
+/// Returns the name of the file at an address. That of a clip of a corpus is known when it is read:
+/// until then it is the clip's id.
 pub(crate) fn file_name_of(address: &str) -> String {
+    if let Some(clip) = corpus_clip_of(address) {
+        let id = clip.split('@').next().unwrap_or(clip);
+        return outside::file_name(&format!("{}.npz", id.replace('/', " ")));
+    }
     let path = address.split(['?', '#']).next().unwrap_or(address);
     let path = path.split_once("://").map_or(path, |(_, rest)| rest);
     // A host without a path names no file.
@@ -105,6 +118,10 @@ mod tests {
             ("https://a.org/walk%E2%80%AEhvb%00.exe%0A", "walkhvb.exe"),
             ("https://a.org", "download"),
             ("https://a.org/?file=x.bvh", "download"),
+            ("https://a.org/takes/corpus.json#3fa9c1d2-0@1.5-4", "3fa9c1d2-0.npz"),
+            ("https://a.org/takes/corpus.json#../x", ".. x.npz"),
+            ("https://a.org/takes/corpus.json", "corpus.json"),
+            ("https://a.org/takes/corpus.jsonx#3fa9c1d2", "corpus.jsonx"),
         ] {
             assert_eq!(file_name_of(address), name, "{address}");
         }

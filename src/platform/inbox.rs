@@ -81,6 +81,8 @@ pub(crate) enum Incoming {
     Fetched {
         /// The file's address.
         address: String,
+        /// Its name, where the address has another one.
+        name: Option<String>,
         /// Its bytes, or the reason why it was not fetched.
         result: Result<FileBytes, Message>,
     },

@@ -105,17 +105,36 @@ pub(crate) fn full_link(query: &str) -> String {
 /// Does nothing, because a window has no history.
 pub(crate) fn watch_navigation(_inbox: &Inbox) {}
 
+/// Whether corpora can be shown.
+pub(crate) const SHOWS_CORPORA: bool = false;
+
+/// Refuses to show a corpus, because pages alone do.
+pub(crate) fn show_corpus(address: &str, inbox: &Inbox) {
+    if !address.is_empty() {
+        let reason = msg!("This window does not read corpora. Open the link in a browser.");
+        inbox.push(Incoming::Failed { reason });
+    }
+}
+
+/// Does nothing, because no button of a window asks for it.
+pub(crate) fn choose_corpus(_inbox: &Inbox) {}
+
 /// A request under way. A window makes none, so it has no fields.
 #[derive(Debug)]
 pub(crate) struct Fetch;
 
 /// Refuses to fetch a file, because a window does not use the network.
 pub(crate) fn fetch(address: &str, inbox: &Inbox) -> Fetch {
-    let reason = msg!(
-        "This window does not load files over the network. Download {address} and drop the file here.",
-        address = address.to_owned()
-    );
-    inbox.push(Incoming::Fetched { address: address.to_owned(), result: Err(reason) });
+    let reason = if address::corpus_clip_of(address).is_some() {
+        msg!("This window does not read corpora. Open the link in a browser.")
+    } else {
+        msg!(
+            "This window does not load files over the network. Download {address} and drop the file here.",
+            address = address.to_owned()
+        )
+    };
+    let address = address.to_owned();
+    inbox.push(Incoming::Fetched { address, name: None, result: Err(reason) });
     Fetch
 }
 

@@ -1,5 +1,6 @@
 //! The platform of a page in a browser.
 
+mod corpora;
 mod fetch;
 mod files;
 mod film;
@@ -13,6 +14,7 @@ mod snapshot;
 mod storage;
 mod stored_place;
 
+pub(crate) use corpora::{SHOWS_CORPORA, choose_corpus, set_corpora, show_corpus};
 pub(crate) use fetch::{Fetch, fetch, load_language, load_lesson, load_sample};
 pub(crate) use files::{copy_text, download, open_files, read_dropped};
 pub(crate) use film::{Film, can_film, can_take_pictures, save_picture, take_picture};

@@ -28,6 +28,8 @@ pub(crate) enum ConvertAction {
 pub(crate) enum Action {
     /// Let the user choose files.
     OpenFiles,
+    /// Let the user choose a corpus.
+    ChooseCorpus,
     /// Open a page of the web beside this one.
     OpenPage(String),
     /// Put the address of this state into the clipboard, for readers with a type size and a

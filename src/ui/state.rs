@@ -163,6 +163,8 @@ pub(crate) struct UiState {
     pub(crate) fetching: Vec<(String, Option<f64>)>,
     /// The panel of conversions.
     pub(crate) convert: ConvertState,
+    /// Whether corpora can be shown here.
+    pub(crate) shows_corpora: bool,
     /// Whether a page around this one can read the files that are opened here.
     pub(crate) host_reads: bool,
     /// The progress of storing the work; `None` where it is not stored at all.
@@ -208,6 +210,7 @@ impl Default for UiState {
             stage: Rect::NOTHING,
             fetching: Vec::new(),
             convert: ConvertState::default(),
+            shows_corpora: false,
             host_reads: false,
             stored: None,
         }

@@ -15,6 +15,7 @@ const CHOSEN = {
   character: "somebody~0a1b2c3d", match_clips: "walk,run", tags: "walk:0.2-1.5:exclude", ask_tag: "walk", forbid_tag: "turn", contact_edits: "idle:L2-9;-R4-6", drive: "3c.0.s_1o.0.0",
   more_curves: "height,angle", clean_skip: "spike-34,gap-7",
   compare: "blend_window:60,20", lesson: "slerp", src: "https://example.org/one.bvh?x=1&y=2 https://example.org/two.bvh",
+  corpus: "https://example.org/takes?x=1&y=2",
 };
 
 /** Returns a value of this row that is not its default, two thirds up its range and on its step. */

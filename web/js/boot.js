@@ -2,8 +2,8 @@
 // settles `window.segueReady`.
 //
 // The app (the wasm-bindgen module) must have a class `SegueHandle` with
-//   static start(canvas, newReader, newComputer) -> Promise<SegueHandle>   the app runs on this canvas; newReader makes a worker
-//                                                  for files, newComputer one that computes
+//   static start(canvas, newReader, newComputer, corpora) -> Promise<SegueHandle>   the app runs on this canvas; newReader makes a
+//                                                  worker for files, newComputer one that computes, corpora calls corpus/
 //   firstFrame() -> Promise                        its first frame is on screen
 //   restart(canvas) -> Promise                     continues on a new canvas after the graphics context was lost; false: only a
 //                                                  module with WebGL 2 can
@@ -65,8 +65,10 @@ async function start() {
 
   agreePixels();
   const app = new RunningApp(memory);
+  // Corpora have modules of their own, which come with the first call.
+  const corpora = async (call, ...args) => (await import("./corpus/corpora.js"))[call](app, ...args);
   try {
-    app.handle = await Promise.race([SegueHandle.start(canvas(), newReader, newComputer), app.trapped]);
+    app.handle = await Promise.race([SegueHandle.start(canvas(), newReader, newComputer, corpora), app.trapped]);
     app.watch();
     await Promise.race([app.handle.firstFrame(), app.trapped]);
   } catch (reason) {

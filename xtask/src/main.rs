@@ -68,6 +68,9 @@ cargo xtask make-large-corpus N FOLDER
     Writes a corpus of N clips that are made of 300 synthesised ones, without its table for Python, and measures what the page needs of it: bytes, time,
     and the share of the nearest moments that it finds. 100,000 clips take a few minutes and 4 GB.
 
+cargo xtask make-test-corpus
+    Writes the small corpus of tests/browser/corpus.test.mjs. It has to be made again when the format of corpora changes.
+
 cargo xtask docs
     Writes the table of docs/parameters.md from the program's parameters.
 
@@ -90,6 +93,7 @@ fn main() -> ExitCode {
         Some((&"match-speed", rest)) => quality::time_searches(rest),
         Some((&"make-corpus", rest)) => quality::make_corpus(rest),
         Some((&"make-large-corpus", rest)) => quality::make_large_corpus(rest),
+        Some((&"make-test-corpus", _)) => quality::make_test_corpus(),
         Some((&"docs", _)) => docs(),
         Some((&"seal", _)) => seal::run(),
         None | Some((&("help" | "--help" | "-h"), _)) => {

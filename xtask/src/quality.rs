@@ -76,6 +76,12 @@ pub fn make_large_corpus(args: &[&str]) -> Result<()> {
     run(tool.arg("--").arg(count).arg(std::path::absolute(folder)?))
 }
 
+/// Writes the corpus of the browser tests.
+pub fn make_test_corpus() -> Result<()> {
+    let mut tool = tool("make_test_corpus", "dev");
+    run(tool.arg("--").arg(root().join("tests/browser/corpus")))
+}
+
 fn run_made(name: &str, args: &[&str]) -> Result<()> {
     if !args.is_empty() {
         return fail("this command takes no arguments: it drives with the synthesiser's motions");

@@ -29,6 +29,9 @@ pub enum Command {
     Assign(Slot, String),
     /// Takes a clip out of the library.
     Remove(String),
+    /// Takes a clip out of the library that was only looked at: without a notice, and without a
+    /// step of undo.
+    Discard(String),
     /// Takes several clips out of the library, in one step.
     RemoveAll(Vec<String>),
     /// Gives a clip another name.

@@ -275,6 +275,7 @@ impl Session {
                 let name = self.document.remove(&id)?;
                 self.say(Level::Info, msg!("{name} was removed; undo brings it back."));
             }
+            Command::Discard(id) => self.document.discard(&id)?,
             Command::RemoveAll(ids) => {
                 let count = self.document.remove_all(&ids)?;
                 if count > 0 {

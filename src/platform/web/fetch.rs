@@ -1,13 +1,14 @@
 //! Fetching of files, lessons and bundled data.
 
+use super::corpora::read_corpus_clip;
 use super::js_error_text;
 use super::page::window;
 use crate::platform::motion_files::{MAX_FILE_BYTES, too_large};
-use crate::platform::{FileBytes, Inbox, Incoming, LargeFile, file_name_of};
+use crate::platform::{FileBytes, Inbox, Incoming, LargeFile, corpus_clip_of, file_name_of};
 use js_sys::{Array, Reflect, Uint8Array};
 use segue_session::Sample;
 use segue_session::lesson::{MAX_BYTES, Source, host_of};
-use segue_session::outside::short;
+use segue_session::outside::{self, short};
 use segue_session::reading::LARGE_BYTES;
 use segue_text::{Message, msg};
 use std::cell::{Cell, OnceCell};
@@ -134,14 +135,34 @@ pub(crate) fn fetch(address: &str, inbox: &Inbox) -> Fetch {
     let fetch = Fetch(call.clone());
     let (address, inbox) = (address.to_owned(), inbox.clone());
     spawn_local(async move {
-        let result = get(&address, &MOTION, &call, &inbox).await;
+        let (name, result) = if corpus_clip_of(&address).is_some() {
+            clip_of_corpus(&address, &call).await
+        } else {
+            (None, get(&address, &MOTION, &call, &inbox).await)
+        };
         if call.is_stopped() && !call.0.has_timed_out.get() {
             return;
         }
-        let result = result.and_then(|pieces| pieces.into_file(&file_name_of(&address)));
-        inbox.push(Incoming::Fetched { address, result });
+        let shown = name.clone().unwrap_or_else(|| file_name_of(&address));
+        let result = result.and_then(|pieces| pieces.into_file(&shown));
+        inbox.push(Incoming::Fetched { address, name, result });
     });
     fetch
+}
+
+/// Reads a clip of a corpus. Returns the name of its file, and its data.
+async fn clip_of_corpus(address: &str, call: &Call) -> (Option<String>, Result<Pieces, Message>) {
+    // The page's modules have the time limit: a clip takes several requests.
+    call.0.clear_timeout();
+    match read_corpus_clip(address, call.signal().as_ref()).await {
+        Ok((name, bytes)) => {
+            let mut pieces = Pieces::new();
+            pieces.push(&bytes);
+            (Some(outside::file_name(&name)), Ok(pieces))
+        }
+        // A sentence in the language of the page.
+        Err(error) => (None, Err(Message::data(js_error_text(&error)))),
+    }
 }
 
 /// Fetches a bundled take. The answer is [`Incoming::Sample`].

@@ -1,5 +1,6 @@
 //! Folders that are dropped on the page. eframe handles only files.
 
+use super::corpora::show_corpus_folder;
 use super::files::read;
 use super::js_error_text;
 use super::page::{listen_first, window};
@@ -47,12 +48,17 @@ fn entries_of(event: &DragEvent) -> Vec<FileSystemEntry> {
     items.filter_map(|item| item.webkit_get_as_entry().ok().flatten()).collect()
 }
 
-/// Reads a file, or the motion files of a folder in the order of their paths.
+/// Reads a file, or the motion files of a folder in the order of their paths. A folder that is a
+/// corpus is shown.
 async fn read_entry(entry: FileSystemEntry, inbox: &Inbox) {
     let is_folder = entry.is_directory();
     let name = entry.name();
     let files = if is_folder {
-        motion_files(entry).await
+        match motion_files(entry.clone()).await {
+            Ok(Some(files)) => Ok(files),
+            Ok(None) => return show_corpus_folder(&entry, inbox),
+            Err(error) => Err(error),
+        }
     } else {
         let path = path_of(&entry);
         file_of(entry).await.map(|file| vec![(path, file)])
@@ -68,21 +74,28 @@ async fn read_entry(entry: FileSystemEntry, inbox: &Inbox) {
     }
 }
 
-/// Returns the motion files in and below a folder with their paths.
-async fn motion_files(folder: FileSystemEntry) -> Result<Vec<(String, File)>, JsValue> {
+/// Returns the motion files in and below a folder with their paths; `None` if the folder is a
+/// corpus.
+async fn motion_files(folder: FileSystemEntry) -> Result<Option<Vec<(String, File)>>, JsValue> {
     let mut files = Vec::new();
     // A stack of the entries to visit.
     let mut waiting = vec![folder];
+    let mut is_first = true;
     while let Some(entry) = waiting.pop() {
         if entry.is_directory() {
             let mut children = children_of(entry.unchecked_ref()).await?;
+            let is_manifest =
+                |child: &FileSystemEntry| child.is_file() && child.name() == "corpus.json";
+            if std::mem::take(&mut is_first) && children.iter().any(is_manifest) {
+                return Ok(None);
+            }
             children.sort_by_cached_key(FileSystemEntry::name);
             waiting.extend(children.into_iter().rev());
         } else if is_motion_file(&entry.name()) {
             files.push((path_of(&entry), file_of(entry).await?));
         }
     }
-    Ok(files)
+    Ok(Some(files))
 }
 
 /// Returns the entries of a folder. Browsers list them in parts, of which the last is empty.

@@ -18,11 +18,11 @@ pub(crate) struct DropButton {
     pub(crate) is_open: bool,
 }
 
-/// Draws a dashed field with buttons, and a sentence below. `hot`: whether files are held over the
-/// window. Returns the button that was pressed.
+/// Draws a dashed field with rows of buttons, and a sentence below. `hot`: whether files are held
+/// over the window. Returns the button that was pressed, counted over all rows.
 pub(crate) fn drop_zone_ui(
     sentence: Word,
-    buttons: &[DropButton],
+    rows: &[&[DropButton]],
     hot: bool,
     ui: &mut Ui,
 ) -> Option<usize> {
@@ -31,26 +31,32 @@ pub(crate) fn drop_zone_ui(
     let ink = if hot { palette.accent_ink } else { palette.muted };
     let text = paragraph(sentence, Type::Small, ink, width - 2.0 * space::M, ui);
     let row_height = theme.row_height();
-    let height = (text.size().y + row_height + 2.0 * space::M + space::S).round();
+    let step = row_height + space::S;
+    let height = (text.size().y + rows.len() as f32 * step + 2.0 * space::M).round();
     let (_, rect) = ui.allocate_space(vec2(width, height));
     if hot {
         ui.painter().rect_filled(rect, radius::L, palette.accent_wash);
     }
     let line = if hot { palette.accent } else { palette.line_strong };
     dashed_rect(rect.shrink(0.5), f32::from(radius::L), Stroke::new(theme.hairline(), line), ui);
-    let row = Rect::from_min_size(
+    let mut row = Rect::from_min_size(
         rect.min + vec2(space::M, space::M),
         vec2(width - 2.0 * space::M, row_height),
     );
-    let at = pos2(row.left(), row.bottom() + space::S);
-    put(ui.painter(), at, Align2::LEFT_TOP, text);
-    let builder = UiBuilder::new()
-        .id_salt(sentence.english())
-        .max_rect(row)
-        .layout(Layout::left_to_right(Align::Center));
-    // The buttons get a child of their own: the zone's space is already allocated.
-    let mut inner = ui.new_child(builder);
-    drop_buttons_ui(buttons, &mut inner)
+    let (mut pressed, mut before) = (None, 0);
+    for buttons in rows {
+        let builder = UiBuilder::new()
+            .id_salt((sentence.english(), before))
+            .max_rect(row)
+            .layout(Layout::left_to_right(Align::Center));
+        // The buttons get a child of their own: the zone's space is already allocated.
+        let mut inner = ui.new_child(builder);
+        pressed = drop_buttons_ui(buttons, &mut inner).map(|index| before + index).or(pressed);
+        before += buttons.len();
+        row = row.translate(vec2(0.0, step));
+    }
+    put(ui.painter(), row.left_top(), Align2::LEFT_TOP, text);
+    pressed
 }
 
 /// Draws the buttons of a drop zone in the row of `ui`. Returns the one that was pressed.

@@ -227,10 +227,10 @@ fn library_ui(_mock: &mut Mock, ui: &mut Ui) {
     ui.scope(|ui| {
         drop_zone_ui(
             Word::new("Drop BVH, ASF + AMC, GLB"),
-            &[
+            &[&[
                 DropButton { text: Word::new("Open files…"), is_main: true, is_open: false },
                 DropButton { text: Word::new("Samples"), is_main: false, is_open: false },
-            ],
+            ]],
             false,
             ui,
         );

@@ -78,17 +78,24 @@ pub(super) fn files_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
     let buttons = [
         DropButton { text: text::OPEN_FILES, is_main, is_open: false },
         DropButton { text: text::SAMPLES, is_main: false, is_open: state.samples_open },
+        DropButton { text: text::CORPUS, is_main: false, is_open: false },
     ];
+    let (files, corpora) = buttons.split_at(2);
+    let corpora = if state.shows_corpora { corpora } else { &[] };
     // Nothing can be dropped on a phone.
     let pressed = if state.layout == Layout::Phone {
-        ui.horizontal(|ui| kit::drop_buttons_ui(&buttons, ui)).inner
+        let shown = files.len() + corpora.len();
+        ui.horizontal(|ui| kit::drop_buttons_ui(&buttons[..shown], ui)).inner
     } else {
         let hot = ui.input(|input| !input.raw.hovered_files.is_empty());
-        kit::drop_zone_ui(text::DROP_HERE, &buttons, hot, ui)
+        let rows = [files, corpora];
+        let rows = &rows[..1 + usize::from(!corpora.is_empty())];
+        kit::drop_zone_ui(text::DROP_HERE, rows, hot, ui)
     };
     match pressed {
         Some(0) => out.actions.push(Action::OpenFiles),
-        Some(_) => state.samples_open = !state.samples_open,
+        Some(1) => state.samples_open = !state.samples_open,
+        Some(_) => out.actions.push(Action::ChooseCorpus),
         None => {}
     }
 }

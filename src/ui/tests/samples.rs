@@ -93,3 +93,16 @@ fn own_clips_fill_graph_and_match_by_one_click() {
         assert_eq!(ids, [id], "{lab}");
     }
 }
+
+#[test]
+fn corpus_is_asked_for_where_corpora_can_be_shown() {
+    let name = text::CORPUS.english();
+    let mut harness = harness(DESK, DARK, page("lab=blend&play=off"));
+    assert!(harness.query_by_label(name).is_none());
+    harness.state_mut().state.shows_corpora = true;
+    harness.run_steps(3);
+    picture("corpus-button", &mut harness);
+    harness.get_by_label(name).click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().out.actions, [out::Action::ChooseCorpus]);
+}

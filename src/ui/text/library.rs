@@ -6,6 +6,7 @@ use segue_text::{Message, msg};
 
 pub(crate) const OPEN_FILES: Word = Word::new("Open files…");
 pub(crate) const SAMPLES: Word = Word::new("Samples");
+pub(crate) const CORPUS: Word = Word::new("Corpus…");
 pub(crate) const SEARCH_CLIPS: Word = Word::new("Search clips");
 pub(crate) const SORT: Word = Word::new("Sort");
 pub(crate) const ORDER_ADDED: Word = Word::new("Order added");

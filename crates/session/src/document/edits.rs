@@ -52,6 +52,16 @@ impl Document {
         Ok(entry.name.clone())
     }
 
+    /// Removes a clip as [`Document::remove`] does, but not as a step of its own.
+    ///
+    /// # Errors
+    /// [`CommandError::NoClip`] if there is no such clip.
+    pub(crate) fn discard(&mut self, id: &str) -> Result<(), CommandError> {
+        let entry = Arc::clone(self.clip(id)?);
+        self.take_out(&entry);
+        Ok(())
+    }
+
     /// Removes several clips as [`Document::remove`] does, in one step. Returns their number.
     ///
     /// # Errors

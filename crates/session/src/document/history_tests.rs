@@ -48,3 +48,21 @@ fn undo_restores_marks_speed_and_camera_target() {
         assert_eq!(session.params().get(key), &key.param().default_value());
     }
 }
+
+#[test]
+fn discarded_clip_leaves_without_a_step_and_a_notice() {
+    let mut session = Session::new();
+    let id = session.load("x.bvh", made_bvh(1.0)).unwrap().ids.remove(0);
+    session.apply(Command::Assign(Slot::A, id.clone())).unwrap();
+    session.apply(Command::Assign(Slot::A, "walk".into())).unwrap();
+    let notices = session.notices().list().len();
+    session.apply(Command::Discard(id.clone())).unwrap();
+    assert!(session.library().get(&id).is_none() && session.notices().list().len() == notices);
+    assert_eq!(session.params().text(Key::A), "walk");
+    // The state before has it, and the one after does not.
+    session.apply(Command::Undo).unwrap();
+    assert!(session.library().get(&id).is_some() && session.params().text(Key::A) == id);
+    session.apply(Command::Redo).unwrap();
+    assert!(session.library().get(&id).is_none() && session.params().text(Key::A) == "walk");
+    session.apply(Command::Discard(id)).unwrap_err();
+}

@@ -239,7 +239,8 @@ macro_rules! parameters {
     Projector "projector" "Projector" Page, Kind::Switch, Start::Switch(false), "", "Larger text for projectors.";
     Embed "embed" "Embed" Page, Kind::Switch, Start::Switch(false), "", "Shows only the stage and the parameters that the link names.";
     Lesson "lesson" "Lesson" Page, Kind::Text, Start::Text(""), "", "The lesson that is open: its name, `contents` for the list of all, or the address of a Markdown file of your own.";
-    Src "src" "Source" Page, Kind::List(ListKind::Addresses), Start::Text(""), "", "Addresses of motion files to load, separated by spaces.";
+    Src "src" "Source" Page, Kind::List(ListKind::Addresses), Start::Text(""), "", "Addresses of motion files to load, separated by spaces. A clip of a corpus is the address of its `corpus.json` with the clip's id, as in `…/corpus.json#3fa9c1d2@1.5-4`: here the seconds from 1.5 to 4.";
+    Corpus "corpus" "Corpus" Page, Kind::Text, Start::Text(""), "", "The corpus that is open beside the stage: the address of its folder, or of its `corpus.json`." [NoUndo];
     } };
 }
 

@@ -1,0 +1,283 @@
+// The map: all clips as points, similar motions near each other.
+
+import { button, color, contextOf, element } from "./elements.js";
+import { sentence } from "./words.js";
+
+/** The greatest magnification. */
+const MAX_ZOOM = 400;
+/** How near the pointer finds a point, pixels. */
+const NEAR = 14;
+/** How far the pointer may move in a click, pixels. */
+const CLICK = 5;
+/** The part of the canvas that all points take. */
+const FILL = 0.94;
+/** The share of the ink that a point has, of those that fit the filters and of the others. */
+const INK = { bright: 0.85, faint: 0.22 };
+
+export class ClipMap {
+  root;
+  #hooks;
+  #points;
+  #canvas;
+  #tip;
+  /** How it is worked, until it is. */
+  #hint = element("p", { class: "hint", textContent: sentence("mapHelp") });
+  #bright;
+  #current;
+  #hits = [];
+  #centre = [0, 0];
+  #zoom = 1;
+  #pointers = new Map();
+  #moved = 0;
+  #hovered;
+  #frame = 0;
+
+  /**
+   * @param points x and y of each row, −1 to 1; not numbers where a clip has no place
+   * @param hooks play(row), describe(row): a promise of the elements of its hint
+   */
+  constructor(points, hooks) {
+    [this.#points, this.#hooks] = [points, hooks];
+    this.#bright = new Uint8Array(points.length / 2);
+    this.#canvas = element("canvas", {
+      role: "application", tabIndex: 0, "aria-label": `${sentence("map")}. ${sentence("mapHelp")} ${sentence("mapKeys")}`,
+      onpointerdown: (event) => this.#press(event), onpointermove: (event) => this.#move(event), onpointerup: (event) => this.#release(event),
+      onpointercancel: (event) => this.#pointers.delete(event.pointerId), onpointerleave: () => this.#hover(undefined), onkeydown: (event) => this.#key(event),
+    });
+    this.#canvas.addEventListener("wheel", (event) => this.#wheel(event), { passive: false });
+    this.#tip = element("div", { class: "tip", hidden: true });
+    this.root = element("div", { class: "map" }, [
+      this.#canvas, this.#tip,
+      this.#hint,
+      element("div", { class: "zoom" }, [
+        button({ icon: "plus", name: sentence("zoomIn"), onclick: () => this.#zoomBy(1.6) }),
+        button({ icon: "minus", name: sentence("zoomOut"), onclick: () => this.#zoomBy(1 / 1.6) }),
+        button({ icon: "all", name: sentence("showAll"), onclick: () => this.#reset() }),
+      ]),
+    ]);
+    new ResizeObserver(() => this.draw()).observe(this.#canvas);
+  }
+
+  /** Shows which rows fit the filters. */
+  setRows(rows) {
+    this.#bright.fill(0);
+    for (const row of rows) this.#bright[row] = 1;
+    this.draw();
+  }
+
+  /** Marks the clip on the stage, and the clips that a search has found. */
+  setMarks(current, hits) {
+    [this.#current, this.#hits] = [current, hits];
+    this.draw();
+  }
+
+  /** Draws in the next frame. */
+  draw() {
+    cancelAnimationFrame(this.#frame);
+    this.#frame = requestAnimationFrame(() => this.#draw());
+  }
+
+  /** Pixels for a unit along x and y. The axes have no common measure, so that both fill the canvas. */
+  get #scale() {
+    const { clientWidth, clientHeight } = this.#canvas;
+    return [clientWidth, clientHeight].map((side) => (side / 2) * FILL * this.#zoom);
+  }
+
+  /** Returns the place of a row on the canvas, pixels; undefined if it has none. */
+  #place(row) {
+    const [x, y] = [this.#points[2 * row], this.#points[2 * row + 1]];
+    if (Number.isNaN(x)) return undefined;
+    const { clientWidth, clientHeight } = this.#canvas;
+    const [across, up] = this.#scale;
+    return [clientWidth / 2 + (x - this.#centre[0]) * across, clientHeight / 2 - (y - this.#centre[1]) * up];
+  }
+
+  #draw() {
+    const canvas = this.#canvas;
+    if (!canvas.isConnected || !canvas.clientWidth || !canvas.clientHeight) return;
+    const context = contextOf(canvas);
+    this.#drawPoints(context);
+    const ring = (row, radius, paint) => {
+      const place = row === undefined ? undefined : this.#place(row);
+      if (!place) return;
+      context.beginPath();
+      context.arc(...place, radius, 0, 2 * Math.PI);
+      context.lineWidth = 2;
+      context.strokeStyle = paint;
+      context.stroke();
+    };
+    const [accent, a, text] = ["accent-ink", "a-ink", "text"].map((name) => color(name, canvas));
+    for (const row of this.#hits) ring(row, 4.5, accent);
+    ring(this.#hovered, 6, text);
+    ring(this.#current, 7, a);
+  }
+
+  /** Draws all points as ink that adds up where they are dense. */
+  #drawPoints(context) {
+    const ratio = window.devicePixelRatio || 1;
+    const { width, height } = this.#canvas;
+    const [bright, faint] = [new Float32Array(width * height), new Float32Array(width * height)];
+    const count = this.#points.length / 2;
+    // Few points, and those that are looked at closely, are drawn larger.
+    const radius = ratio * Math.min(Math.max(900 / Math.max(count, 1), 1.1) ** 0.5 * this.#zoom ** 0.3 * 1.1, 4.5);
+    const dot = dotOf(radius);
+    const [across, up] = this.#scale.map((scale) => scale * ratio);
+    const [left, top] = [width / 2 - this.#centre[0] * across, height / 2 + this.#centre[1] * up];
+    for (let row = 0; row < count; row++) {
+      const x = Math.round(left + this.#points[2 * row] * across);
+      const y = Math.round(top - this.#points[2 * row + 1] * up);
+      // Not a number fails the comparison.
+      if (!(x > -radius && y > -radius && x < width + radius && y < height + radius)) continue;
+      const ink = this.#bright[row] ? bright : faint;
+      for (const [dx, dy, weight] of dot) {
+        const [px, py] = [x + dx, y + dy];
+        if (px >= 0 && py >= 0 && px < width && py < height) ink[py * width + px] += weight;
+      }
+    }
+    const image = context.createImageData(width, height);
+    const [on, off] = [rgb(color("point", this.#canvas)), rgb(color("muted", this.#canvas))];
+    for (let at = 0; at < bright.length; at++) {
+      if (bright[at] === 0 && faint[at] === 0) continue;
+      const above = 1 - Math.exp(-bright[at] * INK.bright * 1.6);
+      const below = (1 - Math.exp(-faint[at] * INK.faint * 1.6)) * 0.6 * (1 - above);
+      const alpha = above + below;
+      for (let part = 0; part < 3; part++) image.data[4 * at + part] = (on[part] * above + off[part] * below) / alpha;
+      image.data[4 * at + 3] = 255 * alpha;
+    }
+    context.putImageData(image, 0, 0);
+  }
+
+  #at(event) {
+    const { left, top } = this.#canvas.getBoundingClientRect();
+    return [event.clientX - left, event.clientY - top];
+  }
+
+  /** Returns the nearest row to a place: of those that fit the filters, if there is one. */
+  #find([x, y], near = NEAR) {
+    let found;
+    let least = near * near;
+    const [across, up] = this.#scale;
+    const { clientWidth, clientHeight } = this.#canvas;
+    // The place in units, so that nothing is computed for each row but a difference.
+    const [ownX, ownY] = [this.#centre[0] + (x - clientWidth / 2) / across, this.#centre[1] - (y - clientHeight / 2) / up];
+    for (let row = 0; row < this.#bright.length; row++) {
+      const [dx, dy] = [(this.#points[2 * row] - ownX) * across, (this.#points[2 * row + 1] - ownY) * up];
+      const distance = dx * dx + dy * dy + (this.#bright[row] ? 0 : NEAR * NEAR / 2);
+      // Not a number fails the comparison.
+      if (distance < least) [found, least] = [row, distance];
+    }
+    return found;
+  }
+
+  #press(event) {
+    if (event.button !== 0) return;
+    this.#hint.hidden = true;
+    this.#canvas.setPointerCapture(event.pointerId);
+    this.#pointers.set(event.pointerId, this.#at(event));
+    this.#moved = this.#pointers.size > 1 ? Infinity : 0;
+  }
+
+  #move(event) {
+    const at = this.#at(event);
+    const before = this.#pointers.get(event.pointerId);
+    if (!before) {
+      if (event.pointerType === "mouse") this.#hover(this.#find(at), at);
+      return;
+    }
+    const [dx, dy] = [at[0] - before[0], at[1] - before[1]];
+    this.#moved += Math.hypot(dx, dy);
+    if (this.#pointers.size === 2) {
+      const [other] = [...this.#pointers].find(([id]) => id !== event.pointerId).slice(1);
+      const spread = (place) => Math.hypot(place[0] - other[0], place[1] - other[1]);
+      this.#zoomBy(spread(at) / Math.max(spread(before), 1), other);
+    } else if (this.#moved > CLICK) {
+      this.#pan(dx, dy);
+    }
+    this.#pointers.set(event.pointerId, at);
+  }
+
+  #release(event) {
+    if (!this.#pointers.delete(event.pointerId) || this.#moved > CLICK) return;
+    const row = this.#find(this.#at(event), event.pointerType === "touch" ? 2 * NEAR : NEAR);
+    if (row !== undefined) this.#hooks.play(row);
+  }
+
+  #wheel(event) {
+    event.preventDefault();
+    this.#hint.hidden = true;
+    const step = event.deltaMode === 1 ? 16 * event.deltaY : event.deltaY;
+    this.#zoomBy(Math.exp(-Math.min(Math.max(step, -120), 120) / 300), this.#at(event));
+  }
+
+  #pan(dx, dy) {
+    const [across, up] = this.#scale;
+    this.#centre[0] = Math.min(Math.max(this.#centre[0] - dx / across, -1), 1);
+    this.#centre[1] = Math.min(Math.max(this.#centre[1] + dy / up, -1), 1);
+    this.draw();
+  }
+
+  /** Zooms about a place, which stays where it is; without one, about the middle. */
+  #zoomBy(factor, place) {
+    const { clientWidth, clientHeight } = this.#canvas;
+    const [x, y] = place ?? [clientWidth / 2, clientHeight / 2];
+    const before = this.#scale;
+    this.#zoom = Math.min(Math.max(this.#zoom * factor, 1), MAX_ZOOM);
+    const [fromLeft, fromTop] = [x - clientWidth / 2, y - clientHeight / 2];
+    const after = this.#scale;
+    this.#centre[0] += fromLeft / before[0] - fromLeft / after[0];
+    this.#centre[1] -= fromTop / before[1] - fromTop / after[1];
+    if (this.#zoom === 1) this.#centre = [0, 0];
+    this.draw();
+  }
+
+  #reset() {
+    [this.#zoom, this.#centre] = [1, [0, 0]];
+    this.draw();
+  }
+
+  #key(event) {
+    const step = 40;
+    const moves = { ArrowLeft: [step, 0], ArrowRight: [-step, 0], ArrowUp: [0, step], ArrowDown: [0, -step] };
+    if (event.key in moves) this.#pan(...moves[event.key]);
+    else if (event.key === "+" || event.key === "=") this.#zoomBy(1.4);
+    else if (event.key === "-") this.#zoomBy(1 / 1.4);
+    else if (event.key === "0") this.#reset();
+    else if (event.key === "Enter") {
+      const row = this.#find([this.#canvas.clientWidth / 2, this.#canvas.clientHeight / 2], Infinity);
+      if (row !== undefined) this.#hooks.play(row);
+    } else return;
+    event.preventDefault();
+  }
+
+  async #hover(row, at) {
+    if (row === this.#hovered) return;
+    this.#hovered = row;
+    this.#canvas.style.cursor = row === undefined ? "" : "pointer";
+    this.draw();
+    if (row === undefined) return void (this.#tip.hidden = true);
+    const parts = await this.#hooks.describe(row).catch(() => null);
+    if (!parts || this.#hovered !== row) return;
+    this.#tip.replaceChildren(...parts);
+    this.#tip.hidden = false;
+    const { offsetWidth, offsetHeight } = this.#tip;
+    const { clientWidth } = this.#canvas;
+    this.#tip.style.left = `${Math.min(Math.max(at[0] - offsetWidth / 2, 8), Math.max(clientWidth - offsetWidth - 8, 8))}px`;
+    this.#tip.style.top = `${at[1] - offsetHeight - 14 > 4 ? at[1] - offsetHeight - 14 : at[1] + 18}px`;
+  }
+}
+
+/** Returns the pixels of a round dot: their offsets and how much of each it covers. */
+function dotOf(radius) {
+  const dot = [];
+  const reach = Math.ceil(radius);
+  for (let dy = -reach; dy <= reach; dy++) {
+    for (let dx = -reach; dx <= reach; dx++) {
+      const weight = Math.min(Math.max(radius + 0.5 - Math.hypot(dx, dy), 0), 1);
+      if (weight > 0) dot.push([dx, dy, weight]);
+    }
+  }
+  return dot;
+}
+
+/** Returns the parts of a colour that is written as `#rrggbb`. */
+const rgb = (text) => [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16));
