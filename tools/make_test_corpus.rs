@@ -46,11 +46,19 @@ fn inputs() -> Result<Vec<Input>, Box<dyn Error>> {
     let takes = [
         ("calm/walk.bvh", walk, "walk"),
         ("calm/walk at 30.bvh", Params { fps: 30.0, ..walk }, "walk"),
-        ("calm/walk in a curve.bvh", Params { turn_rate_dps: 40.0, ..clip(Action::Walk, 2.2, 4, 60.0) }, "walk"),
+        (
+            "calm/walk in a curve.bvh",
+            Params { turn_rate_dps: 40.0, ..clip(Action::Walk, 2.2, 4, 60.0) },
+            "walk",
+        ),
         ("calm/stand.bvh", clip(Action::Idle, 1.7, 5, 30.0), "idle"),
         ("fast/run.bvh", clip(Action::Run, 1.6, 6, 60.0), "run"),
-        ("fast/run in a curve.bvh", Params { turn_rate_dps: 60.0, ..clip(Action::Run, 1.5, 7, 60.0) }, "run"),
-        ("fast/jump.bvh", clip(Action::Jump, 1.5, 8, 60.0), "jump"),
+        (
+            "fast/run in a curve.bvh",
+            Params { turn_rate_dps: 60.0, ..clip(Action::Run, 1.5, 7, 60.0) },
+            "run",
+        ),
+        ("fast/jump.bvh", clip(Action::Jump, 2.5, 8, 60.0), "jump"),
     ];
     let mut inputs = Vec::new();
     for (path, params, label) in takes {
@@ -108,20 +116,21 @@ fn gather(inputs: &[Input], folder: &Path) -> Result<u64, Box<dyn Error>> {
     }
     put(COLUMNS, &write_columns(&rows, &texts)?)?;
     put("corpus.json", &serde_json::to_vec(&manifest)?)?;
-    let mut shards = |kind: &str, shards: &[Vec<Piece>], part: usize| -> Result<(), Box<dyn Error>> {
-        for (number, shard) in shards.iter().enumerate() {
-            let file = fs::File::create(folder.join(format!("{kind}-{number:05}.bin")))?;
-            let mut file = BufWriter::new(file);
-            for Piece { key, clip } in shard {
-                let clip = of(key)?.record.clips.get(*clip).ok_or("a piece without a clip")?;
-                let bytes = if part == 0 { &clip.poses } else { &clip.thumbnail };
-                written += bytes.len() as u64;
-                file.write_all(bytes)?;
+    let mut shards =
+        |kind: &str, shards: &[Vec<Piece>], part: usize| -> Result<(), Box<dyn Error>> {
+            for (number, shard) in shards.iter().enumerate() {
+                let file = fs::File::create(folder.join(format!("{kind}-{number:05}.bin")))?;
+                let mut file = BufWriter::new(file);
+                for Piece { key, clip } in shard {
+                    let clip = of(key)?.record.clips.get(*clip).ok_or("a piece without a clip")?;
+                    let bytes = if part == 0 { &clip.poses } else { &clip.thumbnail };
+                    written += bytes.len() as u64;
+                    file.write_all(bytes)?;
+                }
+                file.flush()?;
             }
-            file.flush()?;
-        }
-        Ok(())
-    };
+            Ok(())
+        };
     shards("poses", &pose_shards, 0)?;
     shards("thumbnails", &thumbnail_shards, 1)?;
     Ok(written)

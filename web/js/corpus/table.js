@@ -110,6 +110,7 @@ export class ClipTable {
   #clear() {
     for (const { root } of this.#elements.values()) root.remove();
     this.#elements.clear();
+    this.#scroller.removeAttribute("aria-activedescendant");
   }
 
   #later() {
