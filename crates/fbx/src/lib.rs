@@ -37,6 +37,7 @@ mod error;
 mod libc;
 mod math;
 mod matrix;
+mod memory;
 mod mesh;
 mod scene;
 mod take;
