@@ -15,7 +15,8 @@
 //! bytes → Scene::open → nodes (names, parents, transforms, bind poses)
 //!                     → takes (names, times of keys, which nodes move)
 //!                     → Scene::transform(take, node, time): translation, rotation, scale
-//!                     → Scene::meshes: vertices, triangles, weights, colours
+//!                     → Scene::meshes: vertices, triangles, weights, materials
+//!                     → Scene::image: image files, or their names
 //! ```
 //!
 //! All transforms are in axes with Y up, X to the right and Z to the front, whatever the file's own
@@ -35,6 +36,7 @@
 mod error;
 #[cfg(target_arch = "wasm32")]
 mod libc;
+mod material;
 mod math;
 mod matrix;
 mod memory;
@@ -43,6 +45,7 @@ mod scene;
 mod take;
 
 pub use error::OpenError;
+pub use material::{Image, Material, Texture};
 pub use mesh::{Cluster, Influence, MAX_INFLUENCES, Mesh};
 pub use scene::{Node, NodeKind, OpenOptions, Scene, Transform, UpAxis};
 pub use take::{Movement, Take};

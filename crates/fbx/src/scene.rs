@@ -2,7 +2,7 @@
 
 use crate::matrix::columns;
 use crate::take::{Movement, Take};
-use crate::{Mesh, OpenError, mesh, take};
+use crate::{Image, Mesh, OpenError, mesh, take};
 use ufbx::{
     AllocatorOpts, CoordinateAxes, CoordinateAxis, ElementType, InheritModeHandling, LoadOpts,
     Progress, ProgressCb, ProgressResult, SceneRoot, SpaceConversion, StringOpt,
@@ -120,7 +120,7 @@ impl Scene {
                 temp_allocator: memory(),
                 result_allocator: memory(),
                 ignore_geometry: !options.meshes,
-                ignore_embedded: true,
+                ignore_embedded: !options.meshes,
                 skip_mesh_parts: true,
                 clean_skin_weights: true,
                 node_depth_limit: MAX_DEPTH,
@@ -160,6 +160,17 @@ impl Scene {
     #[must_use]
     pub fn meshes(&self, max_vertices: usize) -> (Vec<Mesh>, usize) {
         mesh::meshes(&self.root, max_vertices)
+    }
+
+    /// Returns an image of a texture.
+    #[must_use]
+    pub fn image(&self, index: usize) -> Option<Image<'_>> {
+        let file = self.root.texture_files.as_ref().get(index)?;
+        Some(Image {
+            relative_path: file.relative_filename.as_ref(),
+            absolute_path: file.absolute_filename.as_ref(),
+            content: &file.content,
+        })
     }
 
     /// Returns the transform of a node at a time of a take, seconds; outside of the takes if there

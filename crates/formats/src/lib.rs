@@ -237,7 +237,7 @@ pub fn import_with_progress(
         FileKind::SmplModel => {
             numpy::model_clip(&numpy::read_model(name, bytes, options)?, options).map(Some)
         }
-        FileKind::Fbx => fbx::read_with_progress(name, bytes, options, progress),
+        FileKind::Fbx => fbx::read_with_progress(name, bytes, &|_| None, options, progress),
         FileKind::Zip | FileKind::Gzip => {
             Err(ImportError::whole_file(name, "an archive", "one of the files in it"))
         }

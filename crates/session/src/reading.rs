@@ -16,7 +16,7 @@ use segue_formats::acclaim::{self, AcclaimSkeleton};
 use segue_formats::archive::{self, ArchiveLimits};
 use segue_formats::numpy::{self, SmplModel};
 use segue_formats::{
-    FileKind, ImportError, ImportOptions, ImportedClip, ImportedFile, Resolve, gltf,
+    FileKind, ImportError, ImportOptions, ImportedClip, ImportedFile, Resolve, fbx, gltf,
     import_with_progress, kind_of, unpack_gzip,
 };
 use segue_motion::clip::Motion;
@@ -394,6 +394,12 @@ impl SingleFile<'_> {
             }
             FileKind::Gltf | FileKind::Vrm | FileKind::Vrma => {
                 gltf::read(name, bytes, beside, &setup.options).map(Some)
+            }
+            FileKind::Fbx => {
+                match fbx::read_with_progress(name, bytes, beside, &setup.options, progress) {
+                    Ok(None) => return None,
+                    other => other,
+                }
             }
             FileKind::Numpy => {
                 let models: Vec<&SmplModel> =

@@ -3,6 +3,7 @@
 use super::joints::{moving, rest_nodes, skeletons};
 use super::mesh::mesh;
 use super::sample::Sampler;
+use super::texture::{PaintedMesh, Textures};
 use super::timing::frames;
 use crate::gltf::characters::{Character, characters};
 use crate::gltf::node::Nodes;
@@ -13,9 +14,9 @@ use crate::measure::{Measure, measure};
 use crate::raw::{RawMotion, Y_UP_FROM_Z_UP};
 use crate::t_pose::first_frame_is_t_pose;
 use crate::warning::{Tally, WarningKind};
-use crate::{ImportError, ImportOptions, ImportedClip, ImportedFile, check_size, stem};
+use crate::{ImportError, ImportOptions, ImportedClip, ImportedFile, Resolve, check_size, stem};
 use glam::{DQuat, Quat, Vec3};
-use segue_fbx::{Mesh, Movement, OpenError, OpenOptions, Scene, is_fbx};
+use segue_fbx::{Movement, OpenError, OpenOptions, Scene, is_fbx};
 use segue_motion::clip::{Provenance, UpAxis};
 use segue_motion::skin::SkinnedMesh;
 use segue_text::{Message, ToMessage, msg};
@@ -36,24 +37,31 @@ const BELIEVED_METRES: std::ops::Range<f64> = 0.05..20.0;
 /// `options.fps` overrides both and does not change the duration. Keys outside of the span of their
 /// take are left out.
 ///
-/// # Errors [`ImportError`] when the file is not FBX, is truncated or broken, contains neither a
+/// Images of textures are those in the file. [`read_with_progress`] also reads those beside it.
+///
+/// # Errors
+/// [`ImportError`] when the file is not FBX, is truncated or broken, contains neither a
 /// skeleton nor an animation, or needs more memory than `options.max_bytes`.
 pub fn read(
     name: &str,
     bytes: &[u8],
     options: &ImportOptions,
 ) -> Result<ImportedFile, ImportError> {
-    Ok(read_with_progress(name, bytes, options, &mut |_| true)?.unwrap_or_default())
+    Ok(read_with_progress(name, bytes, &|_| None, options, &mut |_| true)?.unwrap_or_default())
 }
 
 /// Reads an FBX file as [`read`] does, reports the bytes read so far, and stops with `None` when
 /// `progress` returns `false`.
+///
+/// `resolve` returns the bytes of a file beside this one, an image, by its path: the one in the
+/// file, with `/` between folders, and then others under which programs look for it.
 ///
 /// # Errors
 /// The same as for [`read`].
 pub fn read_with_progress(
     name: &str,
     bytes: &[u8],
+    resolve: Resolve<'_>,
     options: &ImportOptions,
     progress: &mut dyn FnMut(usize) -> bool,
 ) -> Result<Option<ImportedFile>, ImportError> {
@@ -76,6 +84,9 @@ pub fn read_with_progress(
         let why = Message::word("more than two million vertices");
         tally.add(WarningKind::BrokenMesh { why }, None);
     }
+    let mut textures = Textures::new(name, &scene, resolve, options.max_bytes);
+    let meshes: Vec<PaintedMesh> = meshes.into_iter().map(|mesh| textures.painted(mesh)).collect();
+    drop(textures);
     for _ in 0..scene.constraints() {
         tally.add(WarningKind::Constraints, None);
     }
@@ -91,7 +102,7 @@ pub fn read_with_progress(
     let moves = moving(&scene);
     let skins: Vec<Vec<usize>> = meshes
         .iter()
-        .map(|mesh| mesh.clusters.iter().map(|cluster| cluster.node).collect())
+        .map(|painted| painted.mesh.clusters.iter().map(|cluster| cluster.node).collect())
         .collect();
     let sets = skeletons(&scene, &skins, &moves, &mut tally);
     let characters = characters(&nodes, &sets, None, &moves);
@@ -107,7 +118,7 @@ pub fn read_with_progress(
         name,
         scene: &scene,
         nodes: &nodes,
-        meshes: &meshes,
+        meshes,
         options,
         upright,
         up: options.up.unwrap_or(stated_up),
@@ -116,8 +127,9 @@ pub fn read_with_progress(
         tally,
         clips: Vec::new(),
     };
-    for character in &characters {
-        let Some(()) = reader.character(character, &mut || progress(bytes.len()))? else {
+    for (index, character) in characters.iter().enumerate() {
+        let is_last = index + 1 == characters.len();
+        let Some(()) = reader.character(character, is_last, &mut || progress(bytes.len()))? else {
             return Ok(None);
         };
     }
@@ -161,7 +173,7 @@ struct Reader<'a> {
     name: &'a str,
     scene: &'a Scene,
     nodes: &'a Nodes,
-    meshes: &'a [Mesh],
+    meshes: Vec<PaintedMesh>,
     options: &'a ImportOptions,
     /// Turns the world from Y up to the file's up axis.
     upright: DQuat,
@@ -175,10 +187,11 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// Adds the clips of a character; `None` if `progress` returned `false`.
+    /// Adds the clips of a character, the last one of the file or another; `None` if `progress` returned `false`.
     fn character(
         &mut self,
         character: &Character,
+        is_last: bool,
         progress: &mut dyn FnMut() -> bool,
     ) -> Result<Option<()>, ImportError> {
         let rest = RawMotion {
@@ -189,7 +202,7 @@ impl Reader<'_> {
         };
         let takes = self.takes(character);
         let given_fps = self.options.fps.filter(|fps| fps.is_finite() && *fps > 0.0);
-        let mut mesh = mesh(self.meshes, self.nodes, character, &mut self.tally);
+        let mut mesh = mesh(&mut self.meshes, is_last, self.nodes, character, &mut self.tally);
         // The unit is that of the whole character, found by its first motion where it has one: some
         // files have no plausible rest pose.
         let mut unit: Option<f64> = None;
