@@ -1,5 +1,5 @@
-//! Base colour textures, of which each vertex takes the colour at its place: decoded images, and how
-//! they are looked up.
+//! Base colour textures, of which each vertex takes the colour at its place: decoded images, and
+//! how they are looked up.
 
 mod image;
 

@@ -26,6 +26,10 @@ use std::sync::Arc;
 const MEMORY_RATIO: usize = 32;
 /// The memory that the content of a file may take whatever its size, bytes.
 const MIN_MEMORY: usize = 64 << 20;
+/// The size of a file as a multiple of the memory that its keys may take at once.
+const KEY_MEMORY_SHARE: usize = 3;
+/// The memory that the keys of a file may take at once whatever its size, bytes.
+const MIN_KEY_MEMORY: usize = 4 << 20;
 /// Heights of a body with which the unit of a file is believed, metres: from a mouse to a giant.
 const BELIEVED_METRES: std::ops::Range<f64> = 0.05..20.0;
 
@@ -67,9 +71,12 @@ pub fn read_with_progress(
 ) -> Result<Option<ImportedFile>, ImportError> {
     check_size(name, bytes, options)?;
     let most = bytes.len().saturating_mul(MEMORY_RATIO).max(MIN_MEMORY);
-    let limits =
-        OpenOptions { max_memory: most.min(options.max_bytes.saturating_mul(4)), meshes: true };
-    let scene = match Scene::open(bytes, limits, progress) {
+    let limits = OpenOptions {
+        max_memory: most.min(options.max_bytes.saturating_mul(4)),
+        meshes: true,
+        max_key_memory: (bytes.len() / KEY_MEMORY_SHARE).max(MIN_KEY_MEMORY),
+    };
+    let mut scene = match Scene::open(bytes, limits, progress) {
         Ok(scene) => scene,
         Err(OpenError::Stopped) => return Ok(None),
         // Too short for the head of a file, so that it seems cut off.
@@ -84,9 +91,15 @@ pub fn read_with_progress(
         let why = Message::word("more than two million vertices");
         tally.add(WarningKind::BrokenMesh { why }, None);
     }
+    let mut materials = meshes.iter().flat_map(|mesh| &mesh.materials);
+    if materials.all(|material| material.texture.is_none()) {
+        scene.forget_looks().map_err(|error| refusal(name, &error))?;
+    }
     let mut textures = Textures::new(name, &scene, resolve, options.max_bytes);
     let meshes: Vec<PaintedMesh> = meshes.into_iter().map(|mesh| textures.painted(mesh)).collect();
     drop(textures);
+    // Images are not needed any more.
+    scene.forget_looks().map_err(|error| refusal(name, &error))?;
     for _ in 0..scene.constraints() {
         tally.add(WarningKind::Constraints, None);
     }
@@ -99,7 +112,7 @@ pub fn read_with_progress(
         UpAxis::Z => Y_UP_FROM_Z_UP.as_dquat().inverse(),
     };
     let nodes = rest_nodes(name, &scene, upright)?;
-    let moves = moving(&scene);
+    let moves = moving(&scene).map_err(|error| refusal(name, &error))?;
     let skins: Vec<Vec<usize>> = meshes
         .iter()
         .map(|painted| painted.mesh.clusters.iter().map(|cluster| cluster.node).collect())
@@ -171,7 +184,7 @@ fn refusal(name: &str, error: &OpenError) -> ImportError {
 
 struct Reader<'a> {
     name: &'a str,
-    scene: &'a Scene,
+    scene: &'a Scene<'a>,
     nodes: &'a Nodes,
     meshes: Vec<PaintedMesh>,
     options: &'a ImportOptions,
@@ -187,7 +200,8 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// Adds the clips of a character, the last one of the file or another; `None` if `progress` returned `false`.
+    /// Adds the clips of a character, the last one of the file or another; `None` if `progress`
+    /// returned `false`.
     fn character(
         &mut self,
         character: &Character,
@@ -219,7 +233,8 @@ impl Reader<'_> {
             self.spend(&rate, character.joints.len())?;
             let sampler =
                 Sampler { scene: self.scene, nodes: self.nodes, character, upright: self.upright };
-            let Some(raw) = sampler.motion(take, &rate, &mut self.tally, progress) else {
+            let sampled = sampler.motion(take, &rate, &mut self.tally, progress);
+            let Some(raw) = sampled.map_err(|error| refusal(self.name, &error))? else {
                 return Ok(None);
             };
             let name = if is_only { stem(self.name).to_owned() } else { take_name(&found.name) };

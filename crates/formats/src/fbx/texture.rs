@@ -24,7 +24,7 @@ pub(super) struct PaintedMesh {
 
 /// The images of a file: those in it, and those beside it.
 pub(super) struct Textures<'a> {
-    scene: &'a Scene,
+    scene: &'a Scene<'a>,
     /// The folder beside the file in which programs put its images: `body.fbm` for `body.fbx`.
     folder: String,
     resolve: Resolve<'a>,
@@ -39,7 +39,7 @@ impl<'a> Textures<'a> {
     /// Returns the images of the file of that name.
     pub(super) fn new(
         name: &str,
-        scene: &'a Scene,
+        scene: &'a Scene<'a>,
         resolve: Resolve<'a>,
         max_bytes: usize,
     ) -> Self {

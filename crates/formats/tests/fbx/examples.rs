@@ -214,9 +214,9 @@ pub(crate) fn tiny() -> File {
     file
 }
 
-/// Two takes of two layers with keys of all kinds, of different numbers, and with some that have the
-/// same value everywhere: so long that a part of them may be read. The scale of one joint changes
-/// in the middle of a take, and children of it do not inherit it.
+/// Two takes of two layers with keys of all kinds, of different numbers, and with some that have
+/// the same value everywhere: so long that a part of them may be read. The scale of one joint
+/// changes in the middle of a take, and children of it do not inherit it.
 pub(crate) fn long() -> File {
     let mut file = several_takes();
     let frames = [900, 700];

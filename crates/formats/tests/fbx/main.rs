@@ -3,6 +3,7 @@
 
 mod document;
 mod examples;
+mod parts;
 mod rig;
 mod texture;
 
