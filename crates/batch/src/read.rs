@@ -4,15 +4,17 @@ use crate::error::{BatchError, FileError};
 use crate::inputs::{Input, has_ending, shown};
 use rayon::prelude::*;
 use segue_formats::{FileKind, ImportOptions, kind_of};
-use segue_session::reading::{ReadReport, ReadSetup, SkeletonFile, read};
+use segue_session::reading::{ReadReport, ReadSetup, SkeletonFile, read_beside};
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
 
 /// A file that was read, or the reason why it was not.
 pub type Read = Result<ReadReport, FileError>;
 
-/// Reads files, with the skeletons that they need.
+/// Reads files, with the skeletons that they need, and with the files beside them that they refer
+/// to: buffers of glTF files and images of textures.
 #[derive(Debug)]
 pub struct Reader {
     options: ImportOptions,
@@ -77,7 +79,8 @@ impl Reader {
             skeleton_files: self.named.iter().chain(beside).cloned().collect(),
             ..ReadSetup::default()
         };
-        read(&input.name, bytes, &setup, &mut |_| true).unwrap_or_default()
+        let beside = |path: &str| file_beside(folder_of(input), path, self.options.max_bytes);
+        read_beside(&input.name, bytes, &setup, &beside, &mut |_| true).unwrap_or_default()
     }
 }
 
@@ -102,6 +105,16 @@ pub fn for_each<T: Send>(
 /// Returns the folder of a file; the empty path for the current one.
 fn folder_of(input: &Input) -> &Path {
     input.path.parent().unwrap_or(Path::new(""))
+}
+
+/// Returns a file below a folder, by its path from there, of at most `max_bytes`. A path that leads
+/// elsewhere is not followed.
+fn file_beside(folder: &Path, path: &str, max_bytes: usize) -> Option<Arc<[u8]>> {
+    let is_below = Path::new(path).components().all(|part| matches!(part, Component::Normal(_)));
+    let path = is_below.then(|| folder.join(path))?;
+    let about = fs::metadata(&path).ok()?;
+    let is_read = about.is_file() && about.len() <= max_bytes as u64;
+    is_read.then(|| fs::read(&path).ok()).flatten().map(Arc::from)
 }
 
 /// Returns the bytes of a file of at most `max_bytes`.

@@ -14,8 +14,9 @@
 //! ```text
 //! bytes → Scene::open → nodes (names, parents, transforms, bind poses)
 //!                     → takes (names, times of keys, which nodes move)
-//!                     → Scene::transform(take, node, time): translation, rotation, scale
-//!                     → Scene::meshes: vertices, triangles, weights, colours
+//!                     → Poses::transform(take, node, time): translation, rotation, scale
+//!                     → Scene::meshes: vertices, triangles, weights, materials
+//!                     → Scene::image: image files, or their names
 //! ```
 //!
 //! All transforms are in axes with Y up, X to the right and Z to the front, whatever the file's own
@@ -25,25 +26,35 @@
 //!
 //! Transforms are computed in double precision when they are asked for: a scene takes the memory of
 //! its file's content, about 40 bytes for each key of a curve, and no more for being sampled.
-//! [`OpenOptions::max_memory`] bounds it.
+//! [`OpenOptions::max_memory`] bounds it. A binary file whose keys would take more than
+//! [`OpenOptions::max_key_memory`] is read in parts: its keys take the 4 bytes of their values, and
+//! the part around one time as much as that option says.
 //!
 //! # What it does not do
 //!
 //! Constraints and inverse kinematics are counted, not evaluated. Files beside the FBX file are not
 //! opened. Nothing is written.
 
+mod curves;
+mod cut;
 mod error;
 #[cfg(target_arch = "wasm32")]
 mod libc;
+mod material;
 mod math;
 mod matrix;
+mod memory;
 mod mesh;
+mod parts;
+mod records;
 mod scene;
+mod stream;
 mod take;
 
 pub use error::OpenError;
+pub use material::{Image, Material, Texture};
 pub use mesh::{Cluster, Influence, MAX_INFLUENCES, Mesh};
-pub use scene::{Node, NodeKind, OpenOptions, Scene, Transform, UpAxis};
+pub use scene::{Node, NodeKind, OpenOptions, Poses, Scene, Transform, UpAxis};
 pub use take::{Movement, Take};
 
 /// Returns whether these bytes begin an FBX file, binary or ASCII.

@@ -1,8 +1,8 @@
 //! Skinned meshes as vertices, triangles and weights.
 
+use crate::material::{Coordinates, Material};
 use crate::matrix::columns;
-use std::collections::HashMap;
-use ufbx::{Material, SceneRoot, SkinDeformer};
+use ufbx::{SceneRoot, SkinDeformer};
 
 /// The greatest number of clusters that move one vertex; of more, the heaviest count.
 pub const MAX_INFLUENCES: usize = 4;
@@ -26,23 +26,28 @@ pub struct Influence {
     pub weight: f32,
 }
 
-/// A skinned mesh. A vertex at a hard edge, or between two colours, is there more than once.
+/// A skinned mesh. A vertex at a hard edge, between two materials, or at the seam of a texture is
+/// there more than once.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// In the file's unit and the mesh's own axes.
     pub positions: Vec<[f32; 3]>,
     /// Unit vectors, one for each position; empty if the file has none.
     pub normals: Vec<[f32; 3]>,
-    /// The base colour of each position: red, green, blue, opacity, linear.
-    pub colors: Vec<[f32; 4]>,
+    /// The place of each position in the texture of its material: (0, 0) is the upper left corner
+    /// of the image, (1, 1) its lower right one. Empty if no material has a texture.
+    pub coordinates: Vec<[f32; 2]>,
     /// Of each position, the heaviest first; those without weight are zero.
     pub influences: Vec<[Influence; MAX_INFLUENCES]>,
     /// Three indices of positions, anticlockwise from outside.
     pub triangles: Vec<[u32; 3]>,
     /// The skin.
     pub clusters: Vec<Cluster>,
-    /// The number of its materials with an image.
-    pub textures: usize,
+    /// The materials.
+    pub materials: Vec<Material>,
+    /// The material of each position, an index of [`materials`](Self::materials); without materials
+    /// it is 0.
+    pub material_of: Vec<u32>,
     /// Whether it has blend shapes, which are not read.
     pub has_shapes: bool,
 }
@@ -79,14 +84,24 @@ impl Mesh {
                 read.clusters.push(Cluster { node, node_from_mesh });
             }
         }
-        let materials: Vec<[f32; 4]> = mesh.materials.into_iter().map(color).collect();
-        let has_texture = |material: &&Material| {
-            material.pbr.base_color.texture.is_some()
-                || material.fbx.diffuse_color.texture.is_some()
-        };
-        read.textures = mesh.materials.into_iter().filter(has_texture).count();
+        let own: Vec<&ufbx::Material> = mesh.materials.into_iter().collect();
+        let coordinates: Vec<Option<Coordinates<'_>>> =
+            own.iter().map(|material| Coordinates::of(mesh, material)).collect();
+        read.materials = own
+            .iter()
+            .zip(&coordinates)
+            .map(|(material, coordinates)| Material::read(material, coordinates.is_some()))
+            .collect();
+        let has_texture = coordinates.iter().any(Option::is_some);
         let has_normals = mesh.vertex_normal.exists;
-        let mut vertices = HashMap::new();
+        let count = mesh.num_vertices.min(mesh.num_indices);
+        read.positions.reserve_exact(count);
+        read.normals.reserve_exact(if has_normals { count } else { 0 });
+        read.coordinates.reserve_exact(if has_texture { count } else { 0 });
+        read.material_of.reserve_exact(count);
+        read.influences.reserve_exact(count);
+        read.triangles.reserve_exact(mesh.num_triangles);
+        let mut copies = Copies::of(mesh.num_vertices);
         let mut corners = Vec::new();
         for (place, face) in mesh.faces.as_ref().iter().enumerate() {
             if face.num_indices < 3 {
@@ -107,23 +122,25 @@ impl Mesh {
                     } else {
                         [0.0; 3]
                     };
-                    let key = (vertex, normal.map(f32::to_bits), material);
-                    let next = vertices.len() as u32;
-                    let index = *vertices.entry(key).or_insert(next);
-                    if index == next {
-                        read.positions.push([
-                            position.x as f32,
-                            position.y as f32,
-                            position.z as f32,
-                        ]);
-                        if has_normals {
-                            read.normals.push(normal);
-                        }
-                        let color = materials.get(material as usize).copied();
-                        read.colors.push(color.unwrap_or([1.0; 4]));
-                        read.influences.push(influences(skin, &places, vertex as usize));
+                    let found = coordinates.get(material as usize).and_then(Option::as_ref);
+                    let place = found.map_or([0.0; 2], |coordinates| coordinates.at(corner));
+                    if let Some(index) = copies.find(vertex, |index| {
+                        read.material_of.get(index) == Some(&material)
+                            && (!has_normals || is_same(read.normals.get(index), &normal))
+                            && (!has_texture || is_same(read.coordinates.get(index), &place))
+                    }) {
+                        return Some(index);
                     }
-                    Some(index)
+                    read.positions.push([position.x as f32, position.y as f32, position.z as f32]);
+                    if has_normals {
+                        read.normals.push(normal);
+                    }
+                    if has_texture {
+                        read.coordinates.push(place);
+                    }
+                    read.material_of.push(material);
+                    read.influences.push(influences(skin, &places, vertex as usize));
+                    Some(copies.add(vertex))
                 });
                 if let [Some(a), Some(b), Some(c)] = own {
                     read.triangles.push([a, b, c]);
@@ -132,6 +149,48 @@ impl Mesh {
         }
         read
     }
+}
+
+/// The vertices that were made of each vertex of the file: a chain for each, because a table of all
+/// their values would take more memory than the mesh.
+struct Copies {
+    /// The last vertex that was made of each vertex of the file.
+    last: Vec<u32>,
+    /// The one before each vertex that was made.
+    before: Vec<u32>,
+}
+
+impl Copies {
+    /// The end of a chain.
+    const NONE: u32 = u32::MAX;
+    /// The number of vertices of a chain that are compared; in those of no sensible mesh are more.
+    const MAX_COMPARED: usize = 64;
+
+    /// Returns chains for the vertices of a file.
+    fn of(vertices: usize) -> Self {
+        Self { last: vec![Self::NONE; vertices], before: Vec::with_capacity(vertices) }
+    }
+
+    /// Returns a vertex that was made of a vertex of the file, and is the wanted one.
+    fn find(&self, vertex: u32, is_wanted: impl Fn(usize) -> bool) -> Option<u32> {
+        let last = self.last.get(vertex as usize).copied();
+        let before = |own: &u32| self.before.get(*own as usize).copied();
+        let mut chain = std::iter::successors(last, before).take_while(|own| *own != Self::NONE);
+        chain.by_ref().take(Self::MAX_COMPARED).find(|own| is_wanted(*own as usize))
+    }
+
+    /// Adds the next vertex that is made, and returns its number.
+    fn add(&mut self, vertex: u32) -> u32 {
+        let own = self.before.len() as u32;
+        let last = self.last.get_mut(vertex as usize);
+        self.before.push(last.map_or(Self::NONE, |last| std::mem::replace(last, own)));
+        own
+    }
+}
+
+/// Returns whether numbers are the same to the last bit.
+fn is_same<const N: usize>(one: Option<&[f32; N]>, other: &[f32; N]) -> bool {
+    one.is_some_and(|one| one.map(f32::to_bits) == other.map(f32::to_bits))
 }
 
 /// Returns the heaviest clusters of a vertex.
@@ -155,21 +214,4 @@ fn influences(
         *place = influence;
     }
     heaviest
-}
-
-/// Returns the base colour of a material, linear.
-fn color(material: &Material) -> [f32; 4] {
-    let (map, factor) = if material.pbr.base_color.has_value {
-        (&material.pbr.base_color, &material.pbr.base_factor)
-    } else {
-        (&material.fbx.diffuse_color, &material.fbx.diffuse_factor)
-    };
-    if !map.has_value {
-        return [1.0; 4];
-    }
-    let factor = if factor.has_value { factor.value_vec4.x } else { 1.0 };
-    let ufbx::Vec4 { x, y, z, .. } = map.value_vec4;
-    let opacity = &material.pbr.opacity;
-    let alpha = if opacity.has_value { opacity.value_vec4.x } else { 1.0 };
-    [x * factor, y * factor, z * factor, alpha].map(|value| value as f32)
 }

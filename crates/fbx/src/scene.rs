@@ -1,8 +1,10 @@
 //! The tree of nodes of a file, at rest and in its takes.
 
+use crate::cut::Cut;
 use crate::matrix::columns;
-use crate::take::{Movement, Take};
-use crate::{Mesh, OpenError, mesh, take};
+use crate::parts::{Parts, Window};
+use crate::take::{Movement, Take, WholeCurves};
+use crate::{Image, Mesh, OpenError, mesh, stream, take};
 use ufbx::{
     AllocatorOpts, CoordinateAxes, CoordinateAxis, ElementType, InheritModeHandling, LoadOpts,
     Progress, ProgressCb, ProgressResult, SceneRoot, SpaceConversion, StringOpt,
@@ -13,6 +15,12 @@ const MAX_DEPTH: u32 = 1024;
 /// The number of bytes between two reports of progress.
 const PROGRESS_BYTES: u64 = 256 << 10;
 
+/// The memory that ufbx asks for at once, bytes: with its own 16 MB, more than a small scene needs
+/// would stay unused.
+const CHUNK_BYTES: usize = 1 << 20;
+/// The memory of a scene from which on it is read again without its meshes, bytes.
+const MIN_FORGOTTEN_BYTES: usize = 8 << 20;
+
 /// Limits of opening a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OpenOptions {
@@ -20,6 +28,10 @@ pub struct OpenOptions {
     pub max_memory: usize,
     /// Whether meshes are read.
     pub meshes: bool,
+    /// The memory for keys of curves from which on a binary file is read in parts, bytes, each with
+    /// a part of the keys that takes about as much. A key takes 40 bytes, in the file 12 or, as
+    /// most programs pack them, 5.
+    pub max_key_memory: usize,
 }
 
 /// A transform from a node's axes to its parent's: scale first, then rotation, then translation.
@@ -87,13 +99,22 @@ pub enum UpAxis {
 }
 
 /// An open file.
-pub struct Scene {
-    root: SceneRoot,
+pub struct Scene<'a> {
+    /// All that is read; where the file is read in parts, without most keys.
+    root: Option<SceneRoot>,
+    bytes: &'a [u8],
+    options: OpenOptions,
+    /// The file, where it is read in parts.
+    parts: Option<Parts<'a>>,
     nodes: Vec<Node>,
     takes: Vec<Take>,
+    metres_per_unit: f64,
+    up: UpAxis,
+    fps: f64,
+    constraints: usize,
 }
 
-impl Scene {
+impl<'a> Scene<'a> {
     /// Opens a file. `progress` gets the number of bytes read about every 256 KB, and returns
     /// whether to go on.
     ///
@@ -101,46 +122,52 @@ impl Scene {
     /// [`OpenError`] when the file is not FBX, is broken, is too large, or `progress` returned
     /// `false`.
     pub fn open(
-        bytes: &[u8],
+        bytes: &'a [u8],
         options: OpenOptions,
         progress: &mut dyn FnMut(usize) -> bool,
     ) -> Result<Self, OpenError> {
-        let memory =
-            || AllocatorOpts { memory_limit: options.max_memory, ..AllocatorOpts::default() };
-        let mut report = |done: &Progress| {
-            if progress(usize::try_from(done.bytes_read).unwrap_or(usize::MAX)) {
-                ProgressResult::Continue
-            } else {
-                ProgressResult::Cancel
+        match Parts::open(bytes, options, progress) {
+            Ok(Some((root, parts))) => {
+                let takes = parts.takes(&root);
+                return Ok(Self::new(bytes, options, root, takes, Some(parts)));
             }
+            Err(OpenError::Stopped) => return Err(OpenError::Stopped),
+            // Something is not as expected, and may be read nevertheless.
+            Ok(None) | Err(_) => {}
+        }
+        let root = load(Source::Bytes(bytes), options, progress)?;
+        let stacks = root.anim_stacks.into_iter();
+        let takes = stacks.map(|stack| take::take(&root, stack, &WholeCurves)).collect();
+        Ok(Self::new(bytes, options, root, takes, None))
+    }
+
+    fn new(
+        bytes: &'a [u8],
+        options: OpenOptions,
+        root: SceneRoot,
+        takes: Vec<Take>,
+        parts: Option<Parts<'a>>,
+    ) -> Self {
+        let axis = ufbx::find_prop(&root.settings.props, "UpAxis");
+        let up = match axis.map_or(-1, |axis| axis.value_int) {
+            0 => UpAxis::X,
+            1 => UpAxis::Y,
+            2 => UpAxis::Z,
+            _ => UpAxis::Unknown,
         };
-        let root = ufbx::load_memory(
+        let constraints = root.constraints.into_iter().filter(|constraint| constraint.active);
+        Self {
             bytes,
-            LoadOpts {
-                temp_allocator: memory(),
-                result_allocator: memory(),
-                ignore_geometry: !options.meshes,
-                ignore_embedded: true,
-                skip_mesh_parts: true,
-                clean_skin_weights: true,
-                node_depth_limit: MAX_DEPTH,
-                progress_cb: ProgressCb::Mut(&mut report),
-                progress_interval_hint: PROGRESS_BYTES,
-                inherit_mode_handling: InheritModeHandling::Compensate,
-                scale_helper_name: StringOpt::Ref(" scale"),
-                space_conversion: SpaceConversion::AdjustTransforms,
-                target_axes: CoordinateAxes {
-                    right: CoordinateAxis::PositiveX,
-                    up: CoordinateAxis::PositiveY,
-                    front: CoordinateAxis::PositiveZ,
-                },
-                file_format: ufbx::FileFormat::Fbx,
-                ..LoadOpts::default()
-            },
-        )?;
-        let nodes = nodes(&root);
-        let takes = root.anim_stacks.into_iter().map(|stack| take::take(&root, stack)).collect();
-        Ok(Self { root, nodes, takes })
+            options,
+            nodes: nodes(&root),
+            takes,
+            metres_per_unit: root.settings.unit_meters,
+            up,
+            fps: root.settings.frames_per_second,
+            constraints: constraints.count(),
+            root: Some(root),
+            parts,
+        }
     }
 
     /// The nodes, each behind its parent.
@@ -155,55 +182,133 @@ impl Scene {
         &self.takes
     }
 
+    /// Returns whether it is read in parts, because its keys would take more than
+    /// [`OpenOptions::max_key_memory`].
+    #[must_use]
+    pub fn is_in_parts(&self) -> bool {
+        self.parts.is_some()
+    }
+
     /// Returns the skinned meshes, without those of which more than `max_vertices` vertices would
     /// come together, and the number of those left out.
     #[must_use]
     pub fn meshes(&self, max_vertices: usize) -> (Vec<Mesh>, usize) {
-        mesh::meshes(&self.root, max_vertices)
+        self.root.as_ref().map(|root| mesh::meshes(root, max_vertices)).unwrap_or_default()
     }
 
-    /// Returns the transform of a node at a time of a take, seconds; outside of the takes if there
-    /// is no such take, and the identity if there is no such node.
+    /// Returns an image of a texture.
     #[must_use]
-    pub fn transform(&self, take: usize, node: usize, secs: f64) -> Transform {
-        let moves = self.takes.get(take).and_then(|take| take.movements.get(node));
-        let still = moves.is_none_or(|moves| *moves == Movement::Still);
-        match (self.root.anim_stacks.get(take), self.root.nodes.get(node + 1)) {
-            (Some(stack), Some(found)) if !still => {
-                ufbx::evaluate_transform(&stack.anim, found, secs).into()
-            }
-            _ => self.nodes.get(node).map_or(Transform::IDENTITY, |node| node.local),
+    pub fn image(&self, index: usize) -> Option<Image<'_>> {
+        let file = self.root.as_ref()?.texture_files.as_ref().get(index)?;
+        Some(Image {
+            relative_path: file.relative_filename.as_ref(),
+            absolute_path: file.absolute_filename.as_ref(),
+            content: &file.content,
+        })
+    }
+
+    /// Gives the memory of meshes and images back: there are none from then on. Where they took
+    /// much, the file is read again without them.
+    ///
+    /// # Errors
+    /// [`OpenError`] when it cannot be read again.
+    pub fn forget_looks(&mut self) -> Result<(), OpenError> {
+        if self.parts.is_some() {
+            self.root = None;
+            return Ok(());
         }
+        let used = self.root.as_ref().map_or(0, |root| root.metadata.result_memory_used);
+        if !self.options.meshes || used < self.bytes.len().max(MIN_FORGOTTEN_BYTES) {
+            return Ok(());
+        }
+        self.root = None;
+        let options = OpenOptions { meshes: false, ..self.options };
+        let bare = load(Source::Bytes(self.bytes), options, &mut |_| true)?;
+        let is_same = nodes(&bare).iter().zip(&self.nodes).all(|(one, other)| {
+            (&one.name, one.parent, one.local) == (&other.name, other.parent, other.local)
+        });
+        self.root = Some(if is_same && bare.nodes.len() == self.nodes.len() + 1 {
+            bare
+        } else {
+            drop(bare);
+            load(Source::Bytes(self.bytes), self.options, &mut |_| true)?
+        });
+        Ok(())
+    }
+
+    /// Returns the transforms of the nodes in the takes.
+    #[must_use]
+    pub fn poses(&self) -> Poses<'_> {
+        Poses { scene: self, window: None }
     }
 
     /// Returns the length of the file's unit, metres: 0.01 where the file states none.
     #[must_use]
     pub fn metres_per_unit(&self) -> f64 {
-        self.root.settings.unit_meters
+        self.metres_per_unit
     }
 
     /// Returns the up axis that the file states.
     #[must_use]
     pub fn up(&self) -> UpAxis {
-        let axis = ufbx::find_prop(&self.root.settings.props, "UpAxis");
-        match axis.map_or(-1, |axis| axis.value_int) {
-            0 => UpAxis::X,
-            1 => UpAxis::Y,
-            2 => UpAxis::Z,
-            _ => UpAxis::Unknown,
-        }
+        self.up
     }
 
     /// Returns the frame rate that the file states, frames per second; 24 where it states none.
     #[must_use]
     pub fn fps(&self) -> f64 {
-        self.root.settings.frames_per_second
+        self.fps
     }
 
     /// Returns the number of active constraints, which are not evaluated.
     #[must_use]
     pub fn constraints(&self) -> usize {
-        self.root.constraints.into_iter().filter(|constraint| constraint.active).count()
+        self.constraints
+    }
+}
+
+/// The transforms of nodes in takes. Of a file that is read in parts, the part around the time that
+/// was asked for last is kept: times are best asked for in their order.
+pub struct Poses<'a> {
+    scene: &'a Scene<'a>,
+    window: Option<Window>,
+}
+
+impl Poses<'_> {
+    /// Returns the transform of a node at a time of a take, seconds; outside of the takes if there
+    /// is no such take, and the identity if there is no such node.
+    ///
+    /// # Errors
+    /// [`OpenError`] when a part of the file cannot be read.
+    pub fn transform(
+        &mut self,
+        take: usize,
+        node: usize,
+        secs: f64,
+    ) -> Result<Transform, OpenError> {
+        let Scene { root, parts, nodes, takes, .. } = self.scene;
+        let moves = takes.get(take).and_then(|take| take.movements.get(node));
+        let still = moves.is_none_or(|moves| *moves == Movement::Still);
+        let at_rest = || nodes.get(node).map_or(Transform::IDENTITY, |node| node.local);
+        if still {
+            return Ok(at_rest());
+        }
+        let root = match (parts, takes.get(take)) {
+            (Some(parts), Some(found)) => {
+                let window = self.window.take().filter(|window| window.has(take, secs));
+                let window = match window {
+                    Some(window) => window,
+                    None => parts.window(take, found, secs)?,
+                };
+                Some(&self.window.insert(window).root)
+            }
+            _ => root.as_ref(),
+        };
+        let found =
+            root.and_then(|root| Some((root.anim_stacks.get(take)?, root.nodes.get(node + 1)?)));
+        Ok(found.map_or_else(at_rest, |(stack, found)| {
+            ufbx::evaluate_transform(&stack.anim, found, secs).into()
+        }))
     }
 }
 
@@ -213,8 +318,61 @@ impl Transform {
         Self { translation: [0.0; 3], rotation: [0.0, 0.0, 0.0, 1.0], scale: [1.0; 3] };
 }
 
+/// What a scene is read from.
+pub(crate) enum Source<'a> {
+    Bytes(&'a [u8]),
+    /// A file with a part of its keys.
+    Cut(Cut<'a>),
+}
+
+/// Reads a scene.
+pub(crate) fn load(
+    source: Source<'_>,
+    options: OpenOptions,
+    progress: &mut dyn FnMut(usize) -> bool,
+) -> Result<SceneRoot, OpenError> {
+    let memory = || AllocatorOpts {
+        memory_limit: options.max_memory,
+        huge_threshold: CHUNK_BYTES / 16,
+        max_chunk_size: CHUNK_BYTES,
+        ..AllocatorOpts::default()
+    };
+    let mut report = |done: &Progress| {
+        if progress(usize::try_from(done.bytes_read).unwrap_or(usize::MAX)) {
+            ProgressResult::Continue
+        } else {
+            ProgressResult::Cancel
+        }
+    };
+    let options = LoadOpts {
+        temp_allocator: memory(),
+        result_allocator: memory(),
+        ignore_geometry: !options.meshes,
+        ignore_embedded: !options.meshes,
+        skip_mesh_parts: true,
+        clean_skin_weights: true,
+        node_depth_limit: MAX_DEPTH,
+        progress_cb: ProgressCb::Mut(&mut report),
+        progress_interval_hint: PROGRESS_BYTES,
+        inherit_mode_handling: InheritModeHandling::Compensate,
+        scale_helper_name: StringOpt::Ref(" scale"),
+        space_conversion: SpaceConversion::AdjustTransforms,
+        target_axes: CoordinateAxes {
+            right: CoordinateAxis::PositiveX,
+            up: CoordinateAxis::PositiveY,
+            front: CoordinateAxis::PositiveZ,
+        },
+        file_format: ufbx::FileFormat::Fbx,
+        ..LoadOpts::default()
+    };
+    Ok(match source {
+        Source::Bytes(bytes) => ufbx::load_memory(bytes, options)?,
+        Source::Cut(cut) => stream::load(cut, options)?,
+    })
+}
+
 /// Returns the nodes below the root node of ufbx, which is the first one and stands for the world.
-fn nodes(root: &SceneRoot) -> Vec<Node> {
+pub(crate) fn nodes(root: &SceneRoot) -> Vec<Node> {
     let mut nodes: Vec<Node> = root
         .nodes
         .into_iter()

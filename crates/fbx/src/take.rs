@@ -41,7 +41,36 @@ pub struct Take {
     pub movements: Vec<Movement>,
 }
 
-pub(crate) fn take(root: &SceneRoot, stack: &AnimStack) -> Take {
+/// What takes need to know of curves.
+pub(crate) trait Curves {
+    /// Returns whether a curve has no keys.
+    fn is_empty(&self, curve: &AnimCurve) -> bool;
+
+    /// Returns whether a curve has the same value for all times.
+    fn is_constant(&self, curve: &AnimCurve) -> bool;
+
+    /// Returns the times of a curve's keys, seconds.
+    fn key_secs<'a>(&'a self, curve: &'a AnimCurve) -> Box<dyn Iterator<Item = f64> + 'a>;
+}
+
+/// Curves with all their keys.
+pub(crate) struct WholeCurves;
+
+impl Curves for WholeCurves {
+    fn is_empty(&self, curve: &AnimCurve) -> bool {
+        curve.keyframes.is_empty()
+    }
+
+    fn is_constant(&self, curve: &AnimCurve) -> bool {
+        is_constant(curve)
+    }
+
+    fn key_secs<'a>(&'a self, curve: &'a AnimCurve) -> Box<dyn Iterator<Item = f64> + 'a> {
+        Box::new(curve.keyframes.as_ref().iter().map(|key| key.time))
+    }
+}
+
+pub(crate) fn take(root: &SceneRoot, stack: &AnimStack, curves: &dyn Curves) -> Take {
     // Without the root node of ufbx.
     let mut movements = vec![Movement::Still; root.nodes.len().saturating_sub(1)];
     let mut times = Times::default();
@@ -56,14 +85,14 @@ pub(crate) fn take(root: &SceneRoot, stack: &AnimStack) -> Take {
                 continue;
             };
             for curve in prop.anim_value.curves.iter().flatten() {
-                if curve.keyframes.is_empty() {
+                if curves.is_empty(curve) {
                     continue;
                 }
-                if is_constant(curve) && !layer.weight_is_animated {
+                if curves.is_constant(curve) && !layer.weight_is_animated {
                     *movement = (*movement).max(Movement::Held);
                 } else {
                     *movement = Movement::Moves;
-                    times.add(curve);
+                    times.add(|| curves.key_secs(curve));
                 }
             }
         }
@@ -79,8 +108,8 @@ pub(crate) fn take(root: &SceneRoot, stack: &AnimStack) -> Take {
     }
 }
 
-/// Returns whether a curve is constant: equal keys with flat tangents.
-fn is_constant(curve: &AnimCurve) -> bool {
+/// Returns whether a curve with all its keys is constant: equal keys with flat tangents.
+pub(crate) fn is_constant(curve: &AnimCurve) -> bool {
     let keys = curve.keyframes.as_ref();
     let first = keys.first().map_or(0.0, |key| key.value);
     keys.iter().all(|key| key.value == first && key.left.dy == 0.0 && key.right.dy == 0.0)
@@ -119,15 +148,12 @@ struct Times {
 }
 
 impl Times {
-    fn add(&mut self, curve: &AnimCurve) {
-        let keys = curve.keyframes.as_ref();
-        let same = keys.len() == self.last.len()
-            && keys.iter().zip(&self.last).all(|(key, &time)| key.time == time);
-        if same {
+    fn add<'a>(&mut self, secs: impl Fn() -> Box<dyn Iterator<Item = f64> + 'a>) {
+        if secs().eq(self.last.iter().copied()) {
             return;
         }
         self.last.clear();
-        self.last.extend(keys.iter().map(|key| key.time));
+        self.last.extend(secs());
         self.all.extend(self.last.iter().copied().filter(|time| time.is_finite()));
         // Merging after each curve keeps the list short.
         self.all.sort_by(f64::total_cmp);

@@ -1,8 +1,8 @@
 //! Zip archives of motion files.
 //!
-//! Only motion files are unpacked, in the order of their paths. Sizes in headers are not trusted
-//! for allocation. Archives inside the archive are opened, to a depth of one. Paths are only names
-//! and never lead out of the archive.
+//! Only motion files and what they refer to are unpacked, in the order of their paths. Sizes in
+//! headers are not trusted for allocation. Archives inside the archive are opened, to a depth of
+//! one. Paths are only names and never lead out of the archive.
 
 use super::gzip::{no_memory, read_at_most};
 use super::text::name as decoded;
@@ -15,6 +15,12 @@ use std::io;
 
 /// The greatest number of motion files by default; see [`ArchiveLimits::default`].
 pub const MAX_FILES: usize = 2000;
+
+/// The endings of the images that textures are.
+const IMAGE_ENDINGS: [&str; 3] = ["png", "jpg", "jpeg"];
+
+/// The endings of files that may refer to images.
+const SCENE_ENDINGS: [&str; 2] = ["fbx", "gltf"];
 
 /// The depth to which archives inside archives are opened.
 const MAX_DEPTH: usize = 1;
@@ -50,7 +56,7 @@ pub struct ArchivedFile {
 /// The content of an archive.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct UnpackedArchive {
-    /// The motion files, sorted by path; at least one.
+    /// The motion files, at least one, and the files that they may refer to; sorted by path.
     pub files: Vec<ArchivedFile>,
     /// The files that were left out, and why: one per kind.
     pub warnings: Vec<ImportWarning>,
@@ -64,7 +70,8 @@ pub(crate) fn is_zip(bytes: &[u8]) -> bool {
 }
 
 /// Unpacks the motion files of a zip archive, those with [`MOTION_ENDINGS`], and the `.bin` of a
-/// `.gltf`, each also compressed as `.gz`.
+/// `.gltf`, each also compressed as `.gz`. Of an archive with scenes, FBX or glTF, the images are
+/// unpacked as well: they may be those of textures.
 ///
 /// A file that is damaged, encrypted or compressed in an unusual way is left out with a warning, as
 /// long as there are others.
@@ -82,13 +89,16 @@ pub fn unpack(
         left: limits.max_bytes,
         limits: *limits,
         files: Vec::new(),
+        motions: 0,
+        images: 0,
+        takes_images: false,
         tally: Tally::default(),
     };
     let archive = open(bytes).map_err(|why| ImportError::whole_file(name, why, "a zip archive"))?;
     unpacking.archive(&archive, "", 0)?;
-    let Unpacker { mut files, tally, .. } = unpacking;
+    let Unpacker { mut files, motions, tally, .. } = unpacking;
     let warnings = tally.into_warnings(b"");
-    if files.is_empty() {
+    if motions == 0 {
         let unreadable = warnings
             .iter()
             .find(|warning| matches!(warning.kind, WarningKind::UnreadableFiles { .. }));
@@ -130,6 +140,12 @@ struct Unpacker<'a> {
     left: usize,
     limits: ArchiveLimits,
     files: Vec<ArchivedFile>,
+    /// The number of motion files among them.
+    motions: usize,
+    /// The number of images among them.
+    images: usize,
+    /// Whether the present archive has scenes that may refer to images.
+    takes_images: bool,
     tally: Tally,
 }
 
@@ -154,6 +170,19 @@ impl From<io::Error> for UnpackFailure {
 
 impl Unpacker<'_> {
     fn archive(
+        &mut self,
+        archive: &ZipSliceArchive<&[u8]>,
+        folder: &str,
+        depth: usize,
+    ) -> Result<(), ImportError> {
+        let takes_images = self.takes_images || has_scene(archive);
+        let outside = std::mem::replace(&mut self.takes_images, takes_images);
+        let done = self.entries(archive, folder, depth);
+        self.takes_images = outside;
+        done
+    }
+
+    fn entries(
         &mut self,
         archive: &ZipSliceArchive<&[u8]>,
         folder: &str,
@@ -195,11 +224,14 @@ impl Unpacker<'_> {
         let is_zip = has_extension(&path, "zip");
         let packed_once_more = has_extension(&path, "gz").then(|| path.rsplit_once('.')).flatten();
         let motion = packed_once_more.map(|(inner, _)| inner).filter(|inner| is_motion(inner));
-        if !is_zip && motion.is_none() && !is_motion(&path) {
+        let is_image = self.takes_images
+            && self.images < self.limits.max_files
+            && IMAGE_ENDINGS.iter().any(|ending| has_extension(&path, ending));
+        if !is_zip && motion.is_none() && !is_motion(&path) && !is_image {
             self.tally.add(WarningKind::OtherFiles, None);
             return Ok(());
         }
-        if self.files.len() >= self.limits.max_files {
+        if self.motions >= self.limits.max_files && !is_image {
             let most = self.limits.max_files;
             self.tally.add(WarningKind::TooManyFiles { most }, None);
             return Ok(());
@@ -231,6 +263,7 @@ impl Unpacker<'_> {
             }
         }
         self.left = self.left.saturating_sub(bytes.len());
+        *(if is_image { &mut self.images } else { &mut self.motions }) += 1;
         let path = kept.to_owned();
         self.files.push(ArchivedFile { path, bytes });
         Ok(())
@@ -292,6 +325,17 @@ pub(super) fn unpack_entry(
         }
     };
     bytes?.ok_or(UnpackFailure::TooMuch)
+}
+
+/// Returns whether an archive has files that may refer to images.
+fn has_scene(archive: &ZipSliceArchive<&[u8]>) -> bool {
+    archive.entries().any(|entry| {
+        entry.is_ok_and(|entry| {
+            let path = decoded(entry.file_path().as_bytes()).0;
+            let path = path.strip_suffix(".gz").unwrap_or(&path);
+            SCENE_ENDINGS.iter().any(|ending| has_extension(path, ending))
+        })
+    })
 }
 
 fn is_motion(path: &str) -> bool {

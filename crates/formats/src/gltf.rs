@@ -23,7 +23,6 @@ pub(crate) mod characters;
 mod curve;
 mod document;
 mod humanoid;
-mod image;
 mod morph;
 pub(crate) mod node;
 pub(crate) mod rate;

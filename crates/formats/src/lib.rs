@@ -94,6 +94,7 @@ pub mod robot_csv;
 mod t_pose;
 mod takes;
 mod text;
+mod texture;
 pub mod trc;
 mod unlikely;
 mod warning;
@@ -145,6 +146,10 @@ impl Default for ImportOptions {
         }
     }
 }
+
+/// A function that returns the bytes of a file beside the one that is read, by its path as that one
+/// has it; `None` if there is no such file.
+pub type Resolve<'a> = &'a dyn Fn(&str) -> Option<Arc<[u8]>>;
 
 /// One character of a file.
 #[derive(Clone, Debug, PartialEq)]
@@ -232,7 +237,7 @@ pub fn import_with_progress(
         FileKind::SmplModel => {
             numpy::model_clip(&numpy::read_model(name, bytes, options)?, options).map(Some)
         }
-        FileKind::Fbx => fbx::read_with_progress(name, bytes, options, progress),
+        FileKind::Fbx => fbx::read_with_progress(name, bytes, &|_| None, options, progress),
         FileKind::Zip | FileKind::Gzip => {
             Err(ImportError::whole_file(name, "an archive", "one of the files in it"))
         }

@@ -264,6 +264,11 @@ pub enum WarningKind {
     UnclearQuaternions,
     /// Images of materials that cannot be read: ignored, the base colour is used.
     Textures,
+    /// Images of materials that are neither in the file nor beside it: the base colour is used.
+    MissingImage {
+        /// The name of the first of them.
+        name: String,
+    },
     /// Images of materials of which each vertex has the colour at its place.
     TextureAtVertices,
     /// Meshes with morph targets: they keep the shape that the file's weights give them.

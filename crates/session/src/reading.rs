@@ -16,8 +16,8 @@ use segue_formats::acclaim::{self, AcclaimSkeleton};
 use segue_formats::archive::{self, ArchiveLimits};
 use segue_formats::numpy::{self, SmplModel};
 use segue_formats::{
-    FileKind, ImportError, ImportOptions, ImportedClip, ImportedFile, gltf, import_with_progress,
-    kind_of, unpack_gzip,
+    FileKind, ImportError, ImportOptions, ImportedClip, ImportedFile, Resolve, fbx, gltf,
+    import_with_progress, kind_of, unpack_gzip,
 };
 use segue_motion::clip::Motion;
 use segue_motion::skeleton::Roles;
@@ -181,6 +181,18 @@ pub fn read(
     setup: &ReadSetup,
     progress: &mut dyn FnMut(usize) -> bool,
 ) -> Option<ReadReport> {
+    read_beside(name, bytes, setup, &|_| None, progress)
+}
+
+/// Reads a file as [`read`] does. `beside` returns the bytes of a file beside it, by its path from
+/// there: the buffers of a glTF file, or images of textures.
+pub fn read_beside(
+    name: &str,
+    bytes: &[u8],
+    setup: &ReadSetup,
+    beside: Resolve<'_>,
+    progress: &mut dyn FnMut(usize) -> bool,
+) -> Option<ReadReport> {
     let most = setup.options.max_bytes;
     let unpacked = match kind_of(name, bytes) {
         FileKind::Zip => archive::unpack(
@@ -205,7 +217,7 @@ pub fn read(
             let skeletons = Skeletons::of(skeleton_files, &setup.options);
             let sha256 = setup.sha256.as_deref();
             let file = SingleFile { name, bytes, kind, sha256 };
-            let file = file.read(setup, &skeletons, &|_| None, progress)?;
+            let file = file.read(setup, &skeletons, beside, progress)?;
             return Some(ReadReport { files: converted(file, setup), notes: Vec::new() });
         }
     };
@@ -245,20 +257,17 @@ fn read_several(
         .collect();
     skeleton_files.extend(setup.skeleton_files.iter().cloned());
     let skeletons = Skeletons::of(&skeleton_files, &setup.options);
-    let beside = |path: &str| {
-        let found = files.iter().find(|(name, _)| name.ends_with(path));
-        found.map(|(_, bytes)| Arc::from(bytes.as_slice()))
-    };
     let total = files.iter().map(|(_, bytes)| bytes.len()).sum::<usize>().max(1) as f64;
     let mut before = 0;
     let mut read = Vec::new();
     for (index, ((name, bytes), kind)) in files.iter().zip(kinds).enumerate() {
-        // The buffers of glTF files are not motions.
+        // Buffers and images are not motions.
         if kind == FileKind::Unknown {
             continue;
         }
         let mut scaled =
             |done: usize| progress(((before + done) as f64 / total * packed as f64) as usize);
+        let beside = |path: &str| file_beside(&files, name, path);
         let file = SingleFile { name, bytes, kind, sha256: None }.read(
             setup,
             &skeletons,
@@ -280,6 +289,23 @@ fn read_several(
         file.unpacked = files.get_mut(*index).map(|(_, bytes)| std::mem::take(bytes));
     }
     Some(ReadReport { files: read.into_iter().map(|(_, file)| file).collect(), notes })
+}
+
+/// Returns a file of an archive by its path from the folder of another: where that says, or else
+/// the first one whose path ends in it. As on the machines where scenes are made, capital and small
+/// letters are the same.
+fn file_beside(files: &[(String, Vec<u8>)], name: &str, path: &str) -> Option<Arc<[u8]>> {
+    let ends_in = |whole: &str, end: &str| {
+        let start = whole.len().checked_sub(end.len());
+        start.and_then(|start| whole.get(start..)).is_some_and(|own| own.eq_ignore_ascii_case(end))
+    };
+    let below = format!("/{path}");
+    let folder = name.rsplit_once('/').map_or("", |(folder, _)| folder);
+    let there = format!("{folder}{below}");
+    let is_there = |(name, _): &&(String, Vec<u8>)| name.eq_ignore_ascii_case(&there);
+    let found = files.iter().find(is_there);
+    let found = found.or_else(|| files.iter().find(|(name, _)| ends_in(name, &below)));
+    found.map(|(_, bytes)| Arc::from(bytes.as_slice()))
 }
 
 /// Returns the file as it is, or its clips converted where the setup asks for that. Their motions
@@ -329,7 +355,7 @@ impl SingleFile<'_> {
         &self,
         setup: &ReadSetup,
         skeletons: &Skeletons<'_>,
-        beside: &dyn Fn(&str) -> Option<Arc<[u8]>>,
+        beside: Resolve<'_>,
         progress: &mut dyn FnMut(usize) -> bool,
     ) -> Option<ReadFile> {
         let Self { name, bytes, kind, .. } = *self;
@@ -368,6 +394,12 @@ impl SingleFile<'_> {
             }
             FileKind::Gltf | FileKind::Vrm | FileKind::Vrma => {
                 gltf::read(name, bytes, beside, &setup.options).map(Some)
+            }
+            FileKind::Fbx => {
+                match fbx::read_with_progress(name, bytes, beside, &setup.options, progress) {
+                    Ok(None) => return None,
+                    other => other,
+                }
             }
             FileKind::Numpy => {
                 let models: Vec<&SmplModel> =
@@ -508,4 +540,26 @@ fn sha256_hex(bytes: &[u8]) -> String {
     let mut digest = Sha256::new();
     bytes.chunks(1 << 16).for_each(|piece| digest.update(piece));
     hex(&digest.finalize())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn file_beside_another_is_the_nearest_of_its_name() {
+        let names = ["x.zip/a/skin.png", "x.zip/b/Tex/Skin.png", "x.zip/b/skin.png", "x.zip/b.bin"];
+        let files: Vec<(String, Vec<u8>)> =
+            names.iter().map(|name| ((*name).to_owned(), name.as_bytes().to_vec())).collect();
+        let beside = |name: &str, path: &str| {
+            file_beside(&files, name, path)
+                .map(|found| String::from_utf8_lossy(&found).into_owned())
+        };
+        let found = |path: &str| beside("x.zip/b/body.fbx", path);
+        assert_eq!(found("skin.png").as_deref(), Some("x.zip/b/skin.png"));
+        assert_eq!(found("tex/skin.png").as_deref(), Some("x.zip/b/Tex/Skin.png"));
+        assert_eq!(found("b.bin").as_deref(), Some("x.zip/b.bin"));
+        assert_eq!(found("kin.png"), None);
+        assert_eq!(beside("x.zip/c/body.fbx", "skin.png").as_deref(), Some("x.zip/a/skin.png"));
+    }
 }

@@ -200,6 +200,9 @@ fn unpack_without_memory_is_refused() {
         left: 1,
         limits: ArchiveLimits::default(),
         files: Vec::new(),
+        motions: 0,
+        images: 0,
+        takes_images: false,
         tally: Tally::default(),
     };
     let damaged = io::Error::new(io::ErrorKind::InvalidData, "a bad block");
@@ -211,4 +214,28 @@ fn unpack_without_memory_is_refused() {
     assert!(refused.found.to_string().contains("memory"), "{refused}");
     let left_out = unpacking.tally.into_warnings(b"");
     assert_eq!(left_out.len(), 1, "{left_out:?}");
+}
+
+#[test]
+fn images_are_unpacked_beside_scenes_alone() {
+    let files: [(&str, &[u8]); 4] = [
+        ("body/textures/skin.PNG", b"png"),
+        ("body/walk.fbx", b"fbx"),
+        ("notes.txt", b"txt"),
+        ("inner.zip", &zip(&[("face.jpeg", b"jpeg"), ("b.bvh", b"bvh")])),
+    ];
+    let with_scene = unpack("a.zip", &zip(&files), &ArchiveLimits::default()).unwrap();
+    assert_eq!(
+        paths(&with_scene),
+        ["body/textures/skin.PNG", "body/walk.fbx", "inner.zip/b.bvh", "inner.zip/face.jpeg"]
+    );
+    assert_eq!(sentences(&with_scene), ["1 file of the archive without motion left out"]);
+    let without = unpack("a.zip", &zip(&files[3..]), &ArchiveLimits::default()).unwrap();
+    assert_eq!(paths(&without), ["inner.zip/b.bvh"]);
+    // Images do not count as motions.
+    let limits = ArchiveLimits { max_files: 1, ..ArchiveLimits::default() };
+    let limited = unpack("a.zip", &zip(&files[..2]), &limits).unwrap();
+    assert_eq!(paths(&limited), ["body/textures/skin.PNG", "body/walk.fbx"]);
+    let error = unpack("a.zip", &zip(&[("a.png", b"png")]), &ArchiveLimits::default());
+    assert!(error.unwrap_err().to_string().contains("an archive without motion files"));
 }

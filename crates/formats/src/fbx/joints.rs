@@ -5,7 +5,7 @@ use crate::ImportError;
 use crate::gltf::node::{Node, Nodes, World};
 use crate::warning::{Tally, WarningKind};
 use glam::{DMat3, DQuat, DVec3};
-use segue_fbx::{Movement, NodeKind, Scene};
+use segue_fbx::{Movement, NodeKind, OpenError, Scene, Transform};
 
 /// A skeleton of fewer bones is left out beside one of at least [`WHOLE`] bones.
 const SCRAP: usize = 3;
@@ -14,7 +14,11 @@ const WHOLE: usize = 8;
 
 /// Returns the nodes at rest: with their own translations and scales, and the rotations of the bind
 /// pose.
-pub(super) fn rest_nodes(name: &str, scene: &Scene, upright: DQuat) -> Result<Nodes, ImportError> {
+pub(super) fn rest_nodes(
+    name: &str,
+    scene: &Scene<'_>,
+    upright: DQuat,
+) -> Result<Nodes, ImportError> {
     let nodes = scene.nodes();
     let mut children = vec![Vec::new(); nodes.len()];
     for (index, node) in nodes.iter().enumerate() {
@@ -60,25 +64,27 @@ fn rotation_of(columns: [[f64; 3]; 4]) -> Option<DQuat> {
 }
 
 /// Returns for each node whether it has another transform than at rest in some take.
-pub(super) fn moving(scene: &Scene) -> Vec<bool> {
+pub(super) fn moving(scene: &Scene<'_>) -> Result<Vec<bool>, OpenError> {
+    let mut poses = scene.poses();
     let mut moves = vec![false; scene.nodes().len()];
     for (take, found) in scene.takes().iter().enumerate() {
         let start = found.span_secs.as_ref().map_or(0.0, |span| span.start);
         for (node, moves) in moves.iter_mut().enumerate() {
             *moves |= match found.movements.get(node) {
                 Some(Movement::Moves) => true,
-                Some(Movement::Held) => differs(scene, take, node, start),
+                Some(Movement::Held) => {
+                    let own = scene.nodes().get(node).map_or(Transform::IDENTITY, |own| own.local);
+                    differs(own, poses.transform(take, node, start)?)
+                }
                 _ => false,
             };
         }
     }
-    moves
+    Ok(moves)
 }
 
 /// Returns whether the transform of a node in a take differs from that outside.
-fn differs(scene: &Scene, take: usize, node: usize, secs: f64) -> bool {
-    let Some(own) = scene.nodes().get(node).map(|node| node.local) else { return false };
-    let held = scene.transform(take, node, secs);
+fn differs(own: Transform, held: Transform) -> bool {
     let vector = |v: [f64; 3]| DVec3::from_array(v);
     let size = vector(own.translation).length().max(1.0);
     let turned = DQuat::from_array(own.rotation).dot(DQuat::from_array(held.rotation)).abs();
@@ -90,7 +96,7 @@ fn differs(scene: &Scene, take: usize, node: usize, secs: f64) -> bool {
 /// Returns the sets of nodes that belong together as skeletons: all bones below a topmost bone, and
 /// the nodes of each skin.
 pub(super) fn skeletons(
-    scene: &Scene,
+    scene: &Scene<'_>,
     skins: &[Vec<usize>],
     moves: &[bool],
     tally: &mut Tally,

@@ -1,20 +1,22 @@
 //! The mesh of a character, bound to its rest pose.
 
-use crate::encoding::encoded;
+use super::texture::PaintedMesh;
 use crate::gltf::characters::Character;
 use crate::gltf::node::Nodes;
 use crate::gltf::skin::{Binding, Part, WHITE};
 use crate::warning::{Tally, WarningKind};
 use glam::{DMat3, DMat4, DVec3, Vec3};
-use segue_fbx::Mesh;
 use segue_motion::skin::SkinnedMesh;
 
 /// Returns the mesh of a character at rest, in the file's unit; `None` if it has none. Parts that
 /// cannot be read are left out with a warning.
 ///
+/// The meshes are taken if this is the last character of the file.
+///
 /// As in glTF files, vertices are moved to where the skin puts them at rest, and bound there again.
 pub(super) fn mesh(
-    meshes: &[Mesh],
+    meshes: &mut [PaintedMesh],
+    is_last: bool,
     nodes: &Nodes,
     character: &Character,
     tally: &mut Tally,
@@ -24,7 +26,8 @@ pub(super) fn mesh(
         joint_of[node] = u16::try_from(joint).ok();
     }
     let mut whole = SkinnedMesh::default();
-    for mesh in meshes {
+    for painted in meshes {
+        let mesh = &painted.mesh;
         let joints: Vec<Option<u16>> = mesh
             .clusters
             .iter()
@@ -38,37 +41,34 @@ pub(super) fn mesh(
             joints,
             is_rigid: false,
         };
-        let given = mesh.colors.iter().map(|&[r, g, b, a]| {
-            let opacity = if a.is_finite() { a.clamp(0.0, 1.0) } else { 1.0 };
-            [encoded(r), encoded(g), encoded(b), opacity]
-        });
-        let colors = given.chain(std::iter::repeat(WHITE)).take(mesh.positions.len()).collect();
+        // The last one that needs a mesh has it without a copy.
+        let PaintedMesh { mesh, colors, notes } =
+            if is_last { std::mem::take(painted) } else { painted.clone() };
         let mut part = Part {
-            positions: mesh.positions.iter().copied().map(Vec3::from_array).collect(),
-            normals: mesh.normals.iter().copied().map(Vec3::from_array).collect(),
-            triangles: mesh.triangles.clone(),
-            colors,
+            positions: mesh.positions.into_iter().map(Vec3::from_array).collect(),
+            normals: mesh.normals.into_iter().map(Vec3::from_array).collect(),
+            triangles: mesh.triangles,
+            joints: Vec::with_capacity(mesh.influences.len()),
+            weights: Vec::with_capacity(mesh.influences.len()),
             ..Part::default()
         };
-        let influences: Vec<Vec<(usize, f32)>> = mesh
-            .influences
-            .iter()
-            .map(|influences| {
-                let has_weight = influences
-                    .iter()
-                    .filter(|found| found.weight > 0.0 && found.weight.is_finite());
-                has_weight.map(|found| (found.cluster as usize, found.weight)).collect()
-            })
-            .collect();
-        match part.rest(&binding, &influences) {
-            Ok(()) => part.join(&mut whole),
+        let influences = mesh.influences.iter().map(|influences| {
+            let has_weight =
+                influences.iter().filter(|found| found.weight > 0.0 && found.weight.is_finite());
+            has_weight.map(|found| (found.cluster as usize, found.weight)).collect()
+        });
+        match part.rest(&binding, influences) {
+            Ok(()) => {
+                part.colors = colors;
+                part.join(&mut whole);
+            }
             Err(why) => {
                 tally.add(WarningKind::BrokenMesh { why }, None);
                 continue;
             }
         }
-        for _ in 0..mesh.textures {
-            tally.add(WarningKind::Textures, None);
+        for note in notes {
+            tally.add(note, None);
         }
         if mesh.has_shapes {
             tally.add(WarningKind::MorphTargets, None);

@@ -3,6 +3,7 @@
 use super::joints::{moving, rest_nodes, skeletons};
 use super::mesh::mesh;
 use super::sample::Sampler;
+use super::texture::{PaintedMesh, Textures};
 use super::timing::frames;
 use crate::gltf::characters::{Character, characters};
 use crate::gltf::node::Nodes;
@@ -13,9 +14,9 @@ use crate::measure::{Measure, measure};
 use crate::raw::{RawMotion, Y_UP_FROM_Z_UP};
 use crate::t_pose::first_frame_is_t_pose;
 use crate::warning::{Tally, WarningKind};
-use crate::{ImportError, ImportOptions, ImportedClip, ImportedFile, check_size, stem};
+use crate::{ImportError, ImportOptions, ImportedClip, ImportedFile, Resolve, check_size, stem};
 use glam::{DQuat, Quat, Vec3};
-use segue_fbx::{Mesh, Movement, OpenError, OpenOptions, Scene, is_fbx};
+use segue_fbx::{Movement, OpenError, OpenOptions, Scene, is_fbx};
 use segue_motion::clip::{Provenance, UpAxis};
 use segue_motion::skin::SkinnedMesh;
 use segue_text::{Message, ToMessage, msg};
@@ -25,6 +26,10 @@ use std::sync::Arc;
 const MEMORY_RATIO: usize = 32;
 /// The memory that the content of a file may take whatever its size, bytes.
 const MIN_MEMORY: usize = 64 << 20;
+/// The size of a file as a multiple of the memory that its keys may take at once.
+const KEY_MEMORY_SHARE: usize = 3;
+/// The memory that the keys of a file may take at once whatever its size, bytes.
+const MIN_KEY_MEMORY: usize = 4 << 20;
 /// Heights of a body with which the unit of a file is believed, metres: from a mouse to a giant.
 const BELIEVED_METRES: std::ops::Range<f64> = 0.05..20.0;
 
@@ -36,32 +41,42 @@ const BELIEVED_METRES: std::ops::Range<f64> = 0.05..20.0;
 /// `options.fps` overrides both and does not change the duration. Keys outside of the span of their
 /// take are left out.
 ///
-/// # Errors [`ImportError`] when the file is not FBX, is truncated or broken, contains neither a
+/// Images of textures are those in the file. [`read_with_progress`] also reads those beside it.
+///
+/// # Errors
+/// [`ImportError`] when the file is not FBX, is truncated or broken, contains neither a
 /// skeleton nor an animation, or needs more memory than `options.max_bytes`.
 pub fn read(
     name: &str,
     bytes: &[u8],
     options: &ImportOptions,
 ) -> Result<ImportedFile, ImportError> {
-    Ok(read_with_progress(name, bytes, options, &mut |_| true)?.unwrap_or_default())
+    Ok(read_with_progress(name, bytes, &|_| None, options, &mut |_| true)?.unwrap_or_default())
 }
 
 /// Reads an FBX file as [`read`] does, reports the bytes read so far, and stops with `None` when
 /// `progress` returns `false`.
+///
+/// `resolve` returns the bytes of a file beside this one, an image, by its path: the one in the
+/// file, with `/` between folders, and then others under which programs look for it.
 ///
 /// # Errors
 /// The same as for [`read`].
 pub fn read_with_progress(
     name: &str,
     bytes: &[u8],
+    resolve: Resolve<'_>,
     options: &ImportOptions,
     progress: &mut dyn FnMut(usize) -> bool,
 ) -> Result<Option<ImportedFile>, ImportError> {
     check_size(name, bytes, options)?;
     let most = bytes.len().saturating_mul(MEMORY_RATIO).max(MIN_MEMORY);
-    let limits =
-        OpenOptions { max_memory: most.min(options.max_bytes.saturating_mul(4)), meshes: true };
-    let scene = match Scene::open(bytes, limits, progress) {
+    let limits = OpenOptions {
+        max_memory: most.min(options.max_bytes.saturating_mul(4)),
+        meshes: true,
+        max_key_memory: (bytes.len() / KEY_MEMORY_SHARE).max(MIN_KEY_MEMORY),
+    };
+    let mut scene = match Scene::open(bytes, limits, progress) {
         Ok(scene) => scene,
         Err(OpenError::Stopped) => return Ok(None),
         // Too short for the head of a file, so that it seems cut off.
@@ -76,6 +91,15 @@ pub fn read_with_progress(
         let why = Message::word("more than two million vertices");
         tally.add(WarningKind::BrokenMesh { why }, None);
     }
+    let mut materials = meshes.iter().flat_map(|mesh| &mesh.materials);
+    if materials.all(|material| material.texture.is_none()) {
+        scene.forget_looks().map_err(|error| refusal(name, &error))?;
+    }
+    let mut textures = Textures::new(name, &scene, resolve, options.max_bytes);
+    let meshes: Vec<PaintedMesh> = meshes.into_iter().map(|mesh| textures.painted(mesh)).collect();
+    drop(textures);
+    // Images are not needed any more.
+    scene.forget_looks().map_err(|error| refusal(name, &error))?;
     for _ in 0..scene.constraints() {
         tally.add(WarningKind::Constraints, None);
     }
@@ -88,10 +112,10 @@ pub fn read_with_progress(
         UpAxis::Z => Y_UP_FROM_Z_UP.as_dquat().inverse(),
     };
     let nodes = rest_nodes(name, &scene, upright)?;
-    let moves = moving(&scene);
+    let moves = moving(&scene).map_err(|error| refusal(name, &error))?;
     let skins: Vec<Vec<usize>> = meshes
         .iter()
-        .map(|mesh| mesh.clusters.iter().map(|cluster| cluster.node).collect())
+        .map(|painted| painted.mesh.clusters.iter().map(|cluster| cluster.node).collect())
         .collect();
     let sets = skeletons(&scene, &skins, &moves, &mut tally);
     let characters = characters(&nodes, &sets, None, &moves);
@@ -107,7 +131,7 @@ pub fn read_with_progress(
         name,
         scene: &scene,
         nodes: &nodes,
-        meshes: &meshes,
+        meshes,
         options,
         upright,
         up: options.up.unwrap_or(stated_up),
@@ -116,8 +140,9 @@ pub fn read_with_progress(
         tally,
         clips: Vec::new(),
     };
-    for character in &characters {
-        let Some(()) = reader.character(character, &mut || progress(bytes.len()))? else {
+    for (index, character) in characters.iter().enumerate() {
+        let is_last = index + 1 == characters.len();
+        let Some(()) = reader.character(character, is_last, &mut || progress(bytes.len()))? else {
             return Ok(None);
         };
     }
@@ -159,9 +184,9 @@ fn refusal(name: &str, error: &OpenError) -> ImportError {
 
 struct Reader<'a> {
     name: &'a str,
-    scene: &'a Scene,
+    scene: &'a Scene<'a>,
     nodes: &'a Nodes,
-    meshes: &'a [Mesh],
+    meshes: Vec<PaintedMesh>,
     options: &'a ImportOptions,
     /// Turns the world from Y up to the file's up axis.
     upright: DQuat,
@@ -175,10 +200,12 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// Adds the clips of a character; `None` if `progress` returned `false`.
+    /// Adds the clips of a character, the last one of the file or another; `None` if `progress`
+    /// returned `false`.
     fn character(
         &mut self,
         character: &Character,
+        is_last: bool,
         progress: &mut dyn FnMut() -> bool,
     ) -> Result<Option<()>, ImportError> {
         let rest = RawMotion {
@@ -189,7 +216,7 @@ impl Reader<'_> {
         };
         let takes = self.takes(character);
         let given_fps = self.options.fps.filter(|fps| fps.is_finite() && *fps > 0.0);
-        let mut mesh = mesh(self.meshes, self.nodes, character, &mut self.tally);
+        let mut mesh = mesh(&mut self.meshes, is_last, self.nodes, character, &mut self.tally);
         // The unit is that of the whole character, found by its first motion where it has one: some
         // files have no plausible rest pose.
         let mut unit: Option<f64> = None;
@@ -206,7 +233,8 @@ impl Reader<'_> {
             self.spend(&rate, character.joints.len())?;
             let sampler =
                 Sampler { scene: self.scene, nodes: self.nodes, character, upright: self.upright };
-            let Some(raw) = sampler.motion(take, &rate, &mut self.tally, progress) else {
+            let sampled = sampler.motion(take, &rate, &mut self.tally, progress);
+            let Some(raw) = sampled.map_err(|error| refusal(self.name, &error))? else {
                 return Ok(None);
             };
             let name = if is_only { stem(self.name).to_owned() } else { take_name(&found.name) };

@@ -6,7 +6,7 @@ use crate::gltf::rate::Rate;
 use crate::raw::RawMotion;
 use crate::warning::{Tally, WarningKind};
 use glam::{DQuat, DVec3, Vec3};
-use segue_fbx::{Movement, Scene, Transform};
+use segue_fbx::{Movement, OpenError, Poses, Scene, Transform};
 use segue_motion::math::quat;
 
 /// The distance from its place at rest, as a share of the skeleton's size, up to which a joint
@@ -44,7 +44,7 @@ pub(super) fn local(transform: Transform, parent: Option<usize>, upright: DQuat)
 
 /// A character in a take.
 pub(super) struct Sampler<'a> {
-    pub(super) scene: &'a Scene,
+    pub(super) scene: &'a Scene<'a>,
     pub(super) nodes: &'a Nodes,
     pub(super) character: &'a Character,
     pub(super) upright: DQuat,
@@ -63,7 +63,8 @@ impl Sampler<'_> {
         rate: &Rate,
         tally: &mut Tally,
         progress: &mut dyn FnMut() -> bool,
-    ) -> Option<RawMotion> {
+    ) -> Result<Option<RawMotion>, OpenError> {
+        let mut poses = self.scene.poses();
         let joints = &self.character.joints;
         // Saturates; the caller has checked that there is memory for as many.
         let frames = rate.frames as usize;
@@ -73,12 +74,9 @@ impl Sampler<'_> {
             .iter()
             .map(|&node| self.nodes.all[node].world.rotation.inverse())
             .collect();
-        let held: Vec<Option<Local>> = self
-            .character
-            .nodes
-            .iter()
-            .map(|&node| self.held(take, node, rate.start_secs))
-            .collect();
+        let nodes = self.character.nodes.iter();
+        let held = nodes.map(|&node| self.held(&mut poses, take, node, rate.start_secs));
+        let held = held.collect::<Result<Vec<Option<Local>>, OpenError>>()?;
         let tolerance = FIXED * self.size();
         let mut raw = RawMotion {
             joints: joints.clone(),
@@ -87,19 +85,21 @@ impl Sampler<'_> {
             ..RawMotion::default()
         };
         let mut tracks: Vec<Option<Vec<Vec3>>> = vec![None; joints.len()];
-        let above = self.above(take, rate.start_secs);
+        let above = self.above(&mut poses, take, rate.start_secs)?;
         let mut world = vec![World::IDENTITY; joints.len()];
         let mut turned = vec![DQuat::IDENTITY; joints.len()];
         for frame in 0..frames {
             if frame % PROGRESS_FRAMES == 0 && !progress() {
-                return None;
+                return Ok(None);
             }
             let secs = rate.start_secs + frame as f64 / rate.fps;
             for (joint, &node) in self.character.nodes.iter().enumerate() {
                 let parent = joints[joint].parent;
                 let base = parent.map_or(above, |parent| world[parent]);
-                let Local { translation, rotation, scale } =
-                    held[joint].unwrap_or_else(|| self.local(take, node, secs));
+                let Local { translation, rotation, scale } = match held[joint] {
+                    Some(held) => held,
+                    None => self.local(&mut poses, take, node, secs)?,
+                };
                 let here = base.then(translation, rotation, scale);
                 if here.is_plausible() {
                     world[joint] = here;
@@ -138,22 +138,37 @@ impl Sampler<'_> {
             .enumerate()
             .filter_map(|(joint, track)| Some((joint, track?)))
             .collect();
-        Some(raw)
+        Ok(Some(raw))
     }
 
-    fn local(&self, take: usize, node: usize, secs: f64) -> Local {
+    fn local(
+        &self,
+        poses: &mut Poses<'_>,
+        take: usize,
+        node: usize,
+        secs: f64,
+    ) -> Result<Local, OpenError> {
         let parent = self.scene.nodes().get(node).and_then(|node| node.parent);
-        local(self.scene.transform(take, node, secs), parent, self.upright)
+        Ok(local(poses.transform(take, node, secs)?, parent, self.upright))
     }
 
     /// Returns the transform of a node that does not move in a take.
-    fn held(&self, take: usize, node: usize, secs: f64) -> Option<Local> {
-        let found = self.scene.takes().get(take)?.movements.get(node)?;
-        (*found != Movement::Moves).then(|| self.local(take, node, secs))
+    fn held(
+        &self,
+        poses: &mut Poses<'_>,
+        take: usize,
+        node: usize,
+        secs: f64,
+    ) -> Result<Option<Local>, OpenError> {
+        let found = self.scene.takes().get(take).and_then(|take| take.movements.get(node));
+        match found {
+            None | Some(Movement::Moves) => Ok(None),
+            Some(_) => self.local(poses, take, node, secs).map(Some),
+        }
     }
 
     /// Returns the transform of the node above the root in a take, through which nothing moves.
-    fn above(&self, take: usize, secs: f64) -> World {
+    fn above(&self, poses: &mut Poses<'_>, take: usize, secs: f64) -> Result<World, OpenError> {
         let mut path: Vec<usize> = self
             .character
             .nodes
@@ -161,9 +176,9 @@ impl Sampler<'_> {
             .map(|&root| self.nodes.upwards(root).skip(1).collect())
             .unwrap_or_default();
         path.reverse();
-        path.into_iter().fold(World::IDENTITY, |above, node| {
-            let Local { translation, rotation, scale } = self.local(take, node, secs);
-            above.then(translation, rotation, scale)
+        path.into_iter().try_fold(World::IDENTITY, |above, node| {
+            let Local { translation, rotation, scale } = self.local(poses, take, node, secs)?;
+            Ok(above.then(translation, rotation, scale))
         })
     }
 

@@ -1,8 +1,8 @@
 //! The JSON of a file and the binary buffers that it refers to.
 
 use super::humanoid::Humanoid;
-use crate::ImportError;
 use crate::text::{decode, short};
+use crate::{ImportError, Resolve};
 use base64::Engine as _;
 use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
@@ -11,10 +11,6 @@ use segue_text::{Message, msg};
 use std::borrow::Cow;
 use std::cell::Cell;
 use std::sync::Arc;
-
-/// Returns the bytes of a file beside the one that is read, by the name in its JSON; `None` if
-/// there is no such file.
-pub(super) type Resolve<'a> = &'a dyn Fn(&str) -> Option<Arc<[u8]>>;
 
 /// The extensions whose buffers have no data but in a packed form.
 const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];

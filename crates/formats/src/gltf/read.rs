@@ -12,7 +12,7 @@ use crate::measure::measure;
 use crate::raw::{RawMotion, Y_UP_FROM_Z_UP};
 use crate::t_pose::first_frame_is_t_pose;
 use crate::warning::{Tally, WarningKind};
-use crate::{ImportError, ImportOptions, ImportedClip, ImportedFile, check_size, stem};
+use crate::{ImportError, ImportOptions, ImportedClip, ImportedFile, Resolve, check_size, stem};
 use glam::{DMat3, DVec3, Quat, Vec3};
 use gltf::json::Index;
 use gltf::json::accessor::{Accessor, Type};
@@ -43,7 +43,7 @@ use std::sync::Arc;
 pub fn read(
     name: &str,
     bytes: &[u8],
-    resolve: &dyn Fn(&str) -> Option<Arc<[u8]>>,
+    resolve: Resolve<'_>,
     options: &ImportOptions,
 ) -> Result<ImportedFile, ImportError> {
     check_size(name, bytes, options)?;

@@ -6,8 +6,9 @@ use super::characters::Character;
 use super::document::Document;
 use super::morph;
 use super::node::{Node, Nodes};
-use super::texture::{Images, TextureUse, colors};
+use super::texture::colors;
 use crate::ImportError;
+use crate::texture::{Images, TextureUse};
 use crate::warning::{Tally, WarningKind};
 use glam::{DMat3, DMat4, DVec3, Vec3};
 use gltf::json::accessor::Type;
@@ -276,22 +277,21 @@ impl Part {
             joints: Vec::with_capacity(count),
             weights: Vec::with_capacity(count),
         };
-        part.rest(binding, &influences)
+        part.rest(binding, influences)
             .map_err(|found| document.error(found, "joints of the skin"))?;
         Ok(Some(part))
     }
 
     /// Moves the vertices to where the skin has them at rest, and sets the joints that move them
-    /// from there.
+    /// from there. `influences` are the joints of the skin and their weights, vertex by vertex.
     pub(crate) fn rest(
         &mut self,
         binding: &Binding,
-        influences: &[Vec<(usize, f32)>],
+        influences: impl IntoIterator<Item = Vec<(usize, f32)>>,
     ) -> Result<(), Message> {
         let has_normals = self.normals.len() == self.positions.len();
         let mut mirrored = 0usize;
-        for (vertex, influences) in influences.iter().enumerate() {
-            let mut sorted = influences.clone();
+        for (vertex, mut sorted) in influences.into_iter().enumerate() {
             sorted.sort_by(|x, y| y.1.total_cmp(&x.1));
             sorted.truncate(4);
             let mut total: f32 = sorted.iter().map(|(_, weight)| weight).sum();
@@ -348,13 +348,22 @@ impl Part {
 
     pub(crate) fn join(self, mesh: &mut SkinnedMesh) {
         let before = mesh.positions.len() as u32;
-        mesh.colors.extend(self.colors);
-        mesh.positions.extend(self.positions);
-        mesh.normals.extend(self.normals);
-        mesh.joints.extend(self.joints);
-        mesh.weights.extend(self.weights);
-        mesh.triangles
-            .extend(self.triangles.iter().map(|triangle| triangle.map(|corner| corner + before)));
+        append(&mut mesh.colors, self.colors);
+        append(&mut mesh.positions, self.positions);
+        append(&mut mesh.normals, self.normals);
+        append(&mut mesh.joints, self.joints);
+        append(&mut mesh.weights, self.weights);
+        let moved = |triangle: [u32; 3]| triangle.map(|corner| corner + before);
+        append(&mut mesh.triangles, self.triangles.into_iter().map(moved).collect());
+    }
+}
+
+/// Appends values; the first ones without a copy.
+fn append<T>(all: &mut Vec<T>, values: Vec<T>) {
+    if all.is_empty() {
+        *all = values;
+    } else {
+        all.extend(values);
     }
 }
 

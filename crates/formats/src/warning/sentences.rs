@@ -224,6 +224,9 @@ impl ToMessage for ImportWarning {
                     "imported without {count, plural, one {# texture} other {# textures}}: the plain colour is used"
                 )
             }
+            WarningKind::MissingImage { name } => msg!(
+                "imported without {count, plural, one {# texture} other {# textures}} whose image is not in the file, such as `{name}`: pack it into a zip with the file; the plain colour is used"
+            ),
             WarningKind::TextureAtVertices => msg!(
                 "{count, plural, one {# texture is} other {# textures are}} shown by the colour at each vertex"
             ),

@@ -1,8 +1,16 @@
 //! FBX documents as trees of named elements, written as text or binary.
 
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
+use std::io::Write as _;
+
 /// A value behind an element's name.
 #[derive(Clone, Debug)]
 pub(crate) enum Value {
+    /// One byte.
+    Char(u8),
     /// 32-bit integer.
     Int(i32),
     /// 64-bit integer.
@@ -13,6 +21,8 @@ pub(crate) enum Value {
     Text(String),
     /// The name of an object and its class, which text and binary files join in opposite order.
     Object(String, &'static str),
+    /// The content of a file.
+    Raw(Vec<u8>),
     /// Arrays.
     Ints(Vec<i32>),
     /// 64-bit integers.
@@ -29,6 +39,21 @@ pub(crate) struct Element {
     name: String,
     values: Vec<Value>,
     children: Vec<Element>,
+}
+
+impl Element {
+    pub(crate) fn name(&self) -> &str {
+        &self.name
+    }
+
+    pub(crate) fn children_mut(&mut self) -> &mut [Self] {
+        &mut self.children
+    }
+
+    /// Adds an element.
+    pub(crate) fn push(&mut self, child: Element) {
+        self.children.push(child);
+    }
 }
 
 /// Returns an element without others in it.
@@ -63,56 +88,85 @@ pub(crate) fn property(name: &str, kind: &str, numbers: &[f64]) -> Element {
     leaf("P", values)
 }
 
+/// The way in which a binary file is written.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Form {
+    /// 7400, with places of 32 bits, or 7500 with those of 64.
+    pub(crate) version: u32,
+    /// Whether arrays are packed by zlib.
+    pub(crate) is_packed: bool,
+}
+
 /// Writes a file of version 7400.
 pub(crate) fn binary(elements: &[Element]) -> Vec<u8> {
+    binary_in(Form { version: 7400, is_packed: false }, elements)
+}
+
+/// Writes a binary file.
+pub(crate) fn binary_in(form: Form, elements: &[Element]) -> Vec<u8> {
     let mut bytes = b"Kaydara FBX Binary  \0\x1a\0".to_vec();
-    bytes.extend(7400_u32.to_le_bytes());
+    bytes.extend(form.version.to_le_bytes());
     for element in elements {
-        write_binary(element, &mut bytes);
+        write_binary(form, element, &mut bytes);
     }
-    bytes.extend([0; 13]);
+    bytes.extend(vec![0; form.head()]);
     bytes
 }
 
-fn write_binary(element: &Element, bytes: &mut Vec<u8>) {
+impl Form {
+    fn word(self) -> usize {
+        if self.version >= 7500 { 8 } else { 4 }
+    }
+
+    /// Returns the size of an empty record.
+    fn head(self) -> usize {
+        3 * self.word() + 1
+    }
+}
+
+fn write_binary(form: Form, element: &Element, bytes: &mut Vec<u8>) {
     let start = bytes.len();
-    bytes.extend([0; 12]);
+    bytes.extend(vec![0; form.head() - 1]);
     bytes.push(element.name.len() as u8);
     bytes.extend(element.name.as_bytes());
     let values = bytes.len();
     for value in &element.values {
-        write_value(value, bytes);
+        write_value(form, value, bytes);
     }
     let length = bytes.len() - values;
     if !element.children.is_empty() {
         for child in &element.children {
-            write_binary(child, bytes);
+            write_binary(form, child, bytes);
         }
-        bytes.extend([0; 13]);
+        bytes.extend(vec![0; form.head()]);
     }
-    let head = [bytes.len(), element.values.len(), length].map(|word| (word as u32).to_le_bytes());
-    bytes[start..start + 12].copy_from_slice(head.as_flattened());
+    for (place, word) in [bytes.len(), element.values.len(), length].into_iter().enumerate() {
+        let at = start + place * form.word();
+        bytes[at..at + form.word()].copy_from_slice(&(word as u64).to_le_bytes()[..form.word()]);
+    }
 }
 
-fn write_value(value: &Value, bytes: &mut Vec<u8>) {
-    fn text(text: &[u8], bytes: &mut Vec<u8>) {
-        bytes.push(b'S');
+fn write_value(form: Form, value: &Value, bytes: &mut Vec<u8>) {
+    fn text(kind: u8, text: &[u8], bytes: &mut Vec<u8>) {
+        bytes.push(kind);
         bytes.extend((text.len() as u32).to_le_bytes());
         bytes.extend(text);
     }
-    fn array<const N: usize>(
-        kind: u8,
-        values: impl ExactSizeIterator<Item = [u8; N]>,
-        bytes: &mut Vec<u8>,
-    ) {
+    let array = |kind: u8, count: usize, values: Vec<u8>, bytes: &mut Vec<u8>| {
         bytes.push(kind);
-        // Count, no compression, size.
-        for word in [values.len() as u32, 0, (N * values.len()) as u32] {
+        let values = if form.is_packed {
+            let mut packed = ZlibEncoder::new(Vec::new(), Compression::fast());
+            packed.write_all(&values).and_then(|()| packed.finish()).expect("memory")
+        } else {
+            values
+        };
+        for word in [count as u32, u32::from(form.is_packed), values.len() as u32] {
             bytes.extend(word.to_le_bytes());
         }
-        values.for_each(|value| bytes.extend(value));
-    }
+        bytes.extend(values);
+    };
     match value {
+        Value::Char(value) => bytes.extend([b'C', *value]),
         Value::Int(value) => {
             bytes.push(b'I');
             bytes.extend(value.to_le_bytes());
@@ -125,14 +179,23 @@ fn write_value(value: &Value, bytes: &mut Vec<u8>) {
             bytes.push(b'D');
             bytes.extend(value.to_le_bytes());
         }
-        Value::Text(value) => text(value.as_bytes(), bytes),
-        Value::Object(name, class) => text(format!("{name}\0\u{1}{class}").as_bytes(), bytes),
-        Value::Ints(values) => array(b'i', values.iter().map(|value| value.to_le_bytes()), bytes),
-        Value::Longs(values) => array(b'l', values.iter().map(|value| value.to_le_bytes()), bytes),
-        Value::Singles(values) => {
-            array(b'f', values.iter().map(|value| value.to_le_bytes()), bytes);
+        Value::Text(value) => text(b'S', value.as_bytes(), bytes),
+        Value::Object(name, class) => {
+            text(b'S', format!("{name}\0\u{1}{class}").as_bytes(), bytes);
         }
-        Value::Reals(values) => array(b'd', values.iter().map(|value| value.to_le_bytes()), bytes),
+        Value::Raw(value) => text(b'R', value, bytes),
+        Value::Ints(values) => {
+            array(b'i', values.len(), values.iter().flat_map(|v| v.to_le_bytes()).collect(), bytes);
+        }
+        Value::Longs(values) => {
+            array(b'l', values.len(), values.iter().flat_map(|v| v.to_le_bytes()).collect(), bytes);
+        }
+        Value::Singles(values) => {
+            array(b'f', values.len(), values.iter().flat_map(|v| v.to_le_bytes()).collect(), bytes);
+        }
+        Value::Reals(values) => {
+            array(b'd', values.len(), values.iter().flat_map(|v| v.to_le_bytes()).collect(), bytes);
+        }
     }
 }
 
@@ -155,11 +218,13 @@ fn write_text(element: &Element, depth: usize, out: &mut String) {
         .values
         .iter()
         .map(|value| match value {
+            Value::Char(value) => char::from(*value).to_string(),
             Value::Int(value) => value.to_string(),
             Value::Long(value) => value.to_string(),
             Value::Real(value) => value.to_string(),
             Value::Text(value) => format!("\"{value}\""),
             Value::Object(name, class) => format!("\"{class}::{name}\""),
+            Value::Raw(value) => format!(",\n\"{}\"", STANDARD.encode(value)),
             Value::Ints(values) => array(each(values)),
             Value::Longs(values) => array(each(values)),
             Value::Singles(values) => array(each(values)),

@@ -49,6 +49,7 @@ fn motion(first: usize, frames: usize, speed: f64, metres: f64, seed: f64) -> Ve
                     .map(|length| length / metres)
             })
             .collect(),
+        is_mixed: false,
     };
     let turns = (0..BODY.len()).map(|joint| Track {
         node: first + joint,
@@ -61,6 +62,7 @@ fn motion(first: usize, frames: usize, speed: f64, metres: f64, seed: f64) -> Ve
                 })
             })
             .collect(),
+        is_mixed: false,
     });
     std::iter::once(walk).chain(turns).collect()
 }
@@ -93,6 +95,7 @@ pub(crate) fn namespaced() -> File {
             (1, at([0.0, 120.0, 2.0]), vec![2, 3]),
             (2, at([0.0, 155.0, 2.0]), vec![4]),
         ],
+        paint: None,
     };
     File {
         nodes,
@@ -113,6 +116,7 @@ pub(crate) fn several_takes() -> File {
         node: 0,
         property: "Lcl Translation",
         values: (0..frames).map(|frame| [5.0 + speed * f64::from(frame), 0.0, -3.0]).collect(),
+        is_mixed: false,
     };
     let mut walk = motion(1, 24, 1.0, 0.01, 0.4);
     walk.push(travel(24, 0.0));
@@ -207,5 +211,36 @@ pub(crate) fn tiny() -> File {
         track.values.truncate(2);
     }
     file.takes[0].layers[0].retain(|track| track.node < 3);
+    file
+}
+
+/// Two takes of two layers with keys of all kinds, of different numbers, and with some that have
+/// the same value everywhere: so long that a part of them may be read. The scale of one joint
+/// changes in the middle of a take, and children of it do not inherit it.
+pub(crate) fn long() -> File {
+    let mut file = several_takes();
+    let frames = [900, 700];
+    for (take, frames) in file.takes.iter_mut().zip(frames) {
+        let mut tracks = motion(1, frames, 1.0, 0.01, 0.4);
+        for (place, track) in tracks.iter_mut().enumerate() {
+            track.is_mixed = place % 3 != 0;
+            // Some begin or end in the middle of the take.
+            track.values.truncate(frames - 40 * place);
+        }
+        let level = |node: usize, is_mixed: bool| Track {
+            node,
+            property: "Lcl Translation",
+            values: vec![[1.0, 2.0, 3.0]; frames],
+            is_mixed,
+        };
+        tracks.extend([level(5, false), level(6, true)]);
+        let growth =
+            (0..frames).map(|frame| if frame / 100 == 4 { [1.0, 1.2, 0.9] } else { [1.0; 3] });
+        let growth =
+            Track { node: 4, property: "Lcl Scaling", values: growth.collect(), is_mixed: false };
+        tracks.push(growth);
+        let added = motion(1, frames, 0.0, 0.01, 1.3).into_iter().skip(3).step_by(4).collect();
+        take.layers = vec![tracks, added];
+    }
     file
 }

@@ -3,7 +3,9 @@
 
 mod document;
 mod examples;
+mod parts;
 mod rig;
+mod texture;
 
 use glam::Vec3;
 use proptest::prelude::*;
@@ -163,6 +165,7 @@ fn layer_that_is_added_is_added() {
         node: 1,
         property: "Lcl Translation",
         values: vec![[0.0, 0.0, 0.0], [0.0, 0.0, 10.0], [0.0, 0.0, 20.0]],
+        is_mixed: false,
     };
     let place = |file: &rig::File| {
         let clip = read("a.fbx", &document::binary(&file.document())).clips.remove(0).clip;
@@ -184,7 +187,7 @@ fn joint_that_grows_moves_what_hangs_on_it() {
     // A foot under a shin whose scale is animated: no rotation can say where it is.
     let mut file = examples::several_takes();
     let scales = [1.0, 1.5, 2.0].map(|scale| [scale; 3]).to_vec();
-    let growth = rig::Track { node: 5, property: "Lcl Scaling", values: scales };
+    let growth = rig::Track { node: 5, property: "Lcl Scaling", values: scales, is_mixed: false };
     file.takes = vec![rig::Take { name: "Grow".into(), layers: vec![vec![growth]] }];
     let clip = read("a.fbx", &document::binary(&file.document())).clips.remove(0).clip;
     let joints: Vec<&str> =
@@ -242,7 +245,8 @@ fn file_that_is_cut_off_anywhere_is_refused_or_read() {
 fn reading_stops_when_it_is_told_to() {
     let bytes = document::binary(&examples::several_takes().document());
     let mut calls = 0;
-    let stopped = fbx::read_with_progress("a.fbx", &bytes, &ImportOptions::default(), &mut |_| {
+    let options = ImportOptions::default();
+    let stopped = fbx::read_with_progress("a.fbx", &bytes, &|_| None, &options, &mut |_| {
         calls += 1;
         calls < 2
     });

@@ -17,6 +17,8 @@ pub(crate) struct Node {
     pub(crate) scale: Option<[f64; 3]>,
     /// Further properties of its transform, such as `PreRotation`.
     pub(crate) more: Vec<(&'static str, [f64; 3])>,
+    /// The way in which it inherits scale, 0 to 2; 1 where `None`.
+    pub(crate) inherits: Option<i32>,
     /// 0 to 5: XYZ, XZY, YZX, YXZ, ZXY, ZYX.
     pub(crate) order: i32,
 }
@@ -27,6 +29,8 @@ pub(crate) struct Track {
     pub(crate) node: usize,
     pub(crate) property: &'static str,
     pub(crate) values: Vec<[f64; 3]>,
+    /// Whether its keys have all kinds of interpolation and tangents; otherwise they are linear.
+    pub(crate) is_mixed: bool,
 }
 
 /// A take of several layers, of which the first is the base and others are added.
@@ -43,6 +47,37 @@ pub(crate) struct Skin {
     pub(crate) faces: Vec<Vec<i32>>,
     /// Node, its transform in the world when bound, and its vertices.
     pub(crate) clusters: Vec<(usize, DMat4, Vec<i32>)>,
+    /// Without it, the skin is red.
+    pub(crate) paint: Option<Paint>,
+}
+
+/// The materials of a skin.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Paint {
+    /// Sets of texture coordinates by name, with a place for each corner of each face; v points up.
+    pub(crate) sets: Vec<(&'static str, Vec<[f64; 2]>)>,
+    pub(crate) materials: Vec<Material>,
+    /// The material of each face.
+    pub(crate) of_faces: Vec<i32>,
+}
+
+/// A material.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Material {
+    pub(crate) color: [f64; 3],
+    pub(crate) factor: f64,
+    pub(crate) texture: Option<Texture>,
+}
+
+/// A texture.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Texture {
+    /// The path of its image on another machine, and the image where the file contains it.
+    pub(crate) relative_path: &'static str,
+    pub(crate) absolute_path: &'static str,
+    pub(crate) content: Vec<u8>,
+    /// Further properties.
+    pub(crate) more: Vec<Element>,
 }
 
 /// A file.
@@ -78,6 +113,8 @@ fn object(class: &str, id: i64, name: &str, kind: &'static str, more: Vec<Elemen
         "Model" => "Model",
         "Geometry" => "Geometry",
         "Material" => "Material",
+        "Texture" => "Texture",
+        "Video" => "Video",
         _ => "SubDeformer",
     };
     branch(class, vec![Value::Long(id), Value::Object(name.into(), named), text(kind)], more)
@@ -95,7 +132,7 @@ impl File {
         for (node, &own) in self.nodes.iter().zip(&nodes) {
             let mut properties = vec![
                 property("RotationActive", "bool", &[1.0]),
-                property("InheritType", "enum", &[1.0]),
+                property("InheritType", "enum", &[f64::from(node.inherits.unwrap_or(1))]),
                 property("Lcl Translation", "Lcl Translation", &node.place),
                 property("Lcl Rotation", "Lcl Rotation", &node.turn),
                 property("Lcl Scaling", "Lcl Scaling", &node.scale.unwrap_or([1.0; 3])),
@@ -212,6 +249,11 @@ impl File {
     fn keys(&self, track: &Track, axis: usize) -> Vec<Element> {
         let count = track.values.len();
         let time = |frame: usize| (frame as f64 / self.fps * TICKS as f64).round() as i64;
+        let (flags, tangents, runs) = if track.is_mixed {
+            mixed(count)
+        } else {
+            (vec![LINEAR], vec![0.0; 4], vec![count as i32])
+        };
         vec![
             leaf("Default", vec![Value::Real(0.0)]),
             leaf("KeyVer", vec![Value::Int(4008)]),
@@ -220,10 +262,9 @@ impl File {
                 "KeyValueFloat",
                 vec![Value::Singles(track.values.iter().map(|v| v[axis] as f32).collect())],
             ),
-            // Linear.
-            leaf("KeyAttrFlags", vec![Value::Ints(vec![4])]),
-            leaf("KeyAttrDataFloat", vec![Value::Singles(vec![0.0; 4])]),
-            leaf("KeyAttrRefCount", vec![Value::Ints(vec![count as i32])]),
+            leaf("KeyAttrFlags", vec![Value::Ints(flags)]),
+            leaf("KeyAttrDataFloat", vec![Value::Singles(tangents)]),
+            leaf("KeyAttrRefCount", vec![Value::Ints(runs)]),
         ]
     }
 
@@ -234,39 +275,42 @@ impl File {
         objects: &mut Vec<Element>,
         links: &mut Vec<Element>,
     ) {
-        let [model, shape, deformer, material] = [id(), id(), id(), id()];
+        let [model, shape, deformer] = [id(), id(), id()];
         let corners = skin.faces.iter().flat_map(|face| {
             // The last corner of a face is written as its complement.
             let (last, others) = face.split_last().expect("a face has corners");
             others.iter().copied().chain([!last])
         });
-        let shape_of = vec![
+        let mut shape_of = vec![
             leaf("Vertices", vec![Value::Reals(skin.vertices.as_flattened().to_vec())]),
             leaf("PolygonVertexIndex", vec![Value::Ints(corners.collect())]),
             leaf("GeometryVersion", vec![Value::Int(124)]),
         ];
-        let color = property("DiffuseColor", "Color", &[1.0, 0.25, 0.0]);
+        shape_of.extend(skin.paint.iter().flat_map(layers));
         objects.extend([
             object("Model", model, "Body", "Mesh", Vec::new()),
             object("Geometry", shape, "Body", "Mesh", shape_of),
-            object(
-                "Material",
-                material,
-                "Red",
-                "",
-                vec![
-                    leaf("ShadingModel", vec![text("lambert")]),
-                    branch("Properties70", Vec::new(), vec![color]),
-                ],
-            ),
             object("Deformer", deformer, "", "Skin", Vec::new()),
         ]);
-        links.extend([
-            link(model, 0, None),
-            link(shape, model, None),
-            link(material, model, None),
-            link(deformer, shape, None),
-        ]);
+        links.extend([link(model, 0, None), link(shape, model, None), link(deformer, shape, None)]);
+        let red = Material { color: [1.0, 0.25, 0.0], factor: 1.0, texture: None };
+        let materials = skin.paint.as_ref().map_or(vec![red], |paint| paint.materials.clone());
+        for material in &materials {
+            let own = id();
+            let properties = vec![
+                property("DiffuseColor", "Color", &material.color),
+                property("DiffuseFactor", "Number", &[material.factor]),
+            ];
+            let more = vec![
+                leaf("ShadingModel", vec![text("lambert")]),
+                branch("Properties70", Vec::new(), properties),
+            ];
+            objects.push(object("Material", own, "Paint", "", more));
+            links.push(link(own, model, None));
+            if let Some(found) = &material.texture {
+                texture(found, own, id, objects, links);
+            }
+        }
         for (node, bind, vertices) in &skin.clusters {
             let cluster = id();
             let more = vec![
@@ -280,4 +324,95 @@ impl File {
             links.push(link(nodes[*node], cluster, None));
         }
     }
+}
+
+/// The flag of keys that are linear up to the next one.
+const LINEAR: i32 = 4;
+
+/// Returns the flags and tangents of keys, and the numbers of keys that share them: all kinds, in
+/// runs of different lengths.
+fn mixed(count: usize) -> (Vec<i32>, Vec<f32>, Vec<i32>) {
+    const CUBIC: i32 = 8;
+    /// Constant, also that of the next key; splines with automatic tangents, clamped ones, given
+    /// ones, broken ones, weighted ones, and with tension, continuity and bias.
+    const KINDS: [i32; 10] = [
+        2,
+        2 | 0x100,
+        LINEAR,
+        CUBIC | 0x100,
+        CUBIC | 0x1000 | 0x100,
+        CUBIC | 0x400,
+        CUBIC | 0x400 | 0x800,
+        CUBIC | 0x400 | 0x0100_0000 | 0x0200_0000,
+        CUBIC | 0x200,
+        CUBIC,
+    ];
+    let (mut flags, mut tangents, mut runs) = (Vec::new(), Vec::new(), Vec::new());
+    let mut left = count;
+    for run in 0.. {
+        if left == 0 {
+            break;
+        }
+        let length = (1 + run % 4).min(left);
+        flags.push(KINDS[run % KINDS.len()]);
+        let slope = (run % 5) as f32 - 2.0;
+        // Weights of 0.3 and 0.4, in ten-thousandths.
+        tangents.extend([slope, 0.5 - slope, f32::from_bits(0x0FA0_0BB8), 0.0]);
+        runs.push(length as i32);
+        left -= length;
+    }
+    (flags, tangents, runs)
+}
+
+/// Returns the layers of a mesh: texture coordinates, and the materials of its faces.
+fn layers(paint: &Paint) -> Vec<Element> {
+    let layer = |kind: &str, index: usize, name: &str, mapping: &str, more: Element| {
+        let words = [
+            ("Name", name),
+            ("MappingInformationType", mapping),
+            ("ReferenceInformationType", "IndexToDirect"),
+        ];
+        let mut inner = vec![leaf("Version", vec![Value::Int(101)])];
+        inner.extend(words.map(|(own, value)| leaf(own, vec![text(value)])));
+        inner.push(more);
+        branch(kind, vec![Value::Int(index as i32)], inner)
+    };
+    let mut all = Vec::new();
+    for (index, (name, places)) in paint.sets.iter().enumerate() {
+        let values = leaf("UV", vec![Value::Reals(places.as_flattened().to_vec())]);
+        let mut set = layer("LayerElementUV", index, name, "ByPolygonVertex", values);
+        set.push(leaf("UVIndex", vec![Value::Ints((0..places.len() as i32).collect())]));
+        all.push(set);
+    }
+    let of_faces = leaf("Materials", vec![Value::Ints(paint.of_faces.clone())]);
+    all.push(layer("LayerElementMaterial", 0, "", "ByPolygon", of_faces));
+    all
+}
+
+/// Adds a texture to a material.
+fn texture(
+    texture: &Texture,
+    material: i64,
+    id: &mut dyn FnMut() -> i64,
+    objects: &mut Vec<Element>,
+    links: &mut Vec<Element>,
+) {
+    let [own, video] = [id(), id()];
+    let paths = |file: &str| {
+        vec![
+            leaf(file, vec![text(texture.absolute_path)]),
+            leaf("RelativeFilename", vec![text(texture.relative_path)]),
+        ]
+    };
+    let mut more = paths("FileName");
+    more.push(leaf("Type", vec![text("TextureVideoClip")]));
+    more.push(branch("Properties70", Vec::new(), texture.more.clone()));
+    objects.push(object("Texture", own, "Image", "", more));
+    let mut more = paths("Filename");
+    more.push(leaf("Type", vec![text("Clip")]));
+    if !texture.content.is_empty() {
+        more.push(leaf("Content", vec![Value::Raw(texture.content.clone())]));
+    }
+    objects.push(object("Video", video, "Image", "Clip", more));
+    links.extend([link(own, material, Some("DiffuseColor")), link(video, own, None)]);
 }

@@ -16,7 +16,7 @@ const MAX_PIXELS_PER_BYTE: usize = 1024;
 const MAX_SIDE: usize = 8192;
 
 /// An image of 8 bits for each channel, rows from the top.
-pub(super) struct Image {
+pub(crate) struct Image {
     pub(super) width: usize,
     pub(super) height: usize,
     /// Red, green and blue, `sRGB`-encoded.

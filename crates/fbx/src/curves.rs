@@ -1,0 +1,498 @@
+//! The curves of a binary file, found without reading the scene: their keys in the few bytes that
+//! they have in the file.
+
+use crate::records::{Array, FIRST, Form, Record, write_array};
+use flate2::{Decompress, FlushDecompress, Status};
+use std::collections::HashMap;
+use std::ops::{Deref, Range};
+use std::sync::Arc;
+
+/// The size of a key in a scene of ufbx, bytes.
+pub(crate) const KEY_BYTES: usize = size_of::<ufbx::Keyframe>();
+/// Flags of a key: the tangents of a spline decide its curve.
+const IS_CUBIC: i32 = 8;
+/// The number of keys before a time, and behind it, on which the curve at that time depends: those
+/// around it, and those around them for their tangents.
+const NEIGHBOURS: usize = 3;
+/// The record of a curve.
+const CURVE: &[u8] = b"AnimationCurve";
+/// The records with the keys of a curve.
+const TIMES: &[u8] = b"KeyTime";
+const VALUES: &[u8] = b"KeyValueFloat";
+const FLAGS: &[u8] = b"KeyAttrFlags";
+const TANGENTS: &[u8] = b"KeyAttrDataFloat";
+const RUNS: &[u8] = b"KeyAttrRefCount";
+/// The records with the curve before its first key and behind its last one.
+const EXTRAPOLATIONS: [&[u8]; 2] = [b"Pre-Extrapolation", b"Post-Extrapolation"];
+/// The size of the tangents of a run of keys, bytes.
+const TANGENT_BYTES: usize = 16;
+
+/// A file with the places of its curves.
+pub(crate) struct CurveFile<'a> {
+    pub(crate) bytes: &'a [u8],
+    pub(crate) form: Form,
+    /// The record with the objects.
+    pub(crate) objects: Record<'a>,
+    /// The place behind all records.
+    pub(crate) end: usize,
+    /// The objects that are written in another way, in the order of the file.
+    pub(crate) pieces: Vec<Piece>,
+    pub(crate) curves: Vec<Curve<'a>>,
+}
+
+/// An object that is written in another way.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Piece {
+    /// A curve, by its index.
+    Curve(Range<usize>, usize),
+    /// A part of a mesh, a material or an image, which no transform depends on.
+    Looks(Range<usize>),
+}
+
+impl Piece {
+    pub(crate) fn place(&self) -> &Range<usize> {
+        match self {
+            Self::Curve(place, _) | Self::Looks(place) => place,
+        }
+    }
+}
+
+/// Numbers, in the file or unpacked.
+enum Numbers<'a> {
+    File(&'a [u8]),
+    Own(Arc<[u8]>),
+}
+
+impl Deref for Numbers<'_> {
+    type Target = [u8];
+
+    fn deref(&self) -> &[u8] {
+        match self {
+            Self::File(bytes) => bytes,
+            Self::Own(bytes) => bytes,
+        }
+    }
+}
+
+/// A curve.
+pub(crate) struct Curve<'a> {
+    record: Record<'a>,
+    /// Its keys, if they can be taken apart.
+    keys: Option<Keys<'a>>,
+}
+
+/// The keys of a curve, in order of time.
+struct Keys<'a> {
+    count: usize,
+    /// Ticks, of 64 bits.
+    times: Numbers<'a>,
+    /// One if all are equal.
+    values: Numbers<'a>,
+    /// The size of a value: of single or double precision.
+    value_bytes: usize,
+    flags: Array<'a>,
+    tangents: Array<'a>,
+    /// For each pair of flags and tangents the number of keys that have them.
+    runs: Array<'a>,
+    /// The keys with the least and the greatest value.
+    ends: [usize; 2],
+    /// Whether all values are equal.
+    is_level: bool,
+    /// Whether tangents decide the curve.
+    is_cubic: bool,
+}
+
+/// The keys of a curve that are written.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Pick {
+    /// Those with the least and the greatest value: nodes depend on whether their scales are
+    /// constant.
+    Ends,
+    /// All.
+    All,
+    /// Those that decide the curve in a span of time, seconds, and [`Pick::Ends`].
+    Span(Range<f64>),
+}
+
+/// What is known of a curve without its tangents.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Shape {
+    /// It has no keys.
+    Empty,
+    /// It has the same value for all times.
+    Constant,
+    /// It has not.
+    Varied,
+    /// Its keys have the same value; the tangents decide.
+    Level,
+    /// Its keys cannot be taken apart, and are always written.
+    Unknown,
+}
+
+impl<'a> CurveFile<'a> {
+    /// Finds the curves of a file that has more than `most` keys; `None` for other files than
+    /// binary ones from version 7.0, for those that are broken, and where too many curves cannot be
+    /// taken apart.
+    pub(crate) fn of(bytes: &'a [u8], most: usize) -> Option<Self> {
+        let form = Form::of(bytes)?;
+        let (mut end, mut objects) = (FIRST, None);
+        while let Some(record) = form.record(bytes, end)? {
+            if record.name == b"Objects" && objects.replace(record).is_some() {
+                return None;
+            }
+            end = record.end;
+        }
+        let objects = objects?;
+        let records = form.children(bytes, &objects)?;
+        let is_curve = |record: &&Record<'_>| record.name == CURVE;
+        let counts = records.iter().filter(is_curve).map(|curve| {
+            let children = form.children(bytes, curve)?;
+            let times = children.iter().find(|child| child.name == TIMES)?;
+            Some(Array::of(times)?.count)
+        });
+        let keys = counts.flatten().fold(0, usize::saturating_add);
+        if keys <= most {
+            return None;
+        }
+        let (mut pieces, mut curves) = (Vec::new(), Vec::new());
+        let mut unpacker = Unpacker::default();
+        for record in records {
+            let place = record.at..record.end;
+            match record.name {
+                CURVE => {
+                    let read = Keys::read(bytes, form, &record, &mut unpacker);
+                    if read.is_some() {
+                        pieces.push(Piece::Curve(place, curves.len()));
+                    }
+                    curves.push(Curve { record, keys: read });
+                }
+                b"Geometry" | b"Video" | b"Texture" | b"Material" | b"Deformer" | b"Pose" => {
+                    pieces.push(Piece::Looks(place));
+                }
+                _ => {}
+            }
+        }
+        // The others are in each part.
+        let taken_apart: usize = curves.iter().map(Curve::len).sum();
+        let is_worth_it = keys.saturating_sub(taken_apart) <= most / 4;
+        is_worth_it.then_some(Self { bytes, form, objects, end, pieces, curves })
+    }
+}
+
+impl Curve<'_> {
+    pub(crate) fn shape(&self) -> Shape {
+        let Some(keys) = &self.keys else { return Shape::Unknown };
+        match keys.count {
+            0 => Shape::Empty,
+            1 => Shape::Constant,
+            _ if !keys.is_level => Shape::Varied,
+            _ if keys.is_cubic => Shape::Level,
+            _ => Shape::Constant,
+        }
+    }
+
+    /// Returns the number of keys.
+    pub(crate) fn len(&self) -> usize {
+        self.keys.as_ref().map_or(0, |keys| keys.count)
+    }
+
+    /// Returns the times of the keys, ticks.
+    pub(crate) fn ticks(&self) -> impl Iterator<Item = i64> {
+        let times = self.keys.as_ref().map(|keys| keys.times.as_chunks::<8>().0);
+        times.unwrap_or_default().iter().map(|time| i64::from_le_bytes(*time))
+    }
+
+    /// Returns whether [`Pick::Ends`] are so many keys, of which the first has this value.
+    pub(crate) fn begins_with(&self, count: usize, value: f64) -> bool {
+        let Some(keys) = &self.keys else { return true };
+        let picked = keys.picked(&Pick::Ends, 1.0);
+        let first = picked.first().map(|first| keys.value(first.start));
+        count == picked.iter().map(Range::len).sum::<usize>()
+            && first.is_none_or(|first| first == value)
+    }
+
+    /// Writes the record with a part of its keys. `at` is the place of `out`'s first byte, and
+    /// `ticks_per_sec` the unit of times.
+    pub(crate) fn write(
+        &self,
+        file: &CurveFile<'_>,
+        out: &mut Vec<u8>,
+        at: u64,
+        pick: &Pick,
+        ticks_per_sec: f64,
+    ) -> Option<()> {
+        let form = file.form;
+        let children = form.children(file.bytes, &self.record)?;
+        let parts = self.keys.as_ref()?.parts(pick, ticks_per_sec)?;
+        let start = out.len();
+        let head = |out: &mut Vec<u8>, end: u64| {
+            let Record { count, values, name, .. } = self.record;
+            form.write_head(out, end, count, values.len(), name);
+        };
+        head(out, 0);
+        out.extend(self.record.values);
+        for child in children {
+            let part = parts.iter().find(|part| part.name == child.name);
+            let values = part.map_or(child.values, |part| &part.array);
+            let size = form.head() + child.name.len() + values.len();
+            // Extrapolations: those of a constant value, the default.
+            if child.inside < child.end {
+                continue;
+            }
+            let end = at + (out.len() + size) as u64;
+            form.write_head(out, end, child.count, values.len(), child.name);
+            out.extend(values);
+        }
+        out.extend(std::iter::repeat_n(0, form.head()));
+        let end = at + out.len() as u64;
+        let mut again = Vec::new();
+        head(&mut again, end);
+        out.get_mut(start..start + again.len())?.copy_from_slice(&again);
+        Some(())
+    }
+}
+
+/// An array of the record that is written.
+struct Part {
+    name: &'static [u8],
+    array: Vec<u8>,
+}
+
+impl<'a> Keys<'a> {
+    /// Reads the keys of a curve; `None` where a part of them would not give the curve between
+    /// them, or something is not as expected.
+    fn read(
+        bytes: &'a [u8],
+        form: Form,
+        record: &Record<'a>,
+        unpacker: &mut Unpacker<'a>,
+    ) -> Option<Self> {
+        let children = form.children(bytes, record)?;
+        let array = |name: &[u8], kinds: &[u8]| {
+            let mut named = children.iter().filter(|child| child.name == name);
+            let array = Array::of(named.next()?)?;
+            (named.next().is_none() && kinds.contains(&array.kind)).then_some(array)
+        };
+        let mut nested = children.iter().filter(|child| child.inside < child.end);
+        if !nested
+            .all(|child| EXTRAPOLATIONS.contains(&child.name) && is_constant(bytes, form, child))
+        {
+            return None;
+        }
+        let (times, values) = (array(TIMES, b"l")?, array(VALUES, b"fd")?);
+        let (flags, tangents) = (array(FLAGS, b"i")?, array(TANGENTS, b"fi")?);
+        let runs = array(RUNS, b"i")?;
+        let count = times.count;
+        let is_even =
+            values.count == count && flags.count == runs.count && tangents.count == 4 * runs.count;
+        if !is_even {
+            return None;
+        }
+        let mut left = count;
+        for run in integers(&unpacked(&runs, size_of::<i32>())?) {
+            left = left.saturating_sub(usize::try_from(run).ok().filter(|run| *run > 0)?);
+        }
+        let value_bytes = if values.kind == b'f' { 4 } else { 8 };
+        let is_cubic = integers(&unpacked(&flags, size_of::<i32>())?).any(|f| f & IS_CUBIC != 0);
+        let mut keys = Self {
+            count,
+            times: unpacker.times(&times)?,
+            values: Unpacker::numbers(&values, value_bytes)?,
+            value_bytes,
+            flags,
+            tangents,
+            runs,
+            ends: [0; 2],
+            is_level: true,
+            is_cubic,
+        };
+        if left > 0 || !(1..count).all(|key| keys.time(key - 1) <= keys.time(key)) {
+            return None;
+        }
+        let first = if count > 0 { keys.value(0) } else { 0.0 };
+        let [mut least, mut greatest] = [first; 2];
+        for key in 0..count {
+            let value = keys.value(key);
+            if !value.is_finite() {
+                return None;
+            }
+            keys.is_level &= value == first;
+            if value < least {
+                (least, keys.ends[0]) = (value, key);
+            }
+            if value > greatest {
+                (greatest, keys.ends[1]) = (value, key);
+            }
+        }
+        if keys.is_level {
+            // One stands for all.
+            let one = keys.values.get(..value_bytes.min(keys.values.len()))?;
+            keys.values = Numbers::Own(one.into());
+        }
+        Some(keys)
+    }
+
+    /// Returns the time of a key, ticks.
+    fn time(&self, key: usize) -> i64 {
+        let time = self.times.as_chunks::<8>().0.get(key);
+        time.map_or(0, |time| i64::from_le_bytes(*time))
+    }
+
+    fn value(&self, key: usize) -> f64 {
+        let key = if self.values.len() == self.value_bytes { 0 } else { key };
+        if self.value_bytes == 4 {
+            let value = self.values.as_chunks::<4>().0.get(key);
+            value.map_or(0.0, |value| f32::from_le_bytes(*value).into())
+        } else {
+            let value = self.values.as_chunks::<8>().0.get(key);
+            value.map_or(0.0, |value| f64::from_le_bytes(*value))
+        }
+    }
+
+    /// Returns the number of keys up to a time, seconds.
+    fn until(&self, secs: f64, ticks_per_sec: f64) -> usize {
+        let (mut from, mut to) = (0, self.count);
+        while from < to {
+            let middle = usize::midpoint(from, to);
+            if self.time(middle) as f64 / ticks_per_sec <= secs {
+                from = middle + 1;
+            } else {
+                to = middle;
+            }
+        }
+        from
+    }
+
+    /// Returns the keys that are written, in order and without overlaps.
+    fn picked(&self, pick: &Pick, ticks_per_sec: f64) -> Vec<Range<usize>> {
+        let span = match pick {
+            Pick::All => 0..self.count,
+            Pick::Ends => 0..0,
+            Pick::Span(span) => {
+                let first = self.until(span.start, ticks_per_sec).saturating_sub(NEIGHBOURS);
+                let last = self.until(span.end, ticks_per_sec) + NEIGHBOURS;
+                first..last.min(self.count)
+            }
+        };
+        let mut picked = vec![span.clone()];
+        picked.extend(self.ends.map(|end| end..end + 1));
+        picked.retain(|range| !range.is_empty() && range.end <= self.count);
+        picked.retain(|range| *range == span || !span.contains(&range.start));
+        picked.sort_by_key(|range| range.start);
+        picked.dedup();
+        picked
+    }
+
+    /// Returns the arrays with a part of the keys.
+    fn parts(&self, pick: &Pick, ticks_per_sec: f64) -> Option<Vec<Part>> {
+        let picked = self.picked(pick, ticks_per_sec);
+        let part = |name: &'static [u8], kind: u8, count: usize, bytes: &[u8]| {
+            let mut array = Vec::with_capacity(bytes.len() + 16);
+            write_array(&mut array, kind, count, bytes);
+            Part { name, array }
+        };
+        let keys: usize = picked.iter().map(Range::len).sum();
+        let of = |bytes: &[u8], size: usize| {
+            let mut all = Vec::with_capacity(keys * size);
+            for range in &picked {
+                all.extend_from_slice(bytes.get(range.start * size..range.end * size)?);
+            }
+            Some(all)
+        };
+        let times = of(&self.times, 8)?;
+        let values = if self.values.len() == self.value_bytes {
+            self.values.repeat(keys)
+        } else {
+            of(&self.values, self.value_bytes)?
+        };
+        let all_flags = unpacked(&self.flags, size_of::<i32>())?;
+        let all_tangents = unpacked(&self.tangents, size_of::<f32>())?;
+        let all_runs = unpacked(&self.runs, size_of::<i32>())?;
+        let (mut flags, mut tangents, mut runs) = (Vec::new(), Vec::new(), Vec::new());
+        let mut ranges = picked.iter().cloned().peekable();
+        let mut start = 0;
+        for ((run, flag), tangent) in integers(&all_runs)
+            .zip(all_flags.as_chunks::<4>().0)
+            .zip(all_tangents.as_chunks::<TANGENT_BYTES>().0)
+        {
+            let end = start + usize::try_from(run).ok()?;
+            // The keys of this run.
+            let mut count = 0;
+            while let Some(range) = ranges.peek() {
+                count += range.end.min(end).saturating_sub(range.start.max(start));
+                if range.end > end {
+                    break;
+                }
+                ranges.next();
+            }
+            if count > 0 {
+                flags.extend(flag);
+                tangents.extend(tangent);
+                runs.extend((count as i32).to_le_bytes());
+            }
+            start = end;
+        }
+        let count = runs.len() / size_of::<i32>();
+        Some(vec![
+            part(TIMES, b'l', keys, &times),
+            part(VALUES, if self.value_bytes == 4 { b'f' } else { b'd' }, keys, &values),
+            part(FLAGS, b'i', count, &flags),
+            part(TANGENTS, self.tangents.kind, 4 * count, &tangents),
+            part(RUNS, b'i', count, &runs),
+        ])
+    }
+}
+
+/// Returns whether an extrapolation is that of a constant value.
+fn is_constant(bytes: &[u8], form: Form, record: &Record<'_>) -> bool {
+    let Some(children) = form.children(bytes, record) else { return false };
+    let kind = children.iter().find(|child| child.name == b"Type").map(|child| child.values);
+    matches!(kind, None | Some([b'C', b'C'] | [b'I', b'C', 0, 0, 0]))
+}
+
+/// Returns 32-bit integers.
+fn integers(bytes: &[u8]) -> impl Iterator<Item = i32> {
+    bytes.as_chunks::<4>().0.iter().map(|value| i32::from_le_bytes(*value))
+}
+
+/// Returns the bytes of an array of numbers of `size` bytes.
+fn unpacked<'a>(array: &Array<'a>, size: usize) -> Option<Numbers<'a>> {
+    Unpacker::numbers(array, size)
+}
+
+/// Unpacks arrays.
+#[derive(Default)]
+struct Unpacker<'a> {
+    /// The times so far by their packed bytes: most curves share theirs.
+    times: HashMap<&'a [u8], Arc<[u8]>>,
+}
+
+impl<'a> Unpacker<'a> {
+    fn times(&mut self, array: &Array<'a>) -> Option<Numbers<'a>> {
+        if let Some(times) = self.times.get(array.bytes).filter(|_| array.is_packed) {
+            return (times.len() == 8 * array.count).then(|| Numbers::Own(Arc::clone(times)));
+        }
+        let times = Self::numbers(array, 8)?;
+        if let Numbers::Own(own) = &times {
+            self.times.insert(array.bytes, Arc::clone(own));
+        }
+        Some(times)
+    }
+
+    fn numbers(array: &Array<'a>, size: usize) -> Option<Numbers<'a>> {
+        /// The most that zlib packs into one byte, bytes.
+        const MAX_RATIO: usize = 1032;
+        let length = array.count.checked_mul(size)?;
+        if !array.is_packed {
+            return (array.bytes.len() == length).then_some(Numbers::File(array.bytes));
+        }
+        if length > array.bytes.len().saturating_mul(MAX_RATIO) {
+            return None;
+        }
+        let mut bytes = vec![0; length];
+        let mut stream = Decompress::new(true);
+        let status = stream.decompress(array.bytes, &mut bytes, FlushDecompress::Finish).ok()?;
+        let is_whole = status == Status::StreamEnd && stream.total_out() == length as u64;
+        is_whole.then(|| Numbers::Own(bytes.into()))
+    }
+}
