@@ -7,8 +7,15 @@ use segue_formats::{FileKind, ImportOptions, kind_of};
 use segue_session::reading::{ReadReport, ReadSetup, SkeletonFile, read_beside};
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::{self, Read as _, Seek as _, SeekFrom};
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
+
+/// Files from this size on are read on all cores, bytes.
+const LARGE_BYTES: u64 = 1 << 20;
+
+/// What a core reads at once of a large file, bytes.
+const PART_BYTES: usize = 1 << 18;
 
 /// A file that was read, or the reason why it was not.
 pub type Read = Result<ReadReport, FileError>;
@@ -73,10 +80,23 @@ impl Reader {
     /// Reads a file whose bytes are known.
     #[must_use]
     pub fn read_bytes(&self, input: &Input, bytes: &[u8]) -> ReadReport {
+        self.read_hashed(input, bytes, None)
+    }
+
+    /// Reads a file whose bytes are known, but not its SHA-256, which is left empty: for a large
+    /// file, it takes as long as reading. Files of archives have theirs, and so have skeletons.
+    #[must_use]
+    pub fn read_unhashed(&self, input: &Input, bytes: &[u8]) -> ReadReport {
+        let is_skeleton = kind_of(&input.name, bytes).is_skeleton();
+        self.read_hashed(input, bytes, (!is_skeleton).then(String::new))
+    }
+
+    fn read_hashed(&self, input: &Input, bytes: &[u8], sha256: Option<String>) -> ReadReport {
         let beside = self.beside.get(folder_of(input)).into_iter().flatten();
         let setup = ReadSetup {
             options: self.options,
             skeleton_files: self.named.iter().chain(beside).cloned().collect(),
+            sha256,
             ..ReadSetup::default()
         };
         let beside = |path: &str| file_beside(folder_of(input), path, self.options.max_bytes);
@@ -129,7 +149,29 @@ pub fn bytes_of(path: &Path, max_bytes: usize) -> Result<Vec<u8>, FileError> {
         return Err(FileError::TooLarge { name: shown(path), bytes: *size, max_bytes });
     }
     let failed = |error| FileError::System { name: shown(path), path: path.to_owned(), error };
-    fs::read(path).map_err(failed)
+    match size {
+        // On a thread of the pool, this file is one of many.
+        Ok(size) if size >= LARGE_BYTES && rayon::current_thread_index().is_none() => {
+            in_parts(path, size as usize)
+        }
+        _ => fs::read(path),
+    }
+    .map_err(failed)
+}
+
+/// Returns the bytes of a file of a known size. All cores read: most of the time goes into handing
+/// out memory.
+fn in_parts(path: &Path, size: usize) -> io::Result<Vec<u8>> {
+    let mut bytes = vec![0; size];
+    bytes.par_chunks_mut(PART_BYTES).enumerate().try_for_each_init(
+        || fs::File::open(path),
+        |file, (index, part)| {
+            let file = file.as_mut().map_err(|error| io::Error::from(error.kind()))?;
+            file.seek(SeekFrom::Start((index * PART_BYTES) as u64))?;
+            file.read_exact(part)
+        },
+    )?;
+    Ok(bytes)
 }
 
 /// Reads a skeleton that was named.

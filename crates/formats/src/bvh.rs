@@ -17,7 +17,10 @@ mod hierarchy;
 mod lexer;
 mod motion;
 mod number;
+#[cfg(feature = "parallel")]
+mod parallel;
 mod read;
+mod row_sink;
 mod turns;
 mod write;
 

@@ -44,6 +44,13 @@ impl WildAngles {
             self.degrees = self.degrees.max(degrees);
         }
     }
+
+    /// Adds the rows of a part.
+    #[cfg(feature = "parallel")]
+    pub(super) fn add(&mut self, part: Self) {
+        self.rows += part.rows;
+        self.degrees = self.degrees.max(part.degrees);
+    }
 }
 
 /// An error converting a motion to a clip. The readers rule out both cases.
@@ -73,14 +80,18 @@ impl RawMotion {
         for track in self.translations_mut() {
             taken = taken.and_then(|()| track.try_reserve_exact(frames));
         }
-        taken.map_err(|_| {
-            let found = msg!(
-                "a motion for which there is no memory after {frames} frames",
-                frames = self.frames()
-            );
-            Fault::new(0, found, "a motion that fits into memory")
-                .with_hint("cut the motion into parts")
-        })
+        taken.map_err(|_| no_memory(self.frames()))
+    }
+
+    /// Makes the motion `frames` frames long. Those that are new are all zeros.
+    #[cfg(feature = "parallel")]
+    pub(super) fn lengthen(&mut self, frames: usize) -> Result<(), Fault> {
+        let (before, joints) = (self.frames(), self.joints.len());
+        let mut taken = lengthen(&mut self.rotations, frames.saturating_mul(joints));
+        for track in self.translations_mut() {
+            taken = taken.and_then(|()| lengthen(track, frames));
+        }
+        taken.ok_or_else(|| no_memory(before))
     }
 
     /// Returns the local rotations of a frame; empty if there is no such frame.
@@ -208,6 +219,28 @@ impl RawMotion {
         let clip = Clip::new(name, skeleton, fps, self.rotations, self.root_translations)?;
         Ok(clip.with_translations(tracks)?.with_provenance(provenance))
     }
+}
+
+fn no_memory(frames: usize) -> Fault {
+    let found = msg!("a motion for which there is no memory after {frames} frames", frames);
+    Fault::new(0, found, "a motion that fits into memory").with_hint("cut the motion into parts")
+}
+
+/// Appends zeros up to a length; `None` if there is no memory for them.
+#[cfg(feature = "parallel")]
+fn lengthen<T: bytemuck::Pod>(values: &mut Vec<T>, length: usize) -> Option<()> {
+    let before = values.len();
+    if before > length / 2 {
+        values.try_reserve_exact(length.saturating_sub(before)).ok()?;
+        values.resize(length, T::zeroed());
+        return Some(());
+    }
+    // Memory that the system hands out is zero, and is handed out where it is first written: by all
+    // cores.
+    let mut longer = bytemuck::allocation::try_zeroed_vec(length).ok()?;
+    longer.get_mut(..before)?.copy_from_slice(values);
+    *values = longer;
+    Some(())
 }
 
 /// Rotates a vector by -90° about X: +Z becomes +Y, and -Y, which a Z-up character faces by

@@ -534,8 +534,9 @@ impl ReadClip {
     }
 }
 
-/// Returns the SHA-256 in lower-case hexadecimal.
-fn sha256_hex(bytes: &[u8]) -> String {
+/// Returns the SHA-256 of some bytes in lower-case hexadecimal.
+#[must_use]
+pub fn sha256_hex(bytes: &[u8]) -> String {
     // In pieces, because browsers optimise a function only between calls.
     let mut digest = Sha256::new();
     bytes.chunks(1 << 16).for_each(|piece| digest.update(piece));

@@ -1,7 +1,10 @@
 //! Conversion of rows of channels to rotations and translations, one row at a time.
 
+#[cfg(feature = "parallel")]
+mod parts;
+
 use super::hierarchy::{Column, Hierarchy};
-use super::motion::RowSink;
+use super::row_sink::RowSink;
 use super::turns::Turns;
 use crate::error::Fault;
 use crate::raw::RawMotion;
@@ -9,6 +12,8 @@ use glam::{Quat, Vec3};
 use segue_motion::skeleton::{Channel, Joint};
 use segue_text::msg;
 use std::ops::Range;
+#[cfg(feature = "parallel")]
+use {super::row_sink::KeptPart, parts::ConverterPart, parts::PartBuffers};
 
 /// The greatest ratio of memory of a motion to bytes of the file. A joint with a single channel of
 /// single digits takes 8; only files in which most joints have no channel at all, and malicious
@@ -46,7 +51,26 @@ struct Character {
     /// The position of the root, then that of each joint that has a track, in the order of the
     /// tracks.
     places: Vec<[Source; 3]>,
+    /// With the feature `parallel`, it is as long as the memory that is reserved.
     raw: RawMotion,
+    /// The buffers of parts that are read at the same time.
+    #[cfg(feature = "parallel")]
+    buffers: Vec<PartBuffers>,
+}
+
+#[cfg(not(feature = "parallel"))]
+impl Character {
+    /// Appends a row.
+    fn put(&mut self, _index: usize, values: &[f64]) {
+        let raw = &mut self.raw;
+        if self.turns.rotations_into(values, &mut raw.rotations) {
+            // A position may be as large: only the angles of the row count.
+            raw.wild_angles.add_row(self.turns.largest(values));
+        }
+        for (track, place) in raw.translations_mut().zip(&self.places) {
+            track.push(position(place, values));
+        }
+    }
 }
 
 /// The collection of rows as rotations.
@@ -93,6 +117,8 @@ impl Converter {
                 turns: Turns::new(&turns[start..end]),
                 places: Vec::new(),
                 raw: RawMotion::default(),
+                #[cfg(feature = "parallel")]
+                buffers: Vec::new(),
             };
             for index in start..end {
                 let joint = &tree.joints[index];
@@ -138,11 +164,27 @@ impl Converter {
         let fits = self.limit / self.bytes_per_row.max(1) / 4;
         let rows = (expected as u64).min(fits) as usize;
         let rows = rows.max(self.rows / 8).max(FIRST_ROWS.min(fits as usize)).max(1);
-        for character in &mut self.characters {
-            character.raw.reserve(rows)?;
-        }
         self.room += rows;
+        for character in &mut self.characters {
+            #[cfg(not(feature = "parallel"))]
+            character.raw.reserve(rows)?;
+            #[cfg(feature = "parallel")]
+            character.raw.lengthen(self.room)?;
+        }
         Ok(())
+    }
+
+    /// Checks that so many more rows are within the limit.
+    fn check_size(&self, rows: usize) -> Result<(), Fault> {
+        if ((self.rows + rows) as u64).saturating_mul(self.bytes_per_row) <= self.limit {
+            return Ok(());
+        }
+        let found = msg!(
+            "a motion of more than {mb} MB, most of it in joints without channels",
+            mb = self.limit >> 20
+        );
+        Err(Fault::new(0, found, "a motion that fits into memory")
+            .with_hint("export fewer frames or fewer joints"))
     }
 
     /// Returns the initial values of channels: positions are the OFFSET, rotations 0.
@@ -159,43 +201,68 @@ impl Converter {
     /// Returns one motion for each ROOT, in file units and file axes.
     pub(super) fn finish(mut self) -> Vec<RawMotion> {
         for character in &mut self.characters {
-            character.raw.rotations.shrink_to_fit();
-            character.raw.translations_mut().for_each(Vec::shrink_to_fit);
+            let raw = &mut character.raw;
+            raw.rotations.truncate(self.rows * raw.joints.len());
+            raw.rotations.shrink_to_fit();
+            raw.translations_mut().for_each(|track| {
+                track.truncate(self.rows);
+                track.shrink_to_fit();
+            });
         }
         self.characters.into_iter().map(|character| character.raw).collect()
     }
 }
 
 impl RowSink for Converter {
+    #[cfg(feature = "parallel")]
+    type Part<'p> = ConverterPart<'p>;
+
     fn row(&mut self, values: &[f64], end: usize) -> Result<(), Fault> {
-        if (self.rows as u64 + 1).saturating_mul(self.bytes_per_row) > self.limit {
-            let found = msg!(
-                "a motion of more than {mb} MB, most of it in joints without channels",
-                mb = self.limit >> 20
-            );
-            return Err(Fault::new(0, found, "a motion that fits into memory")
-                .with_hint("export fewer frames or fewer joints"));
-        }
+        self.check_size(1)?;
         if self.rows == self.room {
             self.make_room(end)?;
         }
-        self.rows += 1;
-        let value = |column: usize| values.get(column).copied().unwrap_or_default();
         for character in &mut self.characters {
-            let raw = &mut character.raw;
-            if character.turns.rotations_into(values, &mut raw.rotations) {
-                // A position may be as large: only the angles of the row count.
-                raw.wild_angles.add_row(character.turns.largest(values));
-            }
-            for (track, place) in raw.translations_mut().zip(&character.places) {
-                track.push(vec3(place.map(|source| match source {
-                    Source::Column(column) => value(column),
-                    Source::Offset(value) => value,
-                })));
-            }
+            character.put(self.rows, values);
         }
+        self.rows += 1;
         Ok(())
     }
+
+    #[cfg(feature = "parallel")]
+    fn parts(&mut self, most: &[usize], end: usize) -> Option<Vec<ConverterPart<'_>>> {
+        let rows = most.iter().sum();
+        self.check_size(rows).ok()?;
+        if self.rows == self.room {
+            self.make_room(end).ok()?;
+        }
+        if self.rows + rows > self.room {
+            return None;
+        }
+        let mut parts: Vec<ConverterPart<'_>> =
+            most.iter().map(|_| ConverterPart { characters: Vec::new() }).collect();
+        for character in &mut self.characters {
+            let own = character.parts(self.rows, most)?;
+            parts.iter_mut().zip(own).for_each(|(part, own)| part.characters.push(own));
+        }
+        Some(parts)
+    }
+
+    #[cfg(feature = "parallel")]
+    fn keep(&mut self, parts: &[KeptPart]) {
+        for character in &mut self.characters {
+            character.keep(self.rows, parts);
+        }
+        self.rows += parts.iter().map(|part| part.rows).sum::<usize>();
+    }
+}
+
+/// Returns a position of a row.
+fn position(place: &[Source; 3], values: &[f64]) -> Vec3 {
+    vec3(place.map(|source| match source {
+        Source::Column(column) => values.get(column).copied().unwrap_or_default(),
+        Source::Offset(value) => value,
+    }))
 }
 
 fn vec3(v: [f64; 3]) -> Vec3 {

@@ -1,8 +1,11 @@
 //! Parsing of the rows of the MOTION section: one pass over the bytes, one row in memory.
 
+#[cfg(feature = "parallel")]
+use super::convert::FIRST_ROWS;
 use super::decimal::{Lines, MAX_MAGNITUDE};
 use super::lexer::{Lexer, Stop};
 use super::number::{Scan, scan};
+use super::row_sink::RowSink;
 use crate::error::Fault;
 use crate::text::is_space;
 use crate::warning::WarningKind;
@@ -10,12 +13,6 @@ use segue_text::msg;
 
 /// Bytes between two reports of progress.
 const PROGRESS_STEP: usize = 1 << 18;
-
-/// A receiver of complete rows.
-pub(super) trait RowSink {
-    /// Takes one row, which ends at `end`; an error says why no more rows can be taken.
-    fn row(&mut self, values: &[f64], end: usize) -> Result<(), Fault>;
-}
 
 /// A callback with the number of bytes read so far; it returns `false` to stop.
 pub(super) type Progress<'a> = &'a mut dyn FnMut(usize) -> bool;
@@ -47,6 +44,8 @@ pub(super) fn rows(
         row: first_row,
         reported: lexer.at,
         lines: Lines::default(),
+        #[cfg(feature = "parallel")]
+        rounds: super::parallel::Rounds::default(),
         lexer,
     };
     reader.lexer.skip_blank();
@@ -79,6 +78,8 @@ struct Rows<'l, 'a> {
     first_not_finite: usize,
     reported: usize,
     lines: Lines,
+    #[cfg(feature = "parallel")]
+    rounds: super::parallel::Rounds,
 }
 
 impl Rows<'_, '_> {
@@ -92,6 +93,10 @@ impl Rows<'_, '_> {
         let width = self.row.len();
         let mut count = 0;
         loop {
+            #[cfg(feature = "parallel")]
+            {
+                count += self.rounds(count, sink, progress)?;
+            }
             self.lexer.skip_blank();
             let start = self.lexer.at;
             if start >= self.lexer.text.len() {
@@ -153,6 +158,35 @@ impl Rows<'_, '_> {
             }
             return Ok(count);
         }
+    }
+
+    /// Reads plain rows on all cores, as far as that goes, after the `count` rows before. Returns
+    /// their number.
+    #[cfg(feature = "parallel")]
+    fn rounds(
+        &mut self,
+        count: usize,
+        sink: &mut impl RowSink,
+        progress: Progress<'_>,
+    ) -> Result<usize, Stop> {
+        let mut rows = 0;
+        // The first rows show how much memory all of them need.
+        let mut goes_on = count >= FIRST_ROWS && !self.lexer.commas;
+        while goes_on {
+            let Self { rounds, lexer, row, .. } = self;
+            let Some(found) = rounds.read(lexer.text, lexer.at, row, sink) else { break };
+            lexer.at = found.end;
+            self.values += (found.rows * self.row.len()) as u64;
+            rows += found.rows;
+            goes_on = found.is_complete;
+            while self.lexer.at - self.reported >= PROGRESS_STEP {
+                self.reported += PROGRESS_STEP;
+                if !progress(self.reported) {
+                    return Err(Stop::Cancelled);
+                }
+            }
+        }
+        Ok(rows)
     }
 
     fn truncated(&mut self, at: usize, found: usize) {
@@ -332,25 +366,16 @@ fn count_numbers(line: &[u8]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[derive(Default)]
-    struct Kept(Vec<Vec<f64>>);
-
-    impl RowSink for Kept {
-        fn row(&mut self, values: &[f64], _end: usize) -> Result<(), Fault> {
-            self.0.push(values.to_vec());
-            Ok(())
-        }
-    }
+    use crate::bvh::row_sink::Kept;
 
     fn read(text: &str, width: usize) -> Result<(Vec<Vec<f64>>, Vec<String>), Stop> {
         let mut lexer = Lexer::new(text.as_bytes(), false);
         let mut kept = Kept::default();
         let count = rows(&mut lexer, vec![0.0; width], &mut kept, &mut |_| true)?;
-        assert_eq!(count, kept.0.len());
+        assert_eq!(count, kept.rows.len());
         let warnings =
             lexer.tally.into_warnings(text.as_bytes()).iter().map(ToString::to_string).collect();
-        Ok((kept.0, warnings))
+        Ok((kept.rows, warnings))
     }
 
     fn fault(text: &str, width: usize) -> Fault {

@@ -6,7 +6,42 @@ use glam::{Mat4, Quat, Vec4};
 /// The number of joints that are computed at once: the lanes of [`Vec4`].
 const LANES: usize = 4;
 
+/// A receiver of the rotations of a row, joint by joint.
+pub(super) trait Rotations {
+    /// Takes those of four joints.
+    fn four(&mut self, four: [Quat; LANES]);
+
+    /// Takes the first `count` of four.
+    fn fewer(&mut self, four: [Quat; LANES], count: usize);
+}
+
+impl Rotations for Vec<Quat> {
+    fn four(&mut self, four: [Quat; LANES]) {
+        self.extend_from_slice(&four);
+    }
+
+    fn fewer(&mut self, four: [Quat; LANES], count: usize) {
+        self.extend(four.into_iter().take(count));
+    }
+}
+
+/// A place for a row, of which each call takes the beginning.
+#[cfg(feature = "parallel")]
+impl Rotations for &mut [Quat] {
+    fn four(&mut self, four: [Quat; LANES]) {
+        if let Some(first) = self.split_off_mut(..LANES) {
+            first.copy_from_slice(&four);
+        }
+    }
+
+    fn fewer(&mut self, four: [Quat; LANES], count: usize) {
+        let first = self.split_off_mut(..count).unwrap_or_default();
+        first.iter_mut().zip(four).for_each(|(place, rotation)| *place = rotation);
+    }
+}
+
 /// Consecutive joints with the same rotation axes.
+#[cfg_attr(feature = "parallel", derive(Clone))]
 #[derive(Debug)]
 struct Run {
     joints: usize,
@@ -15,6 +50,7 @@ struct Run {
 }
 
 /// The rotation channels of a character, with buffers for one row.
+#[cfg_attr(feature = "parallel", derive(Clone))]
 #[derive(Debug, Default)]
 pub(super) struct Turns {
     runs: Vec<Run>,
@@ -55,7 +91,7 @@ impl Turns {
     // Not inlined, and small: browsers optimise a function only between calls, and small ones
     // sooner.
     #[inline(never)]
-    pub(super) fn rotations_into(&mut self, row: &[f64], rotations: &mut Vec<Quat>) -> bool {
+    pub(super) fn rotations_into(&mut self, row: &[f64], rotations: &mut impl Rotations) -> bool {
         let is_likely = row.iter().all(|angle| angle.abs() <= WildAngles::LIKELY_DEGREES);
         let reduced;
         let row = if is_likely || row.iter().all(|angle| angle.abs() < 1e9) {
@@ -78,9 +114,9 @@ impl Turns {
                 });
                 let four = product.rotations();
                 if left >= LANES {
-                    rotations.extend_from_slice(&four);
+                    rotations.four(four);
                 } else {
-                    rotations.extend(four.into_iter().take(left));
+                    rotations.fewer(four, left);
                 }
                 left = left.saturating_sub(LANES);
             }
