@@ -16,7 +16,6 @@ use eframe::wgpu::Backend;
 use glam::{Quat, Vec3};
 use segue_motion::clip::Motion;
 use segue_motion::math::Planar;
-use segue_motion::skeleton::Side;
 use segue_scene::pose_at;
 use segue_session::bone_map::BoneMap;
 use segue_session::export::{
@@ -346,7 +345,9 @@ impl Segue {
                 .collect(),
             positions: world.positions.iter().flat_map(Vec3::to_array).collect(),
             rotations: world.rotations.iter().flat_map(Quat::to_array).collect(),
-            contacts: [Side::Left, Side::Right].map(|side| motion.contacts().planted(side, frame)),
+            contacts: (motion.contacts().feet().iter())
+                .map(|&foot| motion.contacts().planted(foot, frame))
+                .collect(),
         })
     }
 

@@ -61,6 +61,9 @@ pub(crate) fn bone_map_ui(
         }
         None => {}
     }
+    if motion.roles().is_quadruped() {
+        kit::note_ui(text::ON_FOUR_LEGS, palette_of(ui).muted, ui);
+    }
     sources_ui(motion, ui);
     missing_ui(motion, ui);
     if let Some(both) = kit::helped_switch_row_ui(
@@ -132,11 +135,12 @@ fn sources_ui(motion: &Motion, ui: &mut Ui) {
 
 /// Names the parts that feet need and that have no bone.
 fn missing_ui(motion: &Motion, ui: &mut Ui) {
+    let plan = motion.roles().body_plan();
     let missing: Vec<Message> = motion
         .roles()
         .missing()
-        .filter(|&role| slots::is_needed(role))
-        .map(|role| Word::new(role.name()).into())
+        .filter(|&role| slots::is_needed(role, plan))
+        .map(|role| Word::new(role.name_in(plan)).into())
         .collect();
     if !missing.is_empty() {
         kit::note_ui(&text::missing_parts(missing), palette_of(ui).warning, ui);

@@ -218,7 +218,7 @@ fn joints_ui(motion: &Motion, session: &Session, out: &mut Out, ui: &mut Ui) {
         detail: motion
             .roles()
             .role_of(joint)
-            .map_or(Word::default(), |role| Word::new(role.name())),
+            .map_or(Word::default(), |role| Word::new(role.name_in(motion.roles().body_plan()))),
         hint: range(joint).map_or_else(
             || in_words(&joints[joint].channels),
             |[least, greatest]| msg!("turns from {least:.0}° to {greatest:.0}°", least, greatest),

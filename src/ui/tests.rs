@@ -39,6 +39,7 @@ mod lab_panels;
 mod lessons;
 mod library;
 mod path;
+mod quadruped;
 mod register;
 mod samples;
 mod screens;

@@ -67,8 +67,9 @@ pub(crate) fn timeline_panel_ui(
     let clip = outcome.motion.clip();
     let plotted = Plotted::of(params);
     let role = Role::ALL.into_iter().find(|role| role.name() == plotted.joint);
+    let plan = outcome.motion.roles().body_plan();
     let joint_title =
-        role.map_or_else(|| Message::data(&*plotted.joint), |role| role.name().into());
+        role.map_or_else(|| Message::data(&*plotted.joint), |role| role.name_in(plan).into());
     let caption = match plotted.quantities[..] {
         [quantity] => {
             let (what, unit) = (quantity.label(), unit_of(quantity));
@@ -196,10 +197,12 @@ fn series_of<'a>(lines: &'a [Curve], palette: &Palette) -> Vec<Series<'a>> {
 pub(crate) fn more_height(session: &Session) -> f32 {
     /// Height of a further plot.
     const PLOT: f32 = 46.0;
-    /// Height of the contacts of a clip.
+    /// Height of the contacts of a pair of feet.
     const CONTACTS: f32 = 28.0;
     let is_strip = in_time::has_strip(session);
     let plots = session.params().plotted_curves().len().saturating_sub(1);
-    let clips = session.contact_clips().len();
-    if is_strip { 0.0 } else { plots as f32 * PLOT + clips as f32 * CONTACTS }
+    let clips = session.contact_clips();
+    let pairs: usize =
+        clips.iter().map(|clip| clip.motion.contacts().feet().len().div_ceil(2)).sum();
+    if is_strip { 0.0 } else { plots as f32 * PLOT + pairs as f32 * CONTACTS }
 }

@@ -77,6 +77,9 @@ pub enum CorpusError {
 /// The reason why a clip cannot be put on the standard body.
 #[derive(Debug, thiserror::Error)]
 pub enum PlaceError {
+    /// A body that stands on four legs.
+    #[error("the body stands on four legs: only people are put on the standard body")]
+    FourLegs,
     /// It has no frame.
     #[error("it has no frame")]
     Empty,

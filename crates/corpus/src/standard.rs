@@ -112,13 +112,16 @@ impl StandardBody {
     /// second frame is kept. A clip of less than a second has no features.
     ///
     /// # Errors
-    /// [`PlaceError`] if it is empty, too long, not finite, or no part of it corresponds to the
-    /// body.
+    /// [`PlaceError`] if it is empty, too long, not finite, that of a body on four legs, or no part
+    /// of it corresponds to the body.
     pub fn place(&self, motion: &Motion) -> Result<PlacedClip, PlaceError> {
         let own = motion.clip();
         let secs = own.duration_secs();
         if own.frames() == 0 {
             return Err(PlaceError::Empty);
+        }
+        if motion.roles().is_quadruped() {
+            return Err(PlaceError::FourLegs);
         }
         if !(0.0..=MAX_SECS).contains(&secs) {
             return Err(PlaceError::TooLong { secs, max_secs: MAX_SECS });

@@ -8,7 +8,7 @@ use super::bvh::RotationOrder;
 use glam::Quat;
 use segue_motion::clip::{Clip, Contacts};
 use segue_motion::math::quat;
-use segue_motion::skeleton::{Side, WorldPose};
+use segue_motion::skeleton::WorldPose;
 use std::collections::BTreeMap;
 use std::fmt::{Display, Write as _};
 
@@ -76,8 +76,8 @@ pub fn write_csv(inputs: &CsvInputs<'_>, options: &CsvOptions) -> String {
             }
         }
         if let Some(contacts) = inputs.contacts {
-            for side in Side::BOTH {
-                row.cell(u8::from(contacts.planted(side, frame)));
+            for &foot in contacts.feet() {
+                row.cell(u8::from(contacts.planted(foot, frame)));
             }
         }
         for (_, values) in inputs.columns {
@@ -107,8 +107,17 @@ fn header(out: &mut String, inputs: &CsvInputs<'_>, rotations: CsvRotations) {
             out.push_str(&cell(&format!("{name}.{column}")));
         }
     }
-    if inputs.contacts.is_some() {
-        out.push_str(",left_foot_contact,right_foot_contact");
+    if let Some(contacts) = inputs.contacts {
+        let columns = [
+            "left_foot_contact",
+            "right_foot_contact",
+            "left_forefoot_contact",
+            "right_forefoot_contact",
+        ];
+        for (column, _) in columns.iter().zip(contacts.feet()) {
+            out.push(',');
+            out.push_str(column);
+        }
     }
     for (name, _) in inputs.columns {
         out.push(',');
@@ -160,7 +169,7 @@ mod tests {
     use super::*;
     use glam::Vec3;
     use segue_motion::clip::{ContactOptions, JointTranslations};
-    use segue_motion::skeleton::{Joint, Roles, Skeleton};
+    use segue_motion::skeleton::{Joint, Roles, Side, Skeleton};
     use segue_motion::synth::{Action, Params, synthesize};
     use std::sync::Arc;
 

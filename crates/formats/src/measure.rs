@@ -4,7 +4,7 @@
 use super::raw::RawMotion;
 use glam::Vec3;
 use segue_motion::clip::{Provenance, UpAxis};
-use segue_motion::skeleton::{Role, Roles, Side, Skeleton};
+use segue_motion::skeleton::{Joint, Role, Roles, Side, Skeleton, WorldPose};
 use segue_text::{Message, ToMessage, msg};
 use std::fmt;
 
@@ -25,6 +25,13 @@ const UNITS: [(f64, f64, f64); 7] = [
     (500.0, 5000.0, 0.001),
 ];
 
+/// The same for bodies on four legs, from cats to horses, as [`Roles::body_height`] measures them
+/// by their legs. Their sizes overlap in more units, so that only the usual ones are assumed.
+const UNITS_ON_FOUR_LEGS: [(f64, f64, f64); 3] =
+    [(0.1, 5.0, 1.0), (5.0, 500.0, 0.01), (500.0, 5000.0, 0.001)];
+/// The frames in which four legs are sought.
+const PLAN_SAMPLES: usize = 16;
+
 /// The ratio of a body's lengths along two axes from which on the longer one is up.
 const CLEAR_RATIO: f32 = 1.25;
 
@@ -43,6 +50,8 @@ pub struct Measure {
     pub unit_unknown: bool,
     /// The source of the up axis.
     pub up_source: UpSource,
+    /// Whether the character stands on four legs: its unit was inferred from the sizes of animals.
+    pub is_quadruped: bool,
 }
 
 /// The source of an up axis.
@@ -64,10 +73,12 @@ impl Measure {
     }
 
     /// Returns the measure with the unit stated by the file, metres, if that makes the character as
-    /// tall as a person (0.9 to 2.5 m) and no other unit was given.
+    /// tall as a person (0.9 to 2.5 m), or an animal on four legs (0.1 to 4 m), and no other unit
+    /// was given.
     pub(super) fn with_unit_of_file(self, metres_per_unit: Option<f64>) -> Self {
+        let sizes = if self.is_quadruped { 0.1..4.0 } else { 0.9..2.5 };
         match metres_per_unit
-            .filter(|unit| self.unit_detected && (0.9..2.5).contains(&(self.height_units * unit)))
+            .filter(|unit| self.unit_detected && sizes.contains(&(self.height_units * unit)))
         {
             Some(metres_per_unit) => Self {
                 provenance: Provenance { metres_per_unit, ..self.provenance },
@@ -137,8 +148,11 @@ pub(super) fn measure(
         None => f64::from(extent_along(index(found_up), raw, &rest, &frames)),
     };
     let given = metres_per_unit.filter(|unit| unit.is_finite() && *unit > 0.0);
+    let is_quadruped =
+        skeleton.as_ref().is_some_and(|skeleton| stands_on_four_legs(raw, skeleton, found_up));
+    let units = if is_quadruped { &UNITS_ON_FOUR_LEGS[..] } else { &UNITS };
     let detected =
-        UNITS.iter().find(|(from, below, _)| (*from..*below).contains(&height)).map(|unit| unit.2);
+        units.iter().find(|(from, below, _)| (*from..*below).contains(&height)).map(|unit| unit.2);
     Measure {
         provenance: Provenance {
             metres_per_unit: given.or(detected).unwrap_or(0.01),
@@ -148,7 +162,28 @@ pub(super) fn measure(
         unit_detected: given.is_none(),
         unit_unknown: given.is_none() && detected.is_none(),
         up_source,
+        is_quadruped,
     }
+}
+
+/// Returns whether a body stands on four legs, where this axis is up ([`Roles::with_plan_of`]).
+fn stands_on_four_legs(raw: &RawMotion, skeleton: &Skeleton, up: UpAxis) -> bool {
+    let upright = |point: Vec3| match up {
+        UpAxis::Y => point,
+        UpAxis::Z => Vec3::new(point.x, point.z, -point.y),
+    };
+    let joints = skeleton.joints().iter().map(|joint| Joint {
+        offset: upright(joint.offset),
+        end_site: joint.end_site.map(upright),
+        ..joint.clone()
+    });
+    let Ok(turned) = Skeleton::new(joints.collect()) else { return false };
+    let step = raw.frames().div_ceil(PLAN_SAMPLES).max(1);
+    let poses = (0..raw.frames()).step_by(step).map(|frame| {
+        let points = raw.world_points(skeleton, frame).into_iter();
+        WorldPose { positions: points.map(upright).collect(), rotations: Vec::new() }
+    });
+    Roles::detect(&turned).with_plan_of(&turned, poses).is_quadruped()
 }
 
 /// Returns the height of a body without known roles: that of its rest pose, or of the median frame
@@ -382,8 +417,10 @@ fn lateral_axis(points: &[Vec3], rest: &Body) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ImportOptions;
+    use crate::bvh::{WriteOptions, read, write};
     use glam::Quat;
-    use segue_motion::skeleton::Joint;
+    use segue_motion::clip::fixtures::QuadrupedWalk;
 
     /// Returns a person 1.66 m tall in T-pose, facing +Z with Y up, from pelvis to feet, head and
     /// hands.
@@ -434,6 +471,29 @@ mod tests {
         }
         assert!(measure(&person(|v| v * 1e-3, STANDING), None, None).unit_unknown);
         assert!(measure(&person(|v| v * 1e30, STANDING), None, None).unit_unknown);
+    }
+
+    /// The legs of a dog in centimetres are as long as a person's in inches.
+    #[test]
+    fn measure_of_a_body_on_four_legs_finds_the_unit() {
+        for axis in [None, Some(Vec3::X)] {
+            let clip = QuadrupedWalk { axis, frames: 60, ..QuadrupedWalk::default() }.clip();
+            for unit in [1.0, 0.01, 0.001] {
+                for up in [UpAxis::Y, UpAxis::Z] {
+                    let options = WriteOptions {
+                        metres_per_unit: Some(unit),
+                        up: Some(up),
+                        ..WriteOptions::default()
+                    };
+                    let text = write(&clip, &options);
+                    let read = read("dog.bvh", text.as_bytes(), &ImportOptions::default());
+                    let measure = read.unwrap().clips[0].measure;
+                    assert!(measure.is_quadruped, "{axis:?}: {measure}");
+                    let found = measure.provenance;
+                    assert_eq!((found.metres_per_unit, found.up), (unit, up), "{axis:?}");
+                }
+            }
+        }
     }
 
     #[test]

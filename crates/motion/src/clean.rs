@@ -71,6 +71,8 @@ mod footing;
 mod gaps;
 mod jitter;
 mod mend;
+#[cfg(test)]
+mod quadruped_tests;
 mod rate;
 mod spikes;
 mod steps;

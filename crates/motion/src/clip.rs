@@ -10,7 +10,8 @@
 //! ```text
 //! pose(t)       between frames ⌊t·fps⌋ and the next: positions lerp, rotations slerp
 //! velocity(f)   (x[f + 1] - x[f - 1]) / 2dt        angular: log(q[f + 1] · q[f - 1]⁻¹) / 2dt
-//! facing        across × up, across = from right to left over hips and shoulders
+//! facing        across × up, across = from right to left over hips and shoulders;
+//!               of a body on four legs, from hips to shoulders
 //! speed         length of the root's trajectory over the ground / duration
 //! ```
 //!
@@ -104,6 +105,8 @@ mod jolts;
 mod mirror;
 mod motion;
 mod poses;
+#[cfg(test)]
+mod quadruped_tests;
 mod reference;
 mod resample;
 mod retarget;

@@ -63,6 +63,8 @@
 mod cycle;
 mod phase;
 mod player;
+#[cfg(test)]
+mod quadruped_tests;
 mod speed;
 mod strikes;
 

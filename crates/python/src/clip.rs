@@ -18,7 +18,7 @@ use segue_batch::{unit_name, up_name};
 use segue_formats::ImportOptions;
 use segue_formats::numpy::write_npz;
 use segue_motion::clip::Motion;
-use segue_motion::skeleton::{Joint, Role, Side, Skeleton, WorldPose};
+use segue_motion::skeleton::{Joint, Role, Skeleton, WorldPose};
 use segue_motion::skin::Character;
 use segue_session::file_id;
 use segue_session::reading::{ReadFile, ReadReport, ReadSetup, read};
@@ -300,16 +300,20 @@ impl Clip {
     ///
     /// Returns
     /// -------
-    /// ndarray of bool, shape (frames, 2)
-    ///     Left foot, right foot.
+    /// ndarray of bool, shape (frames, 2) or (frames, 4)
+    ///     Left foot, right foot; of a body on four legs the hind feet, then the left and the right
+    ///     forefoot.
     fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<bool>>> {
         let frames = self.motion.clip().frames();
-        let planted = py.detach(|| {
+        let (planted, feet) = py.detach(|| {
             let contacts = self.motion.contacts();
-            let of_frame = |frame: usize| Side::BOTH.map(|side| contacts.planted(side, frame));
-            (0..frames).flat_map(of_frame).collect::<Vec<bool>>()
+            let feet = contacts.feet();
+            let of_frame = |frame: usize| feet.iter().map(move |foot| (*foot, frame));
+            let planted = (0..frames).flat_map(of_frame);
+            let planted = planted.map(|(foot, frame)| contacts.planted(foot, frame));
+            (planted.collect::<Vec<bool>>(), feet.len())
         });
-        array(py, planted, [frames, 2])
+        array(py, planted, [frames, feet])
     }
 
     /// The height of the body at rest, metres.

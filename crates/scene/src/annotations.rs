@@ -4,7 +4,7 @@ use crate::context::{DrawContext, PosedResult};
 use crate::{Body, Color, Colors, Layer, Lens, Pane, with_alpha};
 use glam::Vec3;
 use segue_motion::clip::Motion;
-use segue_motion::skeleton::{Role, Side, WorldPose};
+use segue_motion::skeleton::{FootPair, Role, WorldPose};
 use segue_session::{Key, joint_of};
 
 /// Speed over the ground above which a planted foot is shown as sliding, metres per second.
@@ -121,19 +121,26 @@ pub(crate) fn add_contacts(shown: &PosedResult<'_>, context: &DrawContext<'_>, p
     let (motion, colors) = (&outcome.motion, context.colors);
     let frame = segue_session::frame_at(motion, *now);
     let dt = motion.clip().dt_secs();
-    if !Side::BOTH.iter().any(|&side| motion.contacts().planted(side, frame)) {
+    let contacts = motion.contacts();
+    if !contacts.feet().iter().any(|&foot| contacts.planted(foot, frame)) {
         return;
     }
-    let (_, roles) = body.drawn_rig((motion.clip().skeleton(), motion.roles()));
+    let (skeleton, roles) = body.drawn_rig((motion.clip().skeleton(), motion.roles()));
     let earlier = shown.world_at(now - f64::from(dt), context.session);
-    for side in Side::BOTH {
-        if !motion.contacts().planted(side, frame) {
+    for &foot in contacts.feet() {
+        if !contacts.planted(foot, frame) {
             continue;
         }
-        let Some(foot) = roles.get(Role::foot(side)) else {
+        let [_, _, end] = foot.leg();
+        let Some(end) = roles.get(end) else {
             continue;
         };
-        let joint = roles.get(Role::toe(side)).unwrap_or(foot);
+        let joint = match foot.pair {
+            FootPair::Hind => roles.get(Role::toe(foot.side)),
+            // The joint after the end of the leg.
+            FootPair::Fore => roles.foot_points(skeleton, foot).get(1).map(|point| point.0),
+        };
+        let (foot, joint) = (end, joint.unwrap_or(end));
         let (Some(&toe), Some(&ankle)) = (world.positions.get(joint), world.positions.get(foot))
         else {
             continue;

@@ -68,4 +68,6 @@ pub use view::metrics_of_clip;
 #[cfg(test)]
 mod foot_lock_tests;
 #[cfg(test)]
+mod quadruped_tests;
+#[cfg(test)]
 mod retarget_tests;

@@ -52,8 +52,9 @@ pub(crate) struct PoseInfo {
     pub(super) positions: Vec<f32>,
     /// World rotations: x, y, z, w of the first joint, then of the next.
     pub(super) rotations: Vec<f32>,
-    /// Whether the left and the right foot is planted.
-    pub(super) contacts: [bool; 2],
+    /// Whether the left and the right foot is planted; of a body on four legs the hind feet, then
+    /// the forefeet.
+    pub(super) contacts: Vec<bool>,
 }
 
 /// One number of `metrics()`.

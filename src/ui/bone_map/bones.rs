@@ -40,7 +40,7 @@ pub(super) fn bones_ui(
     let mut event = None;
     match chosen {
         Some(role) => {
-            let heading = text::bone_of(Word::new(role.name()));
+            let heading = text::bone_of(Word::new(role.name_in(motion.roles().body_plan())));
             let font = theme_of(ui).font(Type::Strong);
             ui.label(RichText::new(say(&heading, ui)).font(font));
         }
@@ -85,9 +85,10 @@ pub(super) fn bones_ui(
         }
         for &joint in &listed {
             let role = motion.roles().role_of(joint);
+            let plan = motion.roles().body_plan();
             let item = MenuItem {
                 text: Text::Data(&joints[joint].name),
-                shortcut: role.map_or(Text::EMPTY, |role| Word::new(role.name()).into()),
+                shortcut: role.map_or(Text::EMPTY, |role| Word::new(role.name_in(plan)).into()),
                 chosen: Some(current == Some(joint)),
                 ..MenuItem::default()
             };

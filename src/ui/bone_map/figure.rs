@@ -15,7 +15,7 @@ use eframe::egui::{
     Response, Role as WidgetRole, Sense, Stroke, StrokeKind, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 use segue_motion::clip::Motion;
-use segue_motion::skeleton::{Role, RoleSource, Side};
+use segue_motion::skeleton::{BodyPlan, Role, RoleSource, Side};
 use segue_text::Message;
 
 /// An input to the picture.
@@ -83,7 +83,7 @@ pub(super) fn figure_ui(motion: &Motion, search: &mut String, ui: &mut Ui) -> Op
         let galley = line_of(&words, width, ui);
         put(ui.painter(), pos2(left + 6.0, top - 3.0), Align2::LEFT_BOTTOM, galley);
     }
-    body_ui(body, ui);
+    body_ui(body, motion.roles().body_plan(), ui);
     Figure { motion, body }.slots_ui(&places, search, ui)
 }
 
@@ -156,16 +156,18 @@ impl Figure<'_> {
         let id = Id::unique(("slot of a body part", role.index()));
         let response = ui.interact(rect, id, Sense::click());
         let response = response.on_hover_cursor(CursorIcon::PointingHand);
-        let (roles, part) = (self.motion.roles(), Word::new(role.name()));
+        let roles = self.motion.roles();
+        let plan = roles.body_plan();
+        let part = Word::new(role.name_in(plan));
         let joints = self.motion.clip().skeleton().joints();
         let joint = roles.get(role).and_then(|joint| joints.get(joint));
         let source = roles.source(role).filter(|_| joint.is_some());
         let is_chosen =
             is_over || Popup::is_id_open(ui.ctx(), Popup::default_response_id(&response));
         let is_lit = is_chosen || response.hovered() || response.has_focus();
-        let lacks = joint.is_none() && is_needed(role);
+        let lacks = joint.is_none() && is_needed(role, plan);
 
-        let [x, y] = place_of(role);
+        let [x, y] = place_of(role, plan);
         let mark = on_body(self.body, [x, y]);
         let color = match source {
             Some(source) => source_color(source, palette),
@@ -208,7 +210,7 @@ impl Figure<'_> {
             paint_icon(sign, at, color, ui.painter());
         }
         let label = line_of(
-            &[Run::new(label_of(role), Type::SmallStrong, palette.muted)],
+            &[Run::new(label_of(role, plan), Type::SmallStrong, palette.muted)],
             inner.width() - side - 2.0,
             ui,
         );
@@ -277,8 +279,18 @@ const LIMBS: [([f32; 2], [f32; 2], f32); 6] = [
     ([0.04, 0.2], [0.095, 0.2], 0.055),
 ];
 
-/// Draws a body that faces the viewer.
-fn body_ui(body: Rect, ui: &Ui) {
+/// The limbs of a body on four legs, seen from below with its head at the top.
+const LIMBS_ON_FOUR: [([f32; 2], [f32; 2], f32); 6] = [
+    ([0.04, 0.27], [0.075, 0.27], 0.075),
+    ([0.075, 0.27], [0.13, 0.33], 0.055),
+    ([0.13, 0.33], [0.16, 0.21], 0.04),
+    ([0.07, 0.63], [0.13, 0.58], 0.08),
+    ([0.13, 0.58], [0.14, 0.76], 0.05),
+    ([0.14, 0.76], [0.165, 0.69], 0.04),
+];
+
+/// Draws a body that faces the viewer, or one on four legs.
+fn body_ui(body: Rect, plan: BodyPlan, ui: &Ui) {
     let color = palette_of(ui).pressed;
     let painter = ui.painter();
     let at = |point| on_body(body, point);
@@ -290,12 +302,25 @@ fn body_ui(body: Rect, ui: &Ui) {
             painter.circle_filled(end, thickness * unit / 2.0, color);
         }
     };
-    for (from, to, thickness) in LIMBS {
+    let limbs = match plan {
+        BodyPlan::Biped => LIMBS,
+        BodyPlan::Quadruped => LIMBS_ON_FOUR,
+    };
+    for (from, to, thickness) in limbs {
         limb(from, to, thickness);
         limb([-from[0], from[1]], [-to[0], to[1]], thickness);
     }
-    limb([0.0, 0.12], [0.0, 0.2], 0.05);
-    limb([0.0, 0.23], [0.0, 0.44], 0.15);
-    limb([-0.03, 0.48], [0.03, 0.48], 0.1);
+    match plan {
+        BodyPlan::Biped => {
+            limb([0.0, 0.12], [0.0, 0.2], 0.05);
+            limb([0.0, 0.23], [0.0, 0.44], 0.15);
+            limb([-0.03, 0.48], [0.03, 0.48], 0.1);
+        }
+        BodyPlan::Quadruped => {
+            limb([0.0, 0.02], [0.0, 0.2], 0.05);
+            limb([0.0, 0.27], [0.0, 0.62], 0.13);
+            limb([0.0, 0.68], [0.0, 0.93], 0.025);
+        }
+    }
     painter.circle_filled(at([0.0, 0.07]), 0.062 * unit, color);
 }

@@ -1,51 +1,62 @@
 //! The places of body parts in the picture. A new part is a row.
 
 use crate::ui::language::Word;
-use segue_motion::skeleton::{Role, Side};
+use segue_motion::skeleton::{BodyPlan, Role, Side};
 
 /// A slot: a part in the middle or on the left, which stands for its counterpart, too.
 struct Slot {
     role: Role,
-    /// Its name without its side.
-    label: Word,
+    /// Its name without its side, in a body on two legs and in one on four.
+    labels: [Word; 2],
     /// Its place in the picture of a body that faces the viewer: right of the middle and below the
-    /// top of the head, in body heights.
-    at: [f32; 2],
+    /// top of the head, in body heights; and in that of a body on four legs, seen from below.
+    at: [[f32; 2]; 2],
     /// Whether contacts, and with them most labs, need it.
     is_needed: bool,
 }
 
 /// The slots from the top down, which is their order in each column.
 const SLOTS: [Slot; 10] = [
-    slot(Role::Head, "head", [0.0, 0.07], false),
-    slot(Role::Spine, "spine", [0.0, 0.35], false),
-    slot(Role::Hips, "hips", [0.0, 0.47], true),
-    slot(Role::LeftUpperArm, "upper arm", [0.1, 0.2], false),
-    slot(Role::LeftForearm, "forearm", [0.135, 0.345], false),
-    slot(Role::LeftHand, "hand", [0.155, 0.485], false),
-    slot(Role::LeftThigh, "thigh", [0.055, 0.53], true),
-    slot(Role::LeftShin, "shin", [0.062, 0.74], true),
-    slot(Role::LeftFoot, "foot", [0.066, 0.93], true),
-    slot(Role::LeftToe, "toe", [0.09, 0.98], false),
+    slot(Role::Head, ["head"; 2], [[0.0, 0.07], [0.0, 0.07]], false),
+    slot(Role::Spine, ["spine"; 2], [[0.0, 0.35], [0.0, 0.45]], false),
+    slot(Role::Hips, ["hips"; 2], [[0.0, 0.47], [0.0, 0.62]], true),
+    slot(Role::LeftUpperArm, ["upper arm", "upper foreleg"], [[0.1, 0.2], [0.075, 0.27]], false),
+    slot(Role::LeftForearm, ["forearm", "lower foreleg"], [[0.135, 0.345], [0.13, 0.33]], false),
+    slot(Role::LeftHand, ["hand", "forefoot"], [[0.155, 0.485], [0.16, 0.21]], false),
+    slot(Role::LeftThigh, ["thigh", "hind thigh"], [[0.055, 0.53], [0.07, 0.63]], true),
+    slot(Role::LeftShin, ["shin", "hind shin"], [[0.062, 0.74], [0.13, 0.58]], true),
+    slot(Role::LeftFoot, ["foot", "hind foot"], [[0.066, 0.93], [0.14, 0.76]], true),
+    slot(Role::LeftToe, ["toe", "hind toe"], [[0.09, 0.98], [0.165, 0.69]], false),
 ];
 
-const fn slot(role: Role, label: &'static str, at: [f32; 2], is_needed: bool) -> Slot {
-    Slot { role, label: Word::new(label), at, is_needed }
+const fn slot(role: Role, labels: [&'static str; 2], at: [[f32; 2]; 2], is_needed: bool) -> Slot {
+    let [on_two, on_four] = labels;
+    Slot { role, labels: [Word::new(on_two), Word::new(on_four)], at, is_needed }
 }
 
-/// Returns the name of a part without its side.
-pub(super) fn label_of(role: Role) -> Word {
-    slot_of(role).map_or(Word::new(role.name()), |slot| slot.label)
+/// Returns what is given for a body on two legs and for one on four.
+const fn of_plan<T: Copy>([on_two, on_four]: [T; 2], plan: BodyPlan) -> T {
+    match plan {
+        BodyPlan::Biped => on_two,
+        BodyPlan::Quadruped => on_four,
+    }
 }
 
-/// Returns whether contacts need a part.
-pub(super) fn is_needed(role: Role) -> bool {
+/// Returns the name of a part of a body without its side.
+pub(super) fn label_of(role: Role, plan: BodyPlan) -> Word {
+    slot_of(role).map_or(Word::new(role.name_in(plan)), |slot| of_plan(slot.labels, plan))
+}
+
+/// Returns whether contacts need a part: of a body on four legs those of its forelegs, too.
+pub(super) fn is_needed(role: Role, plan: BodyPlan) -> bool {
+    let is_of_foreleg = || Side::BOTH.into_iter().any(|side| Role::arm(side).contains(&role));
     slot_of(role).is_some_and(|slot| slot.is_needed)
+        || plan == BodyPlan::Quadruped && is_of_foreleg()
 }
 
 /// Returns the place of a part in the picture; see [`Slot::at`].
-pub(super) fn place_of(role: Role) -> [f32; 2] {
-    let [x, y] = slot_of(role).map_or([0.0, 0.0], |slot| slot.at);
+pub(super) fn place_of(role: Role, plan: BodyPlan) -> [f32; 2] {
+    let [x, y] = slot_of(role).map_or([0.0, 0.0], |slot| of_plan(slot.at, plan));
     // The character's right is the viewer's left.
     [if role.side() == Some(Side::Right) { -x } else { x }, y]
 }
@@ -74,11 +85,15 @@ mod tests {
         parts.sort_unstable();
         assert_eq!(parts, Role::ALL);
         for role in Role::ALL {
-            let ([x, y], [other, below]) = (place_of(role), place_of(role.mirrored()));
-            assert_eq!((x, y), (-other, below), "{role:?}");
-            assert!(x.abs() < 0.5 && (0.0..1.0).contains(&y), "{role:?}");
-            assert_eq!(x > 0.0, role.side() == Some(Side::Left), "{role:?}");
-            assert!(role.name().ends_with(label_of(role).english()), "{role:?}");
+            for plan in [BodyPlan::Biped, BodyPlan::Quadruped] {
+                let ([x, y], [other, below]) =
+                    (place_of(role, plan), place_of(role.mirrored(), plan));
+                assert_eq!((x, y), (-other, below), "{role:?}");
+                assert!(x.abs() < 0.5 && (0.0..1.0).contains(&y), "{role:?}");
+                assert_eq!(x > 0.0, role.side() == Some(Side::Left), "{role:?}");
+                let label = label_of(role, plan).english();
+                assert!(role.name_in(plan).ends_with(label), "{role:?}");
+            }
         }
     }
 }

@@ -50,8 +50,8 @@ pub(crate) struct MapCurve<'a> {
     pub(crate) dashed: bool,
 }
 
-/// The stances of one clip, left and right, seconds.
-pub(crate) type Feet = [Vec<Range<f64>>; 2];
+/// The stances of each foot of one clip, seconds.
+pub(crate) type Feet = Vec<Vec<Range<f64>>>;
 
 /// The content of the map. The first clip's time runs to the right, the second's upwards.
 #[derive(Clone, Debug)]
@@ -215,8 +215,9 @@ fn sides_ui(map: &HeatMap<'_>, axes: &Axes, stripes: f32, ui: &Ui) {
     let palette = palette_of(ui);
     let scale = theme_of(ui).scale();
     let field = axes.rect;
-    let thick = (0.5 * (stripes - 4.0)).floor();
     for (clip, color) in [(0, palette.a), (1, palette.b)] {
+        let lanes = map.feet[clip].len().max(1) as f32;
+        let thick = ((stripes - 2.0 - lanes) / lanes).floor();
         for (foot, stances) in map.feet[clip].iter().enumerate() {
             let lane = 2.0 + foot as f32 * (thick + 1.0);
             for stance in stances {

@@ -38,8 +38,8 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> TimelineRespo
     // Each of several panes has less room.
     let crowded = timeline.stripes.len() > 3;
     let stripe_pitch = |stripe: &Stripe<'_>| match stripe.edit {
-        None => ((if crowded { 0.8 } else { 1.0 }) * STRIPE * scale).round(),
-        Some(_) => (edited_stripe(gutter > 0.0) * scale).round(),
+        None => ((if crowded { 0.8 } else { 1.0 }) * STRIPE * scale * pairs(stripe)).round(),
+        Some(_) => (edited_stripe(gutter > 0.0) * scale * pairs(stripe)).round(),
     };
     let tracks_height = head + timeline.tracks.len() as f32 * pitch;
     let stripes_height: f32 = timeline.stripes.iter().map(stripe_pitch).sum();
@@ -152,7 +152,7 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> TimelineRespo
         let Some(edit) = &stripe.edit else {
             continue;
         };
-        let rows = stripe_lanes(row);
+        let rows = stripe_lanes(stripe.feet.len(), row).collect();
         let lanes = Lanes { index, stripe, edit, rows, axis, id: id.with(("stances", index)) };
         if gutter > 0.0 {
             let x = bars.left()..=axis.x.min - space::S;
@@ -244,6 +244,11 @@ const STRIPE: f32 = 15.0;
 /// space before it the page is narrow, and fingers need more.
 fn edited_stripe(has_gutter: bool) -> f32 {
     if has_gutter { 28.0 } else { 44.0 }
+}
+
+/// Returns the number of pairs of feet in a stripe, at least one: each has the height of a stripe.
+fn pairs(stripe: &Stripe<'_>) -> f32 {
+    stripe.feet.len().div_ceil(2).max(1) as f32
 }
 
 /// Height of the line with the seconds at scale 1, points.

@@ -36,20 +36,60 @@ pub(super) const OUT_POINT: Word = Word::new("Loop end");
 pub(super) const TRANSITION_START: Word = Word::new("Transition start");
 /// The edge where the transition ends.
 pub(super) const TRANSITION_END: Word = Word::new("Transition end");
-/// The sign of the left foot.
-pub(super) const LEFT: Word = Word::new("L");
-/// The sign of the right foot.
-pub(super) const RIGHT: Word = Word::new("R");
-/// The left foot.
-pub(super) const LEFT_FOOT: Word = Word::new("Left foot");
-/// The right foot.
-pub(super) const RIGHT_FOOT: Word = Word::new("Right foot");
+/// The words for the feet of a body.
+pub(super) struct FootWords {
+    /// Its sign.
+    pub(super) sign: Word,
+    /// Its name.
+    pub(super) name: Word,
+    /// The item that adds a contact of it.
+    pub(super) add: Word,
+}
+
+/// The feet of a body on two legs.
+const TWO_FEET: [FootWords; 2] = [
+    FootWords {
+        sign: Word::new("L"),
+        name: Word::new("Left foot"),
+        add: Word::new("Add a left contact at the playhead"),
+    },
+    FootWords {
+        sign: Word::new("R"),
+        name: Word::new("Right foot"),
+        add: Word::new("Add a right contact at the playhead"),
+    },
+];
+/// The feet of a body on four legs: hind feet, then forefeet.
+const FOUR_FEET: [FootWords; 4] = [
+    FootWords {
+        sign: Word::new("LH"),
+        name: Word::new("Left hind foot"),
+        add: Word::new("Add a left hind contact at the playhead"),
+    },
+    FootWords {
+        sign: Word::new("RH"),
+        name: Word::new("Right hind foot"),
+        add: Word::new("Add a right hind contact at the playhead"),
+    },
+    FootWords {
+        sign: Word::new("LF"),
+        name: Word::new("Left forefoot"),
+        add: Word::new("Add a left fore contact at the playhead"),
+    },
+    FootWords {
+        sign: Word::new("RF"),
+        name: Word::new("Right forefoot"),
+        add: Word::new("Add a right fore contact at the playhead"),
+    },
+];
+
+/// Returns the words for the feet of a body with this number of feet.
+pub(super) fn feet(count: usize) -> &'static [FootWords] {
+    if count > TWO_FEET.len() { &FOUR_FEET } else { &TWO_FEET }
+}
+
 /// The item that adds a contact under the pointer.
 pub(super) const ADD_CONTACT: Word = Word::new("Add a contact here");
-/// The item that adds a contact of the left foot.
-pub(super) const ADD_LEFT_CONTACT: Word = Word::new("Add a left contact at the playhead");
-/// The item that adds a contact of the right foot.
-pub(super) const ADD_RIGHT_CONTACT: Word = Word::new("Add a right contact at the playhead");
 /// The item that removes a contact.
 pub(super) const REMOVE_CONTACT: Word = Word::new("Remove this contact");
 /// The item that reverts the corrections of contacts.

@@ -176,7 +176,7 @@ fn joint_name(found: &FoundFault, outcome: &Outcome) -> Option<Message> {
         .or_else(|| joints.first())
         .copied()?;
     let name = match roles.role_of(first) {
-        Some(role) => role.name().into(),
+        Some(role) => role.name_in(roles.body_plan()).into(),
         None => Message::data(outcome.motion.clip().skeleton().joints().get(first)?.name.as_str()),
     };
     Some(text::joints(name, joints.len() - 1))

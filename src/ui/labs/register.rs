@@ -16,7 +16,7 @@ use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{Palette, Type, palette_of, space, theme_of};
 use eframe::egui::{Color32, ColorImage, Id, RichText, TextureHandle, TextureOptions, Ui};
-use segue_motion::skeleton::Side;
+use segue_motion::skeleton::Foot;
 use segue_session::JobKind;
 use segue_session::choices::{self, WarpMode};
 use segue_session::{
@@ -24,6 +24,7 @@ use segue_session::{
     RegistrationFacts, Session, Value, weight_curve,
 };
 use segue_text::{Message, msg};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// The lab's part of the page.
@@ -365,12 +366,10 @@ fn map_event(
 
 fn feet_of(map: &DistanceMap, clip: usize) -> Feet {
     let contacts = map.motions()[clip].contacts();
-    Side::BOTH.map(|side| {
-        let stances = contacts.intervals(side).into_iter();
-        stances
-            .map(|stance| stance.start as f64 / map.fps()..stance.end as f64 / map.fps())
-            .collect()
-    })
+    let secs =
+        |stance: Range<usize>| stance.start as f64 / map.fps()..stance.end as f64 / map.fps();
+    let of_foot = |&foot: &Foot| contacts.intervals(foot).into_iter().map(secs).collect();
+    contacts.feet().iter().map(of_foot).collect()
 }
 
 /// A curve on the map, with its points.

@@ -28,6 +28,9 @@ pub(crate) fn retarget_rows_ui(
         return;
     }
     let errors = || reports.iter().map(|(_, errors)| errors);
+    if errors().any(|of| of.is_across_plans) {
+        kit::note_ui(text::OTHER_PLAN, palette_of(ui).warning, ui);
+    }
     let limbs: [(_, bool, Message); 2] = [
         (FEET, errors().any(|of| of.feet != [None; 2]), text::NO_COMMON_LEGS.into()),
         (HANDS, errors().any(|of| of.hands != [None; 2]), text::NO_COMMON_ARMS.into()),

@@ -65,6 +65,9 @@ pub(crate) const HYSTERESES_QUERY: &str = "hysteresis:none,bias,votes";
 /// The note about the clips, while none are chosen.
 pub(crate) const MADE_SET: Word =
     Word::new("The synthesised set: standing, walks and runs, turns, starts, stops and spins.");
+/// The note on the feet by which poses are compared.
+pub(crate) const HIND_FEET_ALONE: Word =
+    Word::new("This body stands on four legs: poses are compared by its hind feet.");
 /// The accessible name of the strip of clips.
 pub(crate) const CLIP_STRIP: Word = Word::new("All clips, with the current frame");
 /// The words before the name of a clip below that strip.

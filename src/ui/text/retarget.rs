@@ -27,6 +27,10 @@ pub(crate) const NO_COMMON_LEGS: Word = Word::new(
 pub(crate) const NO_COMMON_ARMS: Word = Word::new(
     "Hands are retargeted by rotations only: one of the bodies has no arm with upper arm, forearm and hand.",
 );
+/// The note on bodies that stand on two and on four legs.
+pub(crate) const OTHER_PLAN: Word = Word::new(
+    "One of the bodies stands on two legs, the other on four: its posture does not fit, only the directions of the bones are retargeted.",
+);
 
 /// Returns the position error of a limb.
 pub(crate) fn limb_error(limb: Word, result: Message, directions: Message) -> Message {

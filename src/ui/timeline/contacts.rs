@@ -4,7 +4,7 @@ use crate::ui::kit::{self, Part, StanceEdit, StanceEvent, Stripe};
 use crate::ui::out::Out;
 use crate::ui::text;
 use segue_motion::clip::{ContactCorrections, Contacts};
-use segue_motion::skeleton::Side;
+use segue_motion::skeleton::{Foot, Side};
 use segue_session::{ContactClip, Key, Session};
 use segue_text::Message;
 use std::ops::Range;
@@ -39,12 +39,16 @@ pub(super) fn stripes<'a>(
         Stripe {
             part: Part::A,
             label: label.into(),
-            feet: Side::BOTH.map(|side| contacts.intervals(side).iter().map(secs).collect()),
+            feet: (contacts.feet().iter())
+                .map(|&foot| contacts.intervals(foot).iter().map(secs).collect())
+                .collect(),
             edit: Some(StanceEdit {
-                corrected: Side::BOTH.map(|side| {
-                    let own = corrections.list().iter().filter(|edit| edit.side == side);
-                    own.map(|edit| secs(&edit.frames)).collect()
-                }),
+                corrected: (contacts.feet().iter())
+                    .map(|&foot| {
+                        let own = corrections.list().iter().filter(|edit| edit.foot == foot);
+                        own.map(|edit| secs(&edit.frames)).collect()
+                    })
+                    .collect(),
                 hint: (count > 0).then(|| kit::corrected_hint(&title(clip, session), count)),
             }),
         }
@@ -66,20 +70,20 @@ pub(super) fn correct(event: StanceEvent, clip: &ContactClip, session: &Session,
 
 /// Returns the contacts after a correction; `None` for those that were found.
 fn corrected(contacts: &Contacts, event: StanceEvent, fps: f64) -> Option<Contacts> {
-    let side = |foot: usize| Side::BOTH.get(foot).copied().unwrap_or(Side::Left);
+    let foot_at = |foot: usize| Foot::ALL.get(foot).copied().unwrap_or(Side::Left.into());
     // `max` takes NaN to 0.
     let frame = |secs: f64| (secs * fps).max(0.0);
     Some(match event {
         StanceEvent::Move { foot, stance, end, time } => {
-            contacts.with_end_at(side(foot), stance, end, frame(time).round() as usize)
+            contacts.with_end_at(foot_at(foot), stance, end, frame(time).round() as usize)
         }
         StanceEvent::Add { foot, time } => {
             let length = (NEW_SECS * fps).round() as usize;
-            contacts.with_stance_at(side(foot), frame(time).floor() as usize, length)
+            contacts.with_stance_at(foot_at(foot), frame(time).floor() as usize, length)
         }
         StanceEvent::Remove { foot, stance } => {
-            let frames = contacts.intervals(side(foot)).get(stance).cloned().unwrap_or_default();
-            contacts.with(side(foot), frames, false)
+            let frames = contacts.intervals(foot_at(foot)).get(stance).cloned().unwrap_or_default();
+            contacts.with(foot_at(foot), frames, false)
         }
         StanceEvent::Reset => return None,
     })

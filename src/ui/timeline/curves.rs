@@ -243,11 +243,12 @@ pub(super) fn curve_menu_ui(
         kit::menu_line_ui(ui);
         egui::ScrollArea::vertical().max_height(240.0).show(ui, |ui| {
             let chosen = joint_of(&outcome.motion, params.text(Key::Joint));
+            let plan = outcome.motion.roles().body_plan();
             for role in Role::ALL {
                 let Some(joint) = outcome.motion.roles().get(role) else {
                     continue;
                 };
-                if item_ui(Word::new(role.name()).into(), chosen == Some(joint), true, ui) {
+                if item_ui(Word::new(role.name_in(plan)).into(), chosen == Some(joint), true, ui) {
                     out.set_once(Key::Joint, Value::Text(role.name().to_owned()));
                 }
             }

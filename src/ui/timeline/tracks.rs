@@ -5,7 +5,6 @@ use crate::ui::language::Text;
 use crate::ui::state::Layout;
 use crate::ui::text;
 use eframe::egui::Color32;
-use segue_motion::skeleton::Side;
 use segue_session::{CycleMade, Outcome, Pane, Session, Slot};
 use segue_text::{Message, msg};
 use std::sync::Arc;
@@ -69,7 +68,9 @@ pub(super) fn stripes<'a>(session: &Session, names: &'a [[Message; 3]]) -> Vec<S
             of.into_iter().zip(names).map(|((part, slot), label)| Stripe {
                 part,
                 label: label.into(),
-                feet: Side::BOTH.map(|side| registered.stances(slot, side)),
+                feet: (registered.steps.feet().iter())
+                    .map(|&foot| registered.stances(slot, foot))
+                    .collect(),
                 edit: None,
             })
         })

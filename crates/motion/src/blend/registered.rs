@@ -6,7 +6,7 @@ use super::{BlendError, Concatenation, WeightCurve, WeightLaw};
 use crate::clip::{Clip, Contacts, Interpolation, Motion};
 use crate::math::{Planar, quat, wrap_angle};
 use crate::registration::Registration;
-use crate::skeleton::{Pose, Side};
+use crate::skeleton::{Foot, Pose};
 use glam::{DVec2, Quat, Vec3};
 use std::sync::Arc;
 
@@ -163,26 +163,26 @@ impl RegisteredJoin {
     pub fn contacts(&self, a: &Contacts, b: &Contacts) -> Contacts {
         let during = contacts_of(&self.during, &[a, b]);
         let last = self.during.last().map_or(0, |last| last.frames[1].round() as usize);
-        let planted = Side::BOTH.map(|side| {
-            let before = (0..self.joined.transition.start).map(|frame| a.planted(side, frame));
-            let during = (0..during.frames()).map(|frame| during.planted(side, frame));
-            let after = (last + 1..b.frames()).map(|frame| b.planted(side, frame));
+        Contacts::of_feet(a.feet_with(b), |foot| {
+            let before = (0..self.joined.transition.start).map(|frame| a.planted(foot, frame));
+            let during = (0..during.frames()).map(|frame| during.planted(foot, frame));
+            let after = (last + 1..b.frames()).map(|frame| b.planted(foot, frame));
             before.chain(during).chain(after).collect()
-        });
-        Contacts::from_flags(planted)
+        })
     }
 }
 
 fn contacts_of(mixes: &[FrameMix], of: &[&Contacts]) -> Contacts {
-    let planted = |side: Side| {
+    let planted = |foot: Foot| {
         mixes.iter().map(move |mix| {
             let parts = mix.weights.iter().zip(&mix.frames).zip(of);
             let planted = parts
-                .filter(|((_, frame), contacts)| contacts.planted(side, frame.round() as usize));
+                .filter(|((_, frame), contacts)| contacts.planted(foot, frame.round() as usize));
             planted.map(|((weight, _), _)| weight).sum::<f64>() > 0.5
         })
     };
-    Contacts::from_flags(Side::BOTH.map(|side| planted(side).collect()))
+    let feet = of.iter().map(|contacts| contacts.feet()).max_by_key(|feet| feet.len());
+    Contacts::of_feet(feet.unwrap_or_default(), |foot| planted(foot).collect())
 }
 
 struct Blend<'a> {

@@ -2,7 +2,7 @@
 
 use super::tracks::Tracks;
 use crate::math::sort::sort_by_key;
-use crate::skeleton::Side;
+use crate::skeleton::Foot;
 use std::ops::Range;
 
 /// The kinds of faults, in the order in which they are mended.
@@ -89,7 +89,7 @@ pub(super) enum Form {
     /// Frames before the motion begins, or after it ends.
     Outside,
     /// A foot that slides in a stance.
-    Slide(Side),
+    Slide(Foot),
     /// The frame rate at which the motion would look right, frames per second.
     Rate(f64),
 }

@@ -6,7 +6,7 @@ use crate::clip::{Clip, Contacts, Motion, estimate_ground, stillest_point};
 use crate::math::stats;
 use crate::metrics::foot_slides;
 use crate::registration::REFERENCE_HEIGHT_M;
-use crate::skeleton::{Roles, Side, WorldPose};
+use crate::skeleton::{Foot, Roles, WorldPose};
 use glam::{DVec2, Vec3};
 
 /// The least slide of a foot in a stance, centimetres.
@@ -24,7 +24,8 @@ const MAX_STANCES: usize = 200;
 /// The stances of a motion: where the feet stand, and how they move.
 #[derive(Debug, Default)]
 struct Stance {
-    side: usize,
+    /// The index of the foot.
+    foot: usize,
     /// The middle, seconds.
     secs: f64,
     /// The height of the lowest point, metres.
@@ -51,13 +52,13 @@ fn stances(motion: &Motion) -> Vec<Stance> {
     let fps = clip.fps();
     let mut found = Vec::new();
     let mut world = WorldPose::default();
-    for side in Side::BOTH {
-        let points = roles.foot_points(clip.skeleton(), side);
+    for &foot in motion.contacts().feet() {
+        let points = roles.foot_points(clip.skeleton(), foot);
         let needed = clip.skeleton().with_ancestors(points.iter().map(|&(joint, _)| joint));
-        let Some(&(foot, _)) = points.first() else {
+        let Some(&(ankle, _)) = points.first() else {
             continue;
         };
-        for frames in motion.contacts().intervals(side) {
+        for frames in motion.contacts().intervals(foot) {
             // The first and last frames of a stance roll: the rest stands.
             let edge = frames.len() / 4;
             let inner = frames.start + edge..frames.end - edge;
@@ -72,7 +73,7 @@ fn stances(motion: &Motion) -> Vec<Stance> {
                 let now: Vec<Vec3> =
                     points.iter().map(|&(joint, point)| world.point(joint, point)).collect();
                 heights.extend(now.iter().map(|p| f64::from(p.y)).min_by(f64::total_cmp));
-                let yaw = yaw_of(&world, foot);
+                let yaw = yaw_of(&world, ankle);
                 if let Some((last, last_yaw)) = before {
                     if let Some((point, step)) = stillest_point(&last, &now) {
                         x.push(f64::from(step.x) * fps);
@@ -85,7 +86,7 @@ fn stances(motion: &Motion) -> Vec<Stance> {
                 before = Some((now, yaw));
             }
             found.push(Stance {
-                side: side.index(),
+                foot: foot.index(),
                 secs: (inner.start + inner.end) as f64 / 2.0 / fps,
                 height_m: median(&heights) as f32,
                 velocity: DVec2::new(median(&x), median(&z)),
@@ -109,21 +110,23 @@ pub(super) fn drift(motion: &Motion) -> Option<Fault> {
     let clip = motion.clip();
     let frames = 0..clip.frames();
     let scale = relative_height(motion.body_height());
-    let planted: f64 = Side::BOTH
+    let feet = motion.contacts().feet();
+    let planted: f64 = feet
         .iter()
-        .flat_map(|&side| motion.contacts().intervals(side))
+        .flat_map(|&foot| motion.contacts().intervals(foot))
         .map(|stance| stance.len() as f64 / clip.fps())
         .sum();
     if planted < 1.0 {
         return None;
     }
-    let of_side = |side: usize| -> Vec<f64> {
-        stances.iter().filter(|s| s.side == side).map(|s| s.turn_rps).collect()
+    let turn_of = |foot: &Foot| {
+        let of_foot = stances.iter().filter(|s| s.foot == foot.index());
+        median(&of_foot.map(|s| s.turn_rps).collect::<Vec<_>>())
     };
-    let sides = [of_side(0), of_side(1)].map(|turns| median(&turns));
     let turn = median(&stances.iter().map(|s| s.turn_rps).collect::<Vec<_>>());
     let spread = median(&stances.iter().map(|s| (s.turn_rps - turn).abs()).collect::<Vec<_>>());
-    let agrees = sides.iter().all(|own| own * turn > 0.0 && (own / turn - 1.0).abs() < 0.5);
+    let agrees =
+        (feet.iter().map(turn_of)).all(|own| own * turn > 0.0 && (own / turn - 1.0).abs() < 0.5);
     let turn_dps = turn.to_degrees().abs() as f32;
     let turns = agrees && spread < 0.35 * turn.abs() && is_between(turn_dps, TURN_DPS);
     let turn_rps = if turns { turn } else { 0.0 };
@@ -207,11 +210,11 @@ pub(super) fn skating(clip: &Clip, roles: &Roles, contacts: &Contacts) -> Vec<Fa
     for stance in foot_slides(clip, roles, contacts) {
         let cm = stance.slide_cm as f32;
         if cm > MIN_SLIDE_CM * scale {
-            let form = Form::Slide(stance.side);
+            let form = Form::Slide(stance.foot);
             let size = (cm, SizeUnit::Centimetres);
             let sure = confidence(cm / scale, 3.0);
             let mut fault = Fault::of_body(FaultKind::Skating, stance.frames, form, size, sure);
-            let points = roles.foot_points(clip.skeleton(), stance.side);
+            let points = roles.foot_points(clip.skeleton(), stance.foot);
             fault.joints = points.first().map(|&(joint, _)| joint).into_iter().collect();
             found.push(fault);
         }

@@ -6,7 +6,7 @@ use super::steps::{NEAR_FRAMES, NEAR_SECS};
 use super::tracks::{Track, Tracks};
 use crate::clip::{Clip, ClipError, Contacts, Motion};
 use crate::math::{Planar, quat, sort::sort_by_key};
-use crate::skeleton::Side;
+use crate::skeleton::Foot;
 use crate::transition::{FootLockError, FootLockOptions, FootLocking, has_legs};
 use std::ops::Range;
 use std::sync::Arc;
@@ -188,10 +188,10 @@ impl Mending {
             motion = motion.cropped(frames.clone())?;
         }
         let slides = self.faults.iter().filter_map(|fault| match fault.whole {
-            Some(Form::Slide(side)) => Some((side, within(&fault.frames, &frames))),
+            Some(Form::Slide(foot)) => Some((foot, within(&fault.frames, &frames))),
             _ => None,
         });
-        let slides: Vec<(Side, Range<usize>)> = slides.collect();
+        let slides: Vec<(Foot, Range<usize>)> = slides.collect();
         if slides.is_empty() || !has_legs(motion.clip().skeleton(), motion.roles()) {
             return Ok(Stage::Done(Mended { motion: Arc::new(motion), frames }));
         }
@@ -347,19 +347,18 @@ pub(super) fn without_drift(clip: &Clip, velocity_mps: glam::DVec2, turn_rps: f6
 }
 
 /// Returns the stances that touch some frames.
-fn sliding_contacts(motion: &Motion, slides: &[(Side, Range<usize>)]) -> Contacts {
+fn sliding_contacts(motion: &Motion, slides: &[(Foot, Range<usize>)]) -> Contacts {
     let contacts = motion.contacts();
-    let flags = Side::BOTH.map(|side| {
+    Contacts::of_feet(contacts.feet(), |foot| {
         let mut flags = vec![false; contacts.frames()];
-        for stance in contacts.intervals(side) {
-            let touches = |(of, frames): &(Side, Range<usize>)| {
-                *of == side && frames.start < stance.end && stance.start < frames.end
+        for stance in contacts.intervals(foot) {
+            let touches = |(of, frames): &(Foot, Range<usize>)| {
+                *of == foot && frames.start < stance.end && stance.start < frames.end
             };
             if slides.iter().any(touches) {
                 flags[stance].fill(true);
             }
         }
         flags
-    });
-    Contacts::from_flags(flags)
+    })
 }

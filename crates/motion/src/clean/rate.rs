@@ -43,7 +43,7 @@ pub(super) fn rate(motion: &Motion) -> Option<Fault> {
 fn by_flight(motion: &Motion) -> Option<(f64, f32)> {
     let clip = motion.clip();
     let contacts = motion.contacts();
-    let flies = |frame: usize| Side::BOTH.iter().all(|&side| !contacts.planted(side, frame));
+    let flies = |frame: usize| contacts.feet().iter().all(|&foot| !contacts.planted(foot, frame));
     let heights = clip.root_translations();
     let mut found = Vec::new();
     let mut start = 0;
@@ -84,6 +84,10 @@ fn curvature(values: &[f64]) -> f64 {
 /// Returns the factor on the frame rate at which steps have the frequency that fits their length.
 fn by_steps(motion: &Motion) -> Option<(f64, f32)> {
     let clip = motion.clip();
+    // The ratio of step length and frequency is that of people.
+    if motion.roles().is_quadruped() {
+        return None;
+    }
     let mut strikes: Vec<usize> = Side::BOTH
         .iter()
         .flat_map(|&side| motion.contacts().intervals(side))

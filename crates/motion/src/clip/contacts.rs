@@ -6,7 +6,7 @@ pub use self::corrections::{ContactCorrection, ContactCorrections, StanceEnd};
 
 use super::Clip;
 use crate::math::stats;
-use crate::skeleton::{Role, Roles, Side, WorldPose};
+use crate::skeleton::{BodyPlan, Foot, FootPair, Role, Roles, WorldPose};
 use glam::Vec3;
 use std::ops::Range;
 
@@ -51,13 +51,27 @@ const LEANING_FLOOR_M: f32 = 0.05;
 /// Speed limits apply unchanged to bodies up to this speed, metres per second, and grow with the
 /// speed above it: in a sprint a planted foot rolls and trembles faster.
 const STEADY_SPEED_MPS: f32 = 2.0;
+/// A point of a foot of a body on four legs counts while it is low only where its own lowest level
+/// is within this height above that of the foot's lowest point, metres: a hock is far above the
+/// ground, and slow long before the foot stands.
+const MAX_ABOVE_FOOT_M: f32 = 0.1;
 /// The body's speed is averaged over this time to either side, seconds: about one step.
 const BODY_SPEED_SECS: f64 = 0.25;
 
-/// The frames in which each foot is planted.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+/// The frames in which each foot is planted: of two feet, or of the four of a body on four legs.
+///
+/// Where a foot is asked for, a [`Side`](crate::skeleton::Side) is the hind foot of that side; of a
+/// body on two legs, its left or right foot.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Contacts {
-    planted: [Vec<bool>; 2],
+    /// The flags of the feet, by [`Foot::index`]: two or four of the same length.
+    planted: Vec<Vec<bool>>,
+}
+
+impl Default for Contacts {
+    fn default() -> Self {
+        Self::from_flags([Vec::new(), Vec::new()])
+    }
 }
 
 impl Contacts {
@@ -68,39 +82,62 @@ impl Contacts {
     /// own lowest level in the clip (5th percentile), so a clip that floats 3 cm above the ground
     /// gives the same contacts, and an ankle need not come down to the height of a toe. Above 2 m/s
     /// the limits on speed grow in proportion to the body's own speed.
+    ///
+    /// A body on four legs has four feet. Points that are never near the ground, as a hock, are
+    /// left out.
     #[must_use]
     pub fn detect(clip: &Clip, roles: &Roles, options: &ContactOptions) -> Self {
         let tracks = FootTracks::of(clip, roles);
         let scale = roles.body_height(clip.skeleton()) / REFERENCE_HEIGHT_M;
         let speed_ratio = tracks.speed_ratio(clip.fps(), scale);
         let min_frames = (f64::from(options.min_secs) * clip.fps()).round().max(0.0) as usize;
-        let mut planted = [vec![false; clip.frames()], vec![false; clip.frames()]];
-        for kind in &tracks.feet {
-            let heights = |track: &[Vec3]| track.iter().map(|p| p.y).collect::<Vec<f32>>();
-            let both: Vec<f32> = kind.iter().flat_map(|(_, track)| heights(track)).collect();
-            let Some(common) = stats::percentile(&both, GROUND_PERCENTILE) else {
+        let mut contacts =
+            Self::of_feet(Foot::of(roles.body_plan()), |_| vec![false; clip.frames()]);
+        for (kind, pair) in tracks.feet.iter().flat_map(|kind| FootPair::BOTH.map(|p| (kind, p))) {
+            let both = || kind.iter().filter(|(foot, _)| foot.pair == pair);
+            let all: Vec<f32> = both().flat_map(|(_, track)| heights_of(track)).collect();
+            let Some(common) = stats::percentile(&all, GROUND_PERCENTILE) else {
                 continue;
             };
-            for (side, track) in kind {
-                let own = stats::percentile(&heights(track), GROUND_PERCENTILE).unwrap_or(common);
+            for (foot, track) in both() {
+                let own = level_of(track).unwrap_or(common);
                 let level = if own - common > LEANING_FLOOR_M * scale { common } else { own };
                 let point =
                     Point { track, level, scale, speed_ratio: &speed_ratio, fps: clip.fps() };
-                point.plant(options, &mut planted[side.index()]);
+                if let Some(planted) = contacts.planted.get_mut(foot.index()) {
+                    point.plant(options, planted);
+                }
             }
         }
-        for flags in &mut planted {
+        for flags in &mut contacts.planted {
             drop_short_runs(flags, false, min_frames);
             drop_short_runs(flags, true, min_frames);
         }
-        Self { planted }
+        contacts
     }
 
-    /// Returns contacts from flags: whether the left and the right foot is planted, one flag per
-    /// frame.
+    /// Returns contacts of two feet from flags: whether the left and the right foot is planted, one
+    /// flag per frame.
     #[must_use]
     pub fn from_flags(planted: [Vec<bool>; 2]) -> Self {
-        Self { planted }
+        Self { planted: planted.into() }
+    }
+
+    /// Returns the contacts of the feet of a body, those of [`Foot::of`], from flags: whether a
+    /// foot is planted, one flag per frame. All must have the same number of frames.
+    #[must_use]
+    pub fn of_feet(feet: &[Foot], flags: impl FnMut(Foot) -> Vec<bool>) -> Self {
+        let plan = match feet {
+            [] | [_] | [_, _] => BodyPlan::Biped,
+            _ => BodyPlan::Quadruped,
+        };
+        Self { planted: Foot::of(plan).iter().copied().map(flags).collect() }
+    }
+
+    /// Returns the feet: two, or the four of a body on four legs.
+    #[must_use]
+    pub fn feet(&self) -> &'static [Foot] {
+        Foot::of(if self.planted.len() > 2 { BodyPlan::Quadruped } else { BodyPlan::Biped })
     }
 
     /// Returns the contacts of a result that leaves `outgoing` at its frame `leave` and enters
@@ -115,64 +152,74 @@ impl Contacts {
         handover: usize,
     ) -> Self {
         let frames = (leave + incoming.frames()).saturating_sub(enter).max(handover);
-        let planted = Side::BOTH.map(|side| {
+        Self::of_feet(outgoing.feet_with(incoming), |foot| {
             (0..frames)
                 .map(|frame| {
                     if frame < handover {
-                        outgoing.planted(side, frame)
+                        outgoing.planted(foot, frame)
                     } else {
-                        incoming.planted(side, (frame + enter).saturating_sub(leave))
+                        incoming.planted(foot, (frame + enter).saturating_sub(leave))
                     }
                 })
                 .collect()
-        });
-        Self { planted }
+        })
     }
 
     /// Returns the contacts with other flags where `by_hand` has one for a foot in a frame.
-    pub(crate) fn corrected(&self, by_hand: impl Fn(Side, usize) -> Option<bool>) -> Self {
-        let flags = |side: Side| {
-            let found = self.planted[side.index()].iter().enumerate();
-            found.map(|(frame, &planted)| by_hand(side, frame).unwrap_or(planted)).collect()
-        };
-        Self { planted: Side::BOTH.map(flags) }
+    pub(crate) fn corrected(&self, by_hand: impl Fn(Foot, usize) -> Option<bool>) -> Self {
+        Self::of_feet(self.feet(), |foot| {
+            let found = self.flags(foot).iter().enumerate();
+            found.map(|(frame, &planted)| by_hand(foot, frame).unwrap_or(planted)).collect()
+        })
+    }
+
+    /// Returns the feet of these contacts and of others: four where either has four.
+    pub(crate) fn feet_with(&self, other: &Self) -> &'static [Foot] {
+        let (own, others) = (self.feet(), other.feet());
+        if own.len() >= others.len() { own } else { others }
+    }
+
+    /// Returns the flags of a foot; none of one that the body does not have.
+    fn flags(&self, foot: Foot) -> &[bool] {
+        self.planted.get(foot.index()).map_or(&[], Vec::as_slice)
     }
 
     /// Returns the contacts of a motion that plays these frames of this one, in this order. Frames
     /// beyond the end have none.
     #[must_use]
     pub fn of_frames(&self, frames: &[usize]) -> Self {
-        let flags = |side| frames.iter().map(|&frame| self.planted(side, frame)).collect();
-        Self { planted: Side::BOTH.map(flags) }
+        Self::of_feet(self.feet(), |foot| {
+            frames.iter().map(|&frame| self.planted(foot, frame)).collect()
+        })
     }
 
     /// Returns the contacts of the mirror image: those of the other foot.
     #[must_use]
     pub fn mirrored(&self) -> Self {
-        let [left, right] = &self.planted;
-        Self { planted: [right.clone(), left.clone()] }
+        Self::of_feet(self.feet(), |foot| self.flags(foot.mirrored()).to_vec())
     }
 
     /// Returns the number of frames.
     #[must_use]
     pub fn frames(&self) -> usize {
-        self.planted[0].len()
+        self.planted.first().map_or(0, Vec::len)
     }
 
-    /// Returns whether the foot of `side` is planted in `frame`; `false` beyond the clip.
+    /// Returns whether a foot is planted in `frame`; `false` beyond the clip, and for a foot that
+    /// the body does not have.
     #[must_use]
-    pub fn planted(&self, side: Side, frame: usize) -> bool {
-        self.planted[side.index()].get(frame).copied().unwrap_or(false)
+    pub fn planted(&self, foot: impl Into<Foot>, frame: usize) -> bool {
+        self.flags(foot.into()).get(frame).copied().unwrap_or(false)
     }
 
-    /// Returns the phase of the foot of `side` in `frame`: 0 at a touchdown, rising to 1 at the
-    /// next. Before the first and after the last touchdown the nearest stride is repeated. `None`
-    /// for a foot with fewer than two touchdowns.
+    /// Returns the phase of a foot in `frame`: 0 at a touchdown, rising to 1 at the next. Before the
+    /// first and after the last touchdown the nearest stride is repeated. `None` for a foot with
+    /// fewer than two touchdowns.
     #[must_use]
-    pub fn phase(&self, side: Side, frame: usize) -> Option<f32> {
+    pub fn phase(&self, foot: impl Into<Foot>, frame: usize) -> Option<f32> {
         // A foot that is planted when the clip begins touched down before.
         let touchdowns: Vec<usize> = self
-            .intervals(side)
+            .intervals(foot)
             .into_iter()
             .map(|stance| stance.start)
             .filter(|&at| at > 0)
@@ -185,13 +232,10 @@ impl Contacts {
         Some(phase.rem_euclid(1.0))
     }
 
-    /// Returns the frames during which the foot of `side` is planted, as ranges in order of time.
+    /// Returns the frames during which a foot is planted, as ranges in order of time.
     #[must_use]
-    pub fn intervals(&self, side: Side) -> Vec<Range<usize>> {
-        runs(&self.planted[side.index()])
-            .filter(|(value, _)| *value)
-            .map(|(_, range)| range)
-            .collect()
+    pub fn intervals(&self, foot: impl Into<Foot>) -> Vec<Range<usize>> {
+        runs(self.flags(foot.into())).filter(|(value, _)| *value).map(|(_, range)| range).collect()
     }
 }
 
@@ -210,11 +254,20 @@ pub(crate) fn stillest_point(before: &[Vec3], after: &[Vec3]) -> Option<(usize, 
     steps.enumerate().min_by(|a, b| a.1.length_squared().total_cmp(&b.1.length_squared()))
 }
 
+fn heights_of(track: &[Vec3]) -> Vec<f32> {
+    track.iter().map(|point| point.y).collect()
+}
+
+/// Returns the lowest level of a point, metres; `None` without a frame.
+fn level_of(track: &[Vec3]) -> Option<f32> {
+    stats::percentile(&heights_of(track), GROUND_PERCENTILE)
+}
+
 /// World positions of the points of the feet and of the hips, frame by frame.
 #[derive(Debug)]
 pub(super) struct FootTracks {
-    /// Positions of ankles, toe joints and toe tips, for each side that has them.
-    pub(super) feet: [Vec<(Side, Vec<Vec3>)>; 3],
+    /// Positions of ankles, toe joints and toe tips, for each foot that has them.
+    pub(super) feet: [Vec<(Foot, Vec<Vec3>)>; 3],
     /// Positions of the hips.
     body: Vec<Vec3>,
     /// For each track, kind by kind: a joint, and a point in its frame.
@@ -225,30 +278,42 @@ pub(super) struct FootTracks {
 }
 
 impl FootTracks {
+    /// Returns the tracks of all frames. Those of points that are never near the ground are left
+    /// out of a body on four legs.
     pub(super) fn of(clip: &Clip, roles: &Roles) -> Self {
         let mut tracks = Self::new(clip, roles);
         tracks.read(clip, 0..clip.frames());
+        if roles.is_quadruped() {
+            tracks.leave_high_points_out(roles.body_height(clip.skeleton()) / REFERENCE_HEIGHT_M);
+        }
         tracks
+    }
+
+    fn leave_high_points_out(&mut self, scale: f32) {
+        let mut lowest = [f32::INFINITY; 4];
+        for (foot, track) in self.feet.iter().flatten() {
+            let lowest = &mut lowest[foot.index()];
+            *lowest = level_of(track).map_or(*lowest, |level| lowest.min(level));
+        }
+        let most = lowest.map(|level| level + MAX_ABOVE_FOOT_M * scale);
+        for kind in &mut self.feet {
+            kind.retain(|(foot, track)| level_of(track) <= Some(most[foot.index()]));
+        }
     }
 
     /// Returns tracks without a frame, to be filled by [`read`](Self::read).
     pub(super) fn new(clip: &Clip, roles: &Roles) -> Self {
         let skeleton = clip.skeleton();
-        let joint = |role| roles.get_within(role, skeleton.len());
-        let mut feet: [Vec<(Side, Vec<Vec3>)>; 3] = Default::default();
+        let mut feet: [Vec<(Foot, Vec<Vec3>)>; 3] = Default::default();
         let mut points: [Vec<(usize, Vec3)>; 3] = Default::default();
-        for side in Side::BOTH {
-            let (foot, toe) = (joint(Role::foot(side)), joint(Role::toe(side)));
-            // The tip of a foot without toes is its own end site.
-            let last = toe.or(foot);
-            let tip = last.and_then(|j| Some((j, skeleton.joints()[j].end_site?)));
-            let of = [foot.map(|j| (j, Vec3::ZERO)), toe.map(|j| (j, Vec3::ZERO)), tip];
+        for &foot in Foot::of(roles.body_plan()) {
+            let of = roles.points_of_foot(skeleton, foot);
             for ((tracks, points), point) in feet.iter_mut().zip(&mut points).zip(of) {
-                tracks.extend(point.map(|_| (side, Vec::with_capacity(clip.frames()))));
+                tracks.extend(point.map(|_| (foot, Vec::with_capacity(clip.frames()))));
                 points.extend(point);
             }
         }
-        let hips = joint(Role::Hips).unwrap_or(0);
+        let hips = roles.get_within(Role::Hips, skeleton.len()).unwrap_or(0);
         let joints = points.iter().flatten().map(|&(joint, _)| joint).chain([hips]);
         let needed = skeleton.with_ancestors(joints);
         Self { feet, body: Vec::with_capacity(clip.frames()), points, hips, needed }

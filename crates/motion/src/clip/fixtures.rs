@@ -1,5 +1,9 @@
 //! Motions for the skeletons of `skeleton::fixtures`, for tests.
 
+mod quadruped;
+
+pub use quadruped::{QuadrupedWalk, quadruped};
+
 use super::{Clip, JointTranslations};
 use crate::skeleton::{Joint, Skeleton, fixtures::noise};
 use glam::{Quat, Vec3};

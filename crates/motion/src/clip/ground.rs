@@ -3,11 +3,14 @@
 use super::contacts::{FootTracks, GROUND_PERCENTILE, REFERENCE_HEIGHT_M};
 use super::{Clip, Contacts};
 use crate::math::stats;
-use crate::skeleton::{Roles, Side};
+use crate::skeleton::Roles;
 use glam::Vec3;
 
 /// Usual heights of ankle, toe joint and toe tip above the sole of a character 1.75 m tall, metres.
 const ABOVE_SOLE_M: [f32; 3] = [0.09, 0.03, 0.02];
+/// The greatest heights of the end of a leg, the next joint and the tip of its foot above the sole
+/// of a body on four legs 1.75 m tall, metres: rigs end anywhere between hock and hoof.
+const MOST_ABOVE_SOLE_M: [f32; 3] = [0.3, 0.12, 0.03];
 /// The ground is y = 0, as usual in files, unless the feet contradict it by more than this, metres
 /// for a character 1.75 m tall.
 const TOLERANCE_M: f32 = 0.03;
@@ -17,22 +20,23 @@ const TOLERANCE_M: f32 = 0.03;
 /// It is 0 unless planted feet contradict that: if the 5th percentile of their lowest points lies
 /// more than 3 cm below 0, it is the ground; if the soles, by the usual heights of ankle, toe joint
 /// and toe tip above them, float more than 3 cm above 0, the 5th percentile of the soles' heights
-/// is. These lengths are those of a character 1.75 m tall. 0 for a clip in which no foot is
-/// planted.
+/// is. These lengths are those of a character 1.75 m tall. Of a body on four legs the soles are
+/// taken as low below these points as they can be. 0 for a clip in which no foot is planted.
 #[must_use]
 pub fn estimate_ground(clip: &Clip, roles: &Roles, contacts: &Contacts) -> f32 {
     let tracks = FootTracks::of(clip, roles);
     let scale = roles.body_height(clip.skeleton()) / REFERENCE_HEIGHT_M;
     let (mut lowest, mut soles) = (Vec::new(), Vec::new());
-    for side in Side::BOTH {
-        let points: Vec<(&[Vec3], f32)> = (tracks.feet.iter().zip(ABOVE_SOLE_M))
+    let above_sole = if roles.is_quadruped() { MOST_ABOVE_SOLE_M } else { ABOVE_SOLE_M };
+    for &foot in contacts.feet() {
+        let points: Vec<(&[Vec3], f32)> = (tracks.feet.iter().zip(above_sole))
             .flat_map(|(kind, above)| {
                 kind.iter().map(move |(of, track)| (*of, track, above * scale))
             })
-            .filter(|(of, _, _)| *of == side)
+            .filter(|(of, _, _)| *of == foot)
             .map(|(_, track, above)| (track.as_slice(), above))
             .collect();
-        for frame in (0..clip.frames()).filter(|&frame| contacts.planted(side, frame)) {
+        for frame in (0..clip.frames()).filter(|&frame| contacts.planted(foot, frame)) {
             let heights =
                 || points.iter().map(|(track, above)| (track[frame].y, track[frame].y - above));
             lowest.extend(heights().map(|(point, _)| point).min_by(f32::total_cmp));

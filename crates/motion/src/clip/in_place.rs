@@ -3,7 +3,7 @@
 use super::contacts::{FootTracks, GROUND_PERCENTILE, REFERENCE_HEIGHT_M, drop_short_runs};
 use super::{Clip, ContactCorrections, ContactOptions, Contacts, character_frames};
 use crate::math::{Planar, stats};
-use crate::skeleton::{Roles, Side};
+use crate::skeleton::{Foot, Roles};
 use glam::DVec2;
 
 /// The first estimate of the body's speed is a mean over this time, seconds: about one step.
@@ -95,7 +95,7 @@ pub fn root_motion_from_feet(
     }
     let carries = feet.carrying(clip.fps());
     let contacts = corrections.applied_to(&feet.contacts(&carries, options, clip.fps()));
-    if Side::BOTH.into_iter().all(|side| contacts.intervals(side).is_empty()) {
+    if contacts.feet().iter().all(|&foot| contacts.intervals(foot).is_empty()) {
         return Err(RootMotionError::NoContacts);
     }
     let velocities = feet.velocities(&carries, clip.fps());
@@ -117,15 +117,17 @@ pub fn root_motion_from_feet(
     Ok(RootMotion { world_from_clip, contacts })
 }
 
-/// The points of both feet, frame by frame.
+/// The points of all feet, frame by frame.
 struct Feet {
+    /// The feet of the body.
+    of: &'static [Foot],
     points: Vec<FootPoint>,
     /// The body's height against that of the options.
     scale: f64,
 }
 
 struct FootPoint {
-    side: Side,
+    foot: Foot,
     /// Trajectory over the ground, (x, z) in metres.
     way: Vec<DVec2>,
     /// Share of the body that it may carry by its height alone, 0 to 1.
@@ -137,7 +139,7 @@ impl Feet {
         let scale = f64::from(roles.body_height(clip.skeleton()) / REFERENCE_HEIGHT_M);
         let limit = f64::from(options.leave_height_m.max(options.enter_height_m)) * scale;
         let mut points = Vec::new();
-        for (side, way) in FootTracks::of(clip, roles).feet.into_iter().flatten() {
+        for (foot, way) in FootTracks::of(clip, roles).feet.into_iter().flatten() {
             let heights: Vec<f32> = way.iter().map(|point| point.y).collect();
             let Some(level) = stats::percentile(&heights, GROUND_PERCENTILE) else {
                 continue;
@@ -147,7 +149,7 @@ impl Feet {
                 (1.0 - share).max(0.0).powi(2)
             };
             points.push(FootPoint {
-                side,
+                foot,
                 lows: heights.iter().map(low).collect(),
                 way: way
                     .iter()
@@ -155,7 +157,7 @@ impl Feet {
                     .collect(),
             });
         }
-        Self { points, scale }
+        Self { of: Foot::of(roles.body_plan()), points, scale }
     }
 
     /// Returns the share of the body that each point carries, 0 to 1: that of low points that do
@@ -210,9 +212,9 @@ impl Feet {
         let share = options.enter_height_m / options.leave_height_m.max(options.enter_height_m);
         let least = (1.0 - f64::from(share)).powi(2).max(1e-6);
         let frames = self.points.first().map_or(0, |point| point.way.len());
-        let flags = |side: Side| -> Vec<bool> {
+        let flags = |foot: Foot| -> Vec<bool> {
             let own =
-                || self.points.iter().zip(carries).filter(move |(point, _)| point.side == side);
+                || self.points.iter().zip(carries).filter(move |(point, _)| point.foot == foot);
             let carried = |frame: usize| own().any(|(_, carries)| carries[frame] >= least);
             let mut planted: Vec<bool> = (0..frames).map(carried).collect();
             let min_frames = (f64::from(options.min_secs) * fps).round().max(0.0) as usize;
@@ -220,7 +222,7 @@ impl Feet {
             drop_short_runs(&mut planted, true, min_frames);
             planted
         };
-        Contacts::from_flags(Side::BOTH.map(flags))
+        Contacts::of_feet(self.of, flags)
     }
 
     /// Returns the step of the body from a frame to the next; `None` where nothing carries it.
@@ -233,12 +235,12 @@ impl Feet {
         turns: bool,
     ) -> Option<Planar> {
         let stands =
-            |side: Side| contacts.planted(side, frame) && contacts.planted(side, frame + 1);
+            |foot: Foot| contacts.planted(foot, frame) && contacts.planted(foot, frame + 1);
         let weight = |index: usize| carries[index][frame].min(carries[index][frame + 1]);
         let carrying = || {
             let each = self.points.iter().enumerate();
             let each = each.map(move |(index, point)| (point, weight(index)));
-            each.filter(move |(point, weight)| stands(point.side) && *weight > 0.0)
+            each.filter(move |(point, weight)| stands(point.foot) && *weight > 0.0)
         };
         let total: f64 = carrying().map(|(_, weight)| weight).sum();
         if total <= 0.0 {
@@ -246,8 +248,8 @@ impl Feet {
         }
         let mut yaw = 0.0;
         if turns {
-            let turned = Side::BOTH.into_iter().filter_map(|side| {
-                let mut own = carrying().filter(|(point, _)| point.side == side);
+            let turned = self.of.iter().filter_map(|&foot| {
+                let mut own = carrying().filter(|(point, _)| point.foot == foot);
                 let (heel, tip) = (own.next()?, own.next_back()?);
                 let along = |frame: usize| Some(tip.0.way.get(frame)? - heel.0.way.get(frame)?);
                 let (before, after) = (along(frame)?, along(frame + 1)?);
@@ -263,8 +265,8 @@ impl Feet {
         // The point of each foot that moves backward fastest: it stands, while the others roll
         // about it.
         let step = |point: &FootPoint| point.way[frame] - turn.apply_ground(point.way[frame + 1]);
-        let feet = Side::BOTH.into_iter().filter_map(|side| {
-            let own = carrying().filter(|(point, _)| point.side == side);
+        let feet = self.of.iter().filter_map(|&foot| {
+            let own = carrying().filter(|(point, _)| point.foot == foot);
             let each = own.map(|(point, weight)| (step(point), weight));
             each.max_by(|a, b| a.0.dot(velocity).total_cmp(&b.0.dot(velocity)))
         });
@@ -343,6 +345,7 @@ fn smoothed(steps: &[Option<Planar>], reach: usize) -> Vec<Planar> {
 mod tests {
     use super::*;
     use crate::math::wrap_angle;
+    use crate::skeleton::Side;
     use crate::synth::{Action, Params, synthesize};
     use proptest::prelude::*;
 

@@ -9,6 +9,9 @@ use crate::skeleton::{Role, Roles};
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
+/// The most frames in which the body plan is sought.
+const MAX_PLAN_SAMPLES: usize = 60;
+
 /// Options for the feet of a clip: the contacts, and the height of the ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FootOptions {
@@ -57,7 +60,9 @@ impl PartialEq for Motion {
 }
 
 impl Motion {
-    /// Analyses a clip; the roles of its joints are found in its skeleton ([`Roles::detect`]).
+    /// Analyses a clip; the roles of its joints are found in its skeleton ([`Roles::detect`]), and
+    /// its frames show whether it stands on four legs where the rest pose does not
+    /// ([`Roles::with_plan_of`]).
     #[must_use]
     pub fn analyze(clip: impl Into<Arc<Clip>>) -> Self {
         let clip = clip.into();
@@ -65,12 +70,17 @@ impl Motion {
         Self::with_roles(clip, &roles)
     }
 
-    /// Analyses a clip whose joints have these roles.
+    /// Analyses a clip whose joints have these roles. The body plan is that of the roles, or that
+    /// which the rest pose or the frames show ([`Roles::with_plan_of`]).
     #[must_use]
     pub fn with_roles(clip: impl Into<Arc<Clip>>, roles: &Roles) -> Self {
+        let clip: Arc<Clip> = clip.into();
+        let step = clip.frames().div_ceil(MAX_PLAN_SAMPLES).max(1);
+        let poses = (0..clip.frames()).step_by(step).map(|frame| clip.world_pose(frame));
+        let roles = roles.clone().with_plan_of(clip.skeleton(), poses);
         Self {
-            clip: clip.into(),
-            roles: roles.clone(),
+            clip,
+            roles,
             ground_frames: OnceLock::new(),
             feet: FootOptions::default(),
             found_contacts: OnceLock::new(),
@@ -396,7 +406,7 @@ mod tests {
         let motion = Motion::analyze(walk());
         let (found, frames) = (motion.contacts().clone(), walk().frames());
         let all: ContactCorrections = Side::BOTH
-            .map(|side| ContactCorrection { side, frames: 0..frames, planted: true })
+            .map(|side| ContactCorrection { foot: side.into(), frames: 0..frames, planted: true })
             .into_iter()
             .collect();
         let corrected = motion.clone().with_contact_corrections(all.clone());

@@ -17,7 +17,8 @@ const LATERAL_PAIRS: [fn(Side) -> Role; 2] = [Role::thigh, Role::upper_arm];
 ///
 /// It is the mean of the axes across hips and shoulders (right to left), rotated by a quarter turn
 /// about up. It never uses an Euler angle, which can jump where the body does not. A rig without
-/// legs and arms faces along its root's +Z.
+/// legs and arms faces along its root's +Z. A body on four legs faces from its hip joints to its
+/// shoulder joints; the more it rears, the more the axes across count.
 #[must_use]
 pub fn facing(world: &WorldPose, roles: &Roles) -> Option<Vec3> {
     let at = |role| roles.get(role).and_then(|joint| world.positions.get(joint));
@@ -35,8 +36,23 @@ fn axis_facing(world: &WorldPose, roles: &Roles) -> Option<Vec3> {
         |role: fn(Side) -> Role| (at(role(Side::Left))? - at(role(Side::Right))?).try_normalize();
     let [hips, shoulders] = LATERAL_PAIRS.map(across);
     // Left × up = forward.
-    let across = (hips.unwrap_or_default() + shoulders.unwrap_or_default()).try_normalize()?;
-    over_the_ground(across.cross(Vec3::Y))
+    let across = (hips.unwrap_or_default() + shoulders.unwrap_or_default()).try_normalize();
+    if roles.is_quadruped()
+        && let Some(trunk) = trunk_over_the_ground(world, roles)
+    {
+        let upright = 1.0 - trunk.length();
+        return over_the_ground(trunk + across.unwrap_or_default().cross(Vec3::Y) * upright);
+    }
+    over_the_ground(across?.cross(Vec3::Y))
+}
+
+/// Returns the horizontal part of the unit vector from the middle of the hip joints to that of the
+/// shoulder joints; `None` where one of them is missing.
+fn trunk_over_the_ground(world: &WorldPose, roles: &Roles) -> Option<Vec3> {
+    let at = |role| roles.get(role).and_then(|joint| world.positions.get(joint).copied());
+    let middle = |role: fn(Side) -> Role| Some(at(role(Side::Left))? + at(role(Side::Right))?);
+    let trunk = (middle(Role::upper_arm)? - middle(Role::thigh)?).try_normalize()?;
+    Some(Vec3::new(trunk.x, 0.0, trunk.z))
 }
 
 fn over_the_ground(forward: Vec3) -> Option<Vec3> {

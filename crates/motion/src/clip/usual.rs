@@ -3,7 +3,7 @@
 use super::{Motion, stillest_step, turn_change};
 use crate::clip::Clip;
 use crate::math::{quat, stats};
-use crate::skeleton::{Roles, Side, WorldPose};
+use crate::skeleton::{Foot, Roles, WorldPose};
 use glam::{Quat, Vec3};
 
 /// The number of steps from which usual values are computed: enough for a 99th percentile, and
@@ -13,9 +13,9 @@ const SAMPLES: usize = 1_000;
 /// The usual speeds of a motion's joints and root, and the motion of its feet.
 #[derive(Clone, Debug)]
 pub(crate) struct UsualMotion {
-    /// Per side and frame: the distance that the stillest point of the foot moves over the ground
-    /// in the step into that frame, metres.
-    pub(crate) slides: [Vec<f32>; 2],
+    /// Per foot ([`Foot::of`]) and frame: the distance that the stillest point of the foot moves
+    /// over the ground in the step into that frame, metres.
+    pub(crate) slides: Vec<Vec<f32>>,
     /// Per joint, the 99th percentile of the turn from one frame to the next, radians.
     pub(crate) turn: Vec<f32>,
     /// Per joint, the 99th percentile of the change of that turn (as a rotation vector) from one
@@ -63,10 +63,11 @@ fn usual_turns(clip: &Clip) -> (Vec<f32>, Vec<f32>) {
         .unzip()
 }
 
-fn slides(clip: &Clip, roles: &Roles) -> [Vec<f32>; 2] {
-    let points = Side::BOTH.map(|side| roles.foot_points(clip.skeleton(), side));
-    let mut slides = [Vec::with_capacity(clip.frames()), Vec::with_capacity(clip.frames())];
-    let mut before: [Vec<Vec3>; 2] = Default::default();
+fn slides(clip: &Clip, roles: &Roles) -> Vec<Vec<f32>> {
+    let feet = Foot::of(roles.body_plan()).iter();
+    let points: Vec<_> = feet.map(|&foot| roles.foot_points(clip.skeleton(), foot)).collect();
+    let mut slides = vec![Vec::with_capacity(clip.frames()); points.len()];
+    let mut before: Vec<Vec<Vec3>> = vec![Vec::new(); points.len()];
     let mut world = WorldPose::default();
     for frame in 0..clip.frames() {
         clip.world_pose_into(frame, &mut world);

@@ -5,7 +5,7 @@ use super::phase::Events;
 use crate::clip::{ContactOptions, Contacts, Motion, ground_speed};
 use crate::math::sort::sort_by;
 use crate::math::{quat, stats};
-use crate::skeleton::{Roles, Side};
+use crate::skeleton::{Foot, Roles, Side};
 use crate::transition::{CycleSearch, Loop, LoopOptions, WholeCycle, close_loop, find_cycle};
 use std::ops::Range;
 
@@ -98,7 +98,7 @@ impl GaitCycle {
         let range = 0..source.clip().frames().saturating_sub(1);
         let looped = close_loop(source, range.clone(), &LoopOptions::default())?;
         let corrections = source.contact_corrections();
-        let by_hand = |side, frame| corrections.planted(side, frame);
+        let by_hand = |foot: Foot, frame| corrections.planted(foot, frame);
         let Some((strike, events)) = events_of(&looped, source.roles(), by_hand) else {
             return Ok(Self::new(looped, range, EVEN_WALK));
         };
@@ -128,7 +128,7 @@ impl GaitCycle {
         sort_by(&mut closed, |a, b| a.0.total_cmp(&b.0));
         for (_, start, looped) in closed {
             let corrections = source.contact_corrections();
-            let by_hand = |side, frame| corrections.planted(side, start + frame);
+            let by_hand = |foot: Foot, frame| corrections.planted(foot, start + frame);
             let Some((strike, events)) = events_of(&looped, roles, by_hand) else {
                 continue;
             };
@@ -183,7 +183,7 @@ impl GaitCycle {
 pub(crate) fn events_of(
     looped: &Loop,
     roles: &Roles,
-    by_hand: impl Fn(Side, usize) -> Option<bool>,
+    by_hand: impl Fn(Foot, usize) -> Option<bool>,
 ) -> Option<(usize, Events)> {
     let frames = looped.clip.frames();
     if !CYCLE_SECS.contains(&(frames as f64 / looped.clip.fps())) {
@@ -191,7 +191,7 @@ pub(crate) fn events_of(
     }
     // In the middle one of three repetitions no stance is cut off.
     let found = Contacts::detect(&looped.repeat(3).ok()?, roles, &ContactOptions::default());
-    let contacts = found.corrected(|side, frame| by_hand(side, frame % frames));
+    let contacts = found.corrected(|foot, frame| by_hand(foot, frame % frames));
     let stance = |side: Side| {
         let mut within = contacts
             .intervals(side)

@@ -4,7 +4,7 @@ use super::stitch::PieceSeam;
 use super::{FrameSet, MotionGraph, Place, WalkPiece};
 use crate::clip::{Clip, stillest_step, turn_change};
 use crate::math::{Planar, quat, stats, wrap_angle};
-use crate::skeleton::{Side, WorldPose};
+use crate::skeleton::{Foot, WorldPose};
 use glam::{DVec2, Quat, Vec3};
 use std::ops::Range;
 use std::sync::Arc;
@@ -84,9 +84,9 @@ impl WalkProfile {
         turns.len() == all
     }
 
-    fn planted(&self, place: Place, side: Side) -> bool {
+    fn planted(&self, place: Place, foot: Foot) -> bool {
         self.set.clip(place.clip).is_some_and(|motion| {
-            place.frame < motion.clip().frames() && motion.contacts().planted(side, place.frame)
+            place.frame < motion.clip().frames() && motion.contacts().planted(foot, place.frame)
         })
     }
 
@@ -227,9 +227,10 @@ pub struct WalkMeter {
     within: usize,
     /// Whether each frame of the set was played.
     seen: Vec<bool>,
-    feet: [Vec<Vec3>; 2],
-    /// Per side: the first frame of the stance, its greatest slide and its current slide, metres.
-    stances: [Option<(usize, f32, Vec3)>; 2],
+    /// The points of each foot in the previous frame.
+    feet: [Vec<Vec3>; 4],
+    /// Per foot: the first frame of the stance, its greatest slide and its current slide, metres.
+    stances: [Option<(usize, f32, Vec3)>; 4],
     /// The previous frame: ground frame, local rotations of the joints, and position of the root.
     before: Option<(Planar, Vec<Quat>, Vec3)>,
     turned: Vec<Vec3>,
@@ -247,7 +248,7 @@ impl WalkMeter {
             within: 0,
             seen: vec![false; set.frames()],
             feet: Default::default(),
-            stances: [None; 2],
+            stances: [None; 4],
             before: None,
             turned: Vec::new(),
             world_from_last: Planar::IDENTITY,
@@ -290,9 +291,12 @@ impl WalkMeter {
 
     fn measure(&mut self, piece: &WalkPiece, frames: Range<usize>, profile: &WalkProfile) {
         let roles = profile.set.clips().first().map(|motion| motion.roles());
-        let points = Side::BOTH.map(|side| {
-            roles.map_or_else(Vec::new, |roles| roles.foot_points(piece.clip.skeleton(), side))
-        });
+        let feet = roles.map_or(&[][..], |roles| Foot::of(roles.body_plan()));
+        let points_of = |&foot: &Foot| {
+            roles.map_or_else(Vec::new, |roles| roles.foot_points(piece.clip.skeleton(), foot))
+        };
+        let points: Vec<(Foot, Vec<(usize, Vec3)>)> =
+            feet.iter().map(|foot| (*foot, points_of(foot))).collect();
         let mut world = WorldPose::default();
         for frame in frames {
             let standing = piece.frames.get(frame).copied().unwrap_or(Planar::IDENTITY);
@@ -309,14 +313,12 @@ impl WalkMeter {
             self.before = Some((standing, rotations.to_vec(), root));
             piece.clip.world_pose_into(frame, &mut world);
             let number = self.walked.steps.len() - 1;
-            for side in Side::BOTH {
-                let now: Vec<Vec3> = points[side.index()]
-                    .iter()
-                    .map(|&(joint, point)| world.point(joint, point))
-                    .collect();
-                let stands = profile.planted(piece.shown_at(frame), side);
+            for (foot, points) in &points {
+                let now: Vec<Vec3> =
+                    points.iter().map(|&(joint, point)| world.point(joint, point)).collect();
+                let stands = profile.planted(piece.shown_at(frame), *foot);
                 let (feet, stance) =
-                    (&mut self.feet[side.index()], &mut self.stances[side.index()]);
+                    (&mut self.feet[foot.index()], &mut self.stances[foot.index()]);
                 if let (Some(step), Some((_, most, slid))) =
                     (stillest_step(feet, &now).filter(|_| stands), stance.as_mut())
                 {

@@ -54,7 +54,8 @@ pub struct Controller {
     feet: Feet,
     pose: Pose,
     previous: Pose,
-    planted: [bool; 2],
+    /// By [`Foot::index`](crate::skeleton::Foot).
+    planted: [bool; 4],
     /// Real time that has not become a tick yet, seconds.
     left_secs: f64,
     tick: u64,
@@ -98,7 +99,7 @@ impl Controller {
             feet,
             pose: Pose::default(),
             previous: Pose::default(),
-            planted: [false; 2],
+            planted: [false; 4],
             left_secs: 0.0,
             tick: 0,
             jumps: 0,
@@ -202,10 +203,11 @@ impl Controller {
         self.place
     }
 
-    /// Returns which feet are planted: left, right. A planted foot has a contact in its clip, and
-    /// has landed.
+    /// Returns which feet are planted, by their indices ([`Foot::index`](crate::skeleton::Foot)):
+    /// left, right, and the forefeet of a body on four legs. A planted foot has a contact in its
+    /// clip, and has landed.
     #[must_use]
-    pub fn planted(&self) -> [bool; 2] {
+    pub fn planted(&self) -> [bool; 4] {
         self.planted
     }
 

@@ -7,6 +7,7 @@ use super::{Candidate, Controller, ControllerOptions, MatchError, SearchReason};
 use crate::clip::{Clip, Contacts, character_frames};
 use crate::math::{Planar, wrap_angle};
 use crate::metrics::{Extreme, StanceSlide, foot_slides};
+use crate::skeleton::Foot;
 use std::sync::Arc;
 
 /// The motion of a controller for a recording, and the desired motion.
@@ -86,8 +87,8 @@ pub fn drive(
 ) -> Result<Drive, MatchError> {
     let mut controller = Controller::new(Arc::clone(database), options, &Planar::IDENTITY)?;
     let ticks = recording.ticks();
-    let (mut poses, mut planted) =
-        (Vec::with_capacity(ticks), [Vec::with_capacity(ticks), Vec::with_capacity(ticks)]);
+    let mut poses = Vec::with_capacity(ticks);
+    let mut planted: Vec<[bool; 4]> = Vec::with_capacity(ticks);
     let (mut roots, mut desired, mut goals) =
         (Vec::with_capacity(ticks), Vec::with_capacity(ticks), Vec::with_capacity(ticks));
     let (mut jumps, mut searches, mut visited) = (Vec::new(), 0, 0);
@@ -104,16 +105,16 @@ pub fn drive(
             }
         }
         poses.push(controller.pose().clone());
-        for (flags, stands) in planted.iter_mut().zip(controller.planted()) {
-            flags.push(stands);
-        }
+        planted.push(controller.planted());
         roots.push(controller.root());
         desired.push(controller.simulation().place());
         goals.push(controller.simulation().goal_yaw);
     }
     Ok(Drive {
         clip: Clip::from_poses("drive", Arc::clone(database.skeleton()), RATE as f64, poses)?,
-        contacts: Contacts::from_flags(planted),
+        contacts: Contacts::of_feet(Foot::of(database.roles().body_plan()), |foot| {
+            planted.iter().map(|feet| feet[foot.index()]).collect()
+        }),
         roots,
         desired,
         goals,

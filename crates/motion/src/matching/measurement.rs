@@ -13,7 +13,7 @@ use crate::clip::{
 use crate::math::Planar;
 use crate::registration::REFERENCE_HEIGHT_M;
 use crate::retarget::{MotionRetargeting, RetargetErrors, TargetBody};
-use crate::skeleton::{Roles, Side};
+use crate::skeleton::Roles;
 use crate::transition::repeat_clip;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -82,10 +82,7 @@ impl PreparedClip {
         };
         let frames = self.clip.frames();
         let three = detect(&repeat_clip(&self.clip, cycle, 3)?);
-        Ok(Contacts::from_flags(
-            Side::BOTH
-                .map(|side| (frames..2 * frames).map(|frame| three.planted(side, frame)).collect()),
-        ))
+        Ok(three.of_frames(&(frames..2 * frames).collect::<Vec<usize>>()))
     }
 }
 

@@ -9,7 +9,7 @@ use super::tags::TagRange;
 use super::{MatchError, simulation_roots};
 use crate::clip::{Clip, Contacts, character_frames, estimate_ground, stillest_point};
 use crate::math::{Planar, stats, wrap_angle};
-use crate::skeleton::{Role, Roles, Side, WorldPose};
+use crate::skeleton::{Foot, Role, Roles, WorldPose};
 use glam::{DVec2, Vec3};
 use std::sync::Arc;
 
@@ -31,8 +31,8 @@ pub struct DatabaseClipParts {
     pub ground_m: f32,
     /// The usual height of a planted foot's lowest point, metres.
     pub stand_m: f32,
-    /// The states of the left and the right foot.
-    pub feet: [Vec<FootState>; 2],
+    /// The states of the feet, by [`Foot::index`]; empty for feet that the body does not have.
+    pub feet: [Vec<FootState>; 4],
     /// The features of the body, in the order of [`Layout`](super::Layout).
     pub body: Vec<[f32; BODY]>,
     /// The greatest speeds.
@@ -98,8 +98,10 @@ impl DatabaseClip {
             return Err(MatchError::NotFinite { name });
         }
         let ground_m = estimate_ground(&clip, roles, &contacts);
-        let mut feet = Side::BOTH
-            .map(|side| foot_states(&clip, &roots, cycle.as_ref(), roles, &contacts, side));
+        let mut feet: [Vec<FootState>; 4] = Default::default();
+        for (&foot, states) in Foot::of(roles.body_plan()).iter().zip(&mut feet) {
+            *states = foot_states(&clip, &roots, cycle.as_ref(), roles, &contacts, foot);
+        }
         let cycle_frame: Vec<f32> =
             (feet.iter().flatten().filter(|foot| foot.planted)).map(|foot| foot.above_m).collect();
         let stand_m = stats::percentile(&cycle_frame, 0.5).unwrap_or(ground_m);
@@ -132,9 +134,11 @@ impl DatabaseClip {
     #[must_use]
     pub fn of_parts(parts: DatabaseClipParts) -> Option<Self> {
         let frames = parts.clip.frames();
-        let (joints, [left, right]) = (parts.clip.skeleton().len(), &parts.feet);
+        let (joints, [left, right, fore @ ..]) = (parts.clip.skeleton().len(), &parts.feet);
         let lengths = [parts.roots.len(), parts.contacts.frames(), left.len(), right.len()];
-        let are_alike = parts.body.len() == frames && lengths.into_iter().all(|len| len == frames);
+        let are_alike = parts.body.len() == frames
+            && lengths.into_iter().all(|len| len == frames)
+            && fore.iter().all(|states| states.is_empty() || states.len() == frames);
         let is_whole = frames > 0 && are_alike && parts.pace.joints_radps.len() == joints;
         is_whole.then_some(Self(parts))
     }
@@ -182,9 +186,10 @@ impl DatabaseClip {
         self.0.stand_m
     }
 
-    /// Returns the states of the feet in a frame: left, right.
-    pub(super) fn feet(&self, frame: usize) -> [FootState; 2] {
-        [0, 1].map(|side: usize| self.0.feet[side].get(frame).copied().unwrap_or_default())
+    /// Returns the states of the feet in a frame, by [`Foot::index`].
+    pub(super) fn feet(&self, frame: usize) -> [FootState; 4] {
+        let states = self.0.feet.each_ref();
+        states.map(|states| states.get(frame).copied().unwrap_or_default())
     }
 
     /// Returns the number of its source among the clips from which the database was built.
@@ -414,9 +419,9 @@ fn foot_states(
     cycle: Option<&Planar>,
     roles: &Roles,
     contacts: &Contacts,
-    side: Side,
+    foot: Foot,
 ) -> Vec<FootState> {
-    let points = roles.foot_points(clip.skeleton(), side);
+    let points = roles.foot_points(clip.skeleton(), foot);
     let needed = clip.skeleton().with_ancestors(points.iter().map(|&(joint, _)| joint));
     let mut world = WorldPose::default();
     let tracks: Vec<Vec<Vec3>> = (0..clip.frames())
@@ -435,7 +440,7 @@ fn foot_states(
         (0, None) => stillest_point(&tracks[0], &tracks[last.min(1)]),
         _ => stillest_point(&tracks[frame - 1], &tracks[frame]),
     };
-    let planted: Vec<bool> = (0..tracks.len()).map(|frame| contacts.planted(side, frame)).collect();
+    let planted: Vec<bool> = (0..tracks.len()).map(|frame| contacts.planted(foot, frame)).collect();
     let stance = |frame: usize| {
         let round = if cycle.is_some() { &planted[..frame] } else { &[] };
         let coming = planted[frame..].iter().chain(round);

@@ -3,7 +3,7 @@
 use crate::clip::Clip;
 use crate::math::sort::sort_by_key;
 use crate::math::{stats, wrap_angle};
-use crate::skeleton::{Role, Roles, Side, WorldPose};
+use crate::skeleton::{self, Role, Roles, Side, WorldPose};
 use glam::{Vec2, Vec3};
 use std::ops::Range;
 
@@ -76,7 +76,7 @@ impl MotionTrace {
     }
 
     /// Returns skating, centimetres per second (Zhang et al. 2018, "Mode-Adaptive Neural Networks",
-    /// section 7): the mean over the frames and both feet of `|v| (2 - 2^(h / H))` for
+    /// section 7): the mean over the frames and all feet of `|v| (2 - 2^(h / H))` for
     /// `h < H = 2.5 cm`, v being the velocity of the toe over the ground and h its height above the
     /// 2nd percentile of its heights. `None` without feet.
     #[must_use]
@@ -219,7 +219,8 @@ fn runs(flags: impl Iterator<Item = bool>) -> Vec<Range<usize>> {
 /// World positions of a motion.
 #[derive(Debug)]
 struct BodyTracks {
-    /// The feet of the skeleton: their toe joints, or the ankles without.
+    /// The feet of the skeleton: their toe joints, or the ankles without; of forefeet, the joint
+    /// that follows the end of the leg.
     feet: Vec<usize>,
     /// The hip joints, left and right.
     hips: Option<(usize, usize)>,
@@ -239,9 +240,12 @@ impl BodyTracks {
     fn new(clip: &Clip, roles: &Roles) -> Self {
         let skeleton = clip.skeleton();
         let joint = |role| roles.get_within(role, skeleton.len());
-        let feet: Vec<usize> = (Side::BOTH.into_iter())
-            .filter_map(|side| joint(Role::toe(side)).or(joint(Role::foot(side))))
-            .collect();
+        let of_foot = |&foot: &skeleton::Foot| match roles.points_of_foot(skeleton, foot) {
+            [_, Some((ball, _)), _] => Some(ball),
+            [ankle, ..] => ankle.map(|(joint, _)| joint),
+        };
+        let feet: Vec<usize> =
+            skeleton::Foot::of(roles.body_plan()).iter().filter_map(of_foot).collect();
         Self {
             toes: vec![Vec::with_capacity(clip.frames()); feet.len()],
             feet,

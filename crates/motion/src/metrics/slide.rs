@@ -2,7 +2,7 @@
 
 use super::Extreme;
 use crate::clip::{Clip, Contacts, stillest_step};
-use crate::skeleton::{Roles, Side, WorldPose};
+use crate::skeleton::{Foot, Roles, WorldPose};
 use glam::Vec3;
 use std::ops::Range;
 
@@ -41,7 +41,7 @@ pub struct StanceSlide {
     /// The frames of the stance.
     pub frames: Range<usize>,
     /// The foot.
-    pub side: Side,
+    pub foot: Foot,
     /// The slide, centimetres, as defined by [`foot_slide_cm`].
     pub slide_cm: f64,
     /// The frame in which the foot slides fastest.
@@ -62,14 +62,63 @@ impl StanceSlide {
 /// same clip and contacts.
 #[derive(Debug)]
 pub struct SlideMeter {
-    /// Per side: the foot's points, and their positions in the previous frame.
-    points: [Vec<(usize, Vec3)>; 2],
-    before: [Vec<Vec3>; 2],
-    slid: [Vec3; 2],
-    /// The current stances, as far as they are measured.
-    stances: [Option<StanceSlide>; 2],
+    feet: Vec<SlidingFoot>,
     slides: Vec<StanceSlide>,
     frame: usize,
+}
+
+/// The measurement of one foot.
+#[derive(Debug)]
+struct SlidingFoot {
+    foot: Foot,
+    /// Its points, and their positions in the previous frame.
+    points: Vec<(usize, Vec3)>,
+    before: Vec<Vec3>,
+    slid: Vec3,
+    /// The current stance, as far as it is measured.
+    stance: Option<StanceSlide>,
+}
+
+impl SlidingFoot {
+    /// Measures the step into `frame`, whose pose is `world`. Returns a stance that ended before.
+    fn advance(
+        &mut self,
+        world: &WorldPose,
+        contacts: &Contacts,
+        frame: usize,
+    ) -> Option<StanceSlide> {
+        let now: Vec<Vec3> =
+            self.points.iter().map(|&(joint, point)| world.point(joint, point)).collect();
+        let planted = |frame: usize| contacts.planted(self.foot, frame);
+        let stands = planted(frame) && frame > 0 && planted(frame - 1);
+        let step = stillest_step(&self.before, &now).filter(|_| stands);
+        self.before = now;
+        let Some(step) = step else {
+            self.slid = Vec3::ZERO;
+            return self.end_stance(frame);
+        };
+        self.slid += step;
+        let stance = self.stance.get_or_insert(StanceSlide {
+            frames: frame - 1..frame,
+            foot: self.foot,
+            slide_cm: 0.0,
+            fastest: frame,
+            largest_step_m: 0.0,
+        });
+        let slid_cm = f64::from(self.slid.length()) * 100.0;
+        stance.slide_cm = stance.slide_cm.max(slid_cm);
+        if step.length() > stance.largest_step_m {
+            (stance.largest_step_m, stance.fastest) = (step.length(), frame);
+        }
+        None
+    }
+
+    fn end_stance(&mut self, frame: usize) -> Option<StanceSlide> {
+        self.stance.take().map(|mut stance| {
+            stance.frames.end = frame;
+            stance
+        })
+    }
 }
 
 impl SlideMeter {
@@ -77,10 +126,16 @@ impl SlideMeter {
     #[must_use]
     pub fn new(clip: &Clip, roles: &Roles) -> Self {
         Self {
-            points: Side::BOTH.map(|side| roles.foot_points(clip.skeleton(), side)),
-            before: Default::default(),
-            slid: [Vec3::ZERO; 2],
-            stances: [None, None],
+            feet: Foot::of(roles.body_plan())
+                .iter()
+                .map(|&foot| SlidingFoot {
+                    foot,
+                    points: roles.foot_points(clip.skeleton(), foot),
+                    before: Vec::new(),
+                    slid: Vec3::ZERO,
+                    stance: None,
+                })
+                .collect(),
             slides: Vec::new(),
             frame: 0,
         }
@@ -96,52 +151,19 @@ impl SlideMeter {
         let mut world = WorldPose::default();
         for frame in self.frame..end {
             clip.world_pose_into(frame, &mut world);
-            for side in Side::BOTH {
-                let index = side.index();
-                let now: Vec<Vec3> = self.points[index]
-                    .iter()
-                    .map(|&(joint, point)| world.point(joint, point))
-                    .collect();
-                let stands =
-                    contacts.planted(side, frame) && frame > 0 && contacts.planted(side, frame - 1);
-                if let Some(step) = stillest_step(&self.before[index], &now).filter(|_| stands) {
-                    self.slid[index] += step;
-                    let stance = self.stances[index].get_or_insert(StanceSlide {
-                        frames: frame - 1..frame,
-                        side,
-                        slide_cm: 0.0,
-                        fastest: frame,
-                        largest_step_m: 0.0,
-                    });
-                    let slid_cm = f64::from(self.slid[index].length()) * 100.0;
-                    stance.slide_cm = stance.slide_cm.max(slid_cm);
-                    if step.length() > stance.largest_step_m {
-                        (stance.largest_step_m, stance.fastest) = (step.length(), frame);
-                    }
-                } else {
-                    self.slid[index] = Vec3::ZERO;
-                    self.end_stance(index, frame);
-                }
-                self.before[index] = now;
+            for foot in &mut self.feet {
+                self.slides.extend(foot.advance(&world, contacts, frame));
             }
         }
         self.frame = end;
         true
     }
 
-    fn end_stance(&mut self, index: usize, frame: usize) {
-        let ended = self.stances[index].take();
-        self.slides.extend(ended.map(|mut stance| {
-            stance.frames.end = frame;
-            stance
-        }));
-    }
-
     /// Returns the slide in each stance, in the order in which stances end.
     #[must_use]
     pub fn finish(mut self) -> Vec<StanceSlide> {
-        for side in Side::BOTH {
-            self.end_stance(side.index(), self.frame);
+        for foot in &mut self.feet {
+            self.slides.extend(foot.end_stance(self.frame));
         }
         self.slides
     }
@@ -164,6 +186,7 @@ impl SlideMeter {
 mod tests {
     use super::*;
     use crate::math::Planar;
+    use crate::skeleton::Side;
     use crate::synth::{Action, Params, synthesize};
 
     #[test]

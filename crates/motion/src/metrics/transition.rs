@@ -5,7 +5,7 @@ use super::lowest::LowPoints;
 use crate::blend::Concatenation;
 use crate::clip::{Clip, Motion, UsualMotion, facing, stillest_step, turn, turn_change};
 use crate::math::{Planar, wrap_angle};
-use crate::skeleton::{Roles, Side, WorldPose};
+use crate::skeleton::{Foot, Roles, WorldPose};
 use glam::{DVec2, Vec3};
 use std::ops::{Range, RangeInclusive};
 
@@ -181,14 +181,14 @@ impl Subject<'_> {
 
     /// Returns whether this foot is planted in the source of `frame`, and how far it moves there in
     /// the step into the frame.
-    fn foot_in_source(&self, side: Side, frame: usize) -> (bool, f32) {
+    fn foot_in_source(&self, foot: Foot, frame: usize) -> (bool, f32) {
         let (motion, frame) =
             if frame < self.handover { (self.a, Some(frame)) } else { (self.b, self.in_b(frame)) };
         let slide = frame
-            .and_then(|frame| motion.usual().slides[side.index()].get(frame))
+            .and_then(|frame| motion.usual().slides.get(foot.index())?.get(frame))
             .copied()
             .unwrap_or(0.0);
-        (frame.is_some_and(|frame| motion.contacts().planted(side, frame)), slide)
+        (frame.is_some_and(|frame| motion.contacts().planted(foot, frame)), slide)
     }
 }
 
@@ -197,8 +197,8 @@ struct SeamPoses {
     frames: Range<usize>,
     /// Ground frames of the character.
     character: Vec<Planar>,
-    /// Per side, per frame: the foot's points.
-    feet: [Vec<Vec<Vec3>>; 2],
+    /// Per foot ([`Foot::of`]), per frame: its points.
+    feet: Vec<Vec<Vec<Vec3>>>,
     /// The lowest point of the body over the transition itself, metres, and its frame.
     lowest: Option<(f32, usize)>,
 }
@@ -209,12 +209,14 @@ impl SeamPoses {
         let margin = (MARGIN_SECS * clip.fps()).round() as usize;
         let frames = subject.start.saturating_sub(margin.max(1)).min(clip.frames())
             ..steps.end().saturating_add(margin + 1).min(clip.frames());
-        let points = Side::BOTH.map(|side| subject.roles.foot_points(clip.skeleton(), side));
+        let feet = Foot::of(subject.roles.body_plan()).iter();
+        let points: Vec<_> =
+            feet.map(|&foot| subject.roles.foot_points(clip.skeleton(), foot)).collect();
         let low_points = LowPoints::of(clip.skeleton());
         let mut around = Self {
             frames: frames.clone(),
             character: vec![],
-            feet: [vec![], vec![]],
+            feet: vec![vec![]; points.len()],
             lowest: None,
         };
         let mut world = WorldPose::default();
@@ -338,22 +340,21 @@ fn spin(subject: &Subject<'_>, steps: &RangeInclusive<usize>, around: &SeamPoses
 fn skate(subject: &Subject<'_>, steps: &RangeInclusive<usize>, around: &SeamPoses) -> Option<f64> {
     let touches = subject.start.saturating_sub(1)..=*steps.end();
     let mut worst: Option<f32> = None;
-    for side in Side::BOTH {
-        let feet = &around.feet[side.index()];
+    for (foot, feet) in Foot::ALL.into_iter().zip(&around.feet) {
         if feet.first().is_none_or(Vec::is_empty) {
             continue;
         }
         let mut drift = Vec3::ZERO;
         let mut farthest = None;
         for (at, frame) in around.frames.clone().enumerate() {
-            let (planted, in_source) = subject.foot_in_source(side, frame);
+            let (planted, in_source) = subject.foot_in_source(foot, frame);
             if !planted {
                 (drift, farthest) = (Vec3::ZERO, None);
                 continue;
             }
             let stance = farthest.get_or_insert((0.0_f32, false));
             // Only between two planted frames: the step onto the ground is not a slide.
-            let before_planted = at > 0 && subject.foot_in_source(side, frame - 1).0;
+            let before_planted = at > 0 && subject.foot_in_source(foot, frame - 1).0;
             if let Some(step) =
                 before_planted.then(|| stillest_step(&feet[at - 1], &feet[at])).flatten()
             {

@@ -3,7 +3,6 @@
 use super::{ArcLengthPath, FittedPath, PathEditError, Waypoint};
 use crate::clip::{Clip, Contacts, JointTranslations};
 use crate::math::{Planar, curve, quat};
-use crate::skeleton::Side;
 use std::ops::Range;
 
 /// The quantity that is kept when a path becomes longer or shorter.
@@ -154,10 +153,9 @@ impl CarriedMotion {
     /// Returns the contacts of the result, from those of the original.
     #[must_use]
     pub fn contacts(&self, original: &Contacts) -> Contacts {
-        let planted = |side| {
-            self.frames.iter().map(|frame| original.planted(side, frame.round() as usize)).collect()
-        };
-        Contacts::from_flags(Side::BOTH.map(planted))
+        Contacts::of_feet(original.feet(), |foot| {
+            self.frames.iter().map(|frame| original.planted(foot, frame.round() as usize)).collect()
+        })
     }
 
     /// Returns the distances from the start of the path that the motion covers, metres.

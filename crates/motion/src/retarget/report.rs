@@ -60,6 +60,9 @@ pub struct RetargetErrors {
     /// The number of frames in which a knee or an elbow is bent beyond its limits: backwards, or
     /// by more than 155°. Each limb counts on its own.
     pub beyond_limits: Compared<usize>,
+    /// Whether one of the bodies stands on two legs, and the other one on four.
+    #[serde(default)]
+    pub is_across_plans: bool,
 }
 
 /// The measurement of a result in slices.
@@ -70,6 +73,7 @@ pub(super) struct ErrorMeter {
     directions: Found,
     result: Found,
     frames: usize,
+    is_across_plans: bool,
     /// The ankle, ball and tip of both feet, each as a joint and a point in its frame.
     points: [[Option<(usize, Vec3)>; 3]; 2],
     needed: Vec<usize>,
@@ -93,6 +97,7 @@ impl ErrorMeter {
             directions: Found::default(),
             result: Found::default(),
             frames: 0,
+            is_across_plans: task.source.roles().body_plan() != roles.body_plan(),
             needed: skeleton.with_ancestors(needed),
             points,
         }
@@ -153,6 +158,7 @@ impl ErrorMeter {
                 directions: before.beyond_limits,
                 result: after.beyond_limits,
             },
+            is_across_plans: self.is_across_plans,
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Sides of the body, and the roles that joints have in it.
+//! Sides of the body, its feet, and the roles that joints have in it.
 
 /// One side of the body, as the character itself calls it: a character that faces +Z has its left
 /// at +X.
@@ -38,12 +38,108 @@ impl Side {
     }
 }
 
+/// The number of legs on which a body stands.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
+)]
+pub enum BodyPlan {
+    /// On two legs, as people and birds do.
+    #[default]
+    Biped,
+    /// On four legs. The roles of arms are those of the forelegs, the roles of legs those of the
+    /// hind legs.
+    Quadruped,
+}
+
+/// The pair that a foot belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum FootPair {
+    /// The feet of a body on two legs, and the hind feet of one on four.
+    Hind,
+    /// The forefeet of a body on four legs.
+    Fore,
+}
+
+impl FootPair {
+    /// The hind feet, then the forefeet.
+    pub const BOTH: [Self; 2] = [Self::Hind, Self::Fore];
+}
+
+/// A foot that can stand on the ground.
+///
+/// A [`Side`] alone is a hind foot: of a body on two legs, its left or right foot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[expect(missing_docs, reason = "the names say it")]
+pub struct Foot {
+    pub pair: FootPair,
+    pub side: Side,
+}
+
+impl Foot {
+    /// The feet of a body on four legs, each at its [`index`](Self::index): hind left, hind right,
+    /// fore left, fore right. The first two are the feet of a body on two legs.
+    pub const ALL: [Self; 4] = [
+        Self { pair: FootPair::Hind, side: Side::Left },
+        Self { pair: FootPair::Hind, side: Side::Right },
+        Self { pair: FootPair::Fore, side: Side::Left },
+        Self { pair: FootPair::Fore, side: Side::Right },
+    ];
+
+    /// Returns the feet of a body.
+    #[must_use]
+    pub const fn of(plan: BodyPlan) -> &'static [Self] {
+        let (on_two, _) = Self::ALL.split_at(2);
+        match plan {
+            BodyPlan::Biped => on_two,
+            BodyPlan::Quadruped => &Self::ALL,
+        }
+    }
+
+    /// Returns the index in [`Foot::ALL`].
+    #[must_use]
+    pub const fn index(self) -> usize {
+        self.side.index()
+            + match self.pair {
+                FootPair::Hind => 0,
+                FootPair::Fore => 2,
+            }
+    }
+
+    /// Returns the foot on the other side.
+    #[must_use]
+    pub const fn mirrored(self) -> Self {
+        Self { pair: self.pair, side: self.side.other() }
+    }
+
+    /// Returns the roles of the leg on this foot, from the trunk outwards: thigh, shin and foot, or
+    /// upper arm, forearm and hand.
+    #[must_use]
+    pub const fn leg(self) -> [Role; 3] {
+        match self.pair {
+            FootPair::Hind => {
+                [Role::thigh(self.side), Role::shin(self.side), Role::foot(self.side)]
+            }
+            FootPair::Fore => Role::arm(self.side),
+        }
+    }
+}
+
+impl From<Side> for Foot {
+    fn from(side: Side) -> Self {
+        Self { pair: FootPair::Hind, side }
+    }
+}
+
 /// The function of a joint, in any rig.
 ///
 /// A joint is named for the bone that *starts* at it: `LeftThigh` is the joint whose rotation
 /// swings the left thigh (the hip joint), `LeftShin` is the knee, `LeftFoot` the ankle, `LeftToe`
 /// the ball of the foot, `LeftForearm` the elbow, `LeftHand` the wrist. `Spine` is the lowest joint
 /// of the back, next above `Hips`.
+///
+/// Of a body on four legs ([`BodyPlan::Quadruped`]) the roles of legs are those of the hind legs,
+/// whose ankle is the hock, and the roles of arms those of the forelegs: `LeftUpperArm` is the
+/// shoulder joint, `LeftForearm` the elbow, `LeftHand` the joint above the forefoot.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
 )]
@@ -120,6 +216,32 @@ impl Role {
             Self::RightUpperArm => "right upper arm",
             Self::RightForearm => "right forearm",
             Self::RightHand => "right hand",
+        }
+    }
+
+    /// Returns the name on screen in a body: of one on four legs, arms are forelegs and legs are
+    /// hind legs.
+    #[must_use]
+    pub const fn name_in(self, plan: BodyPlan) -> &'static str {
+        match (plan, self) {
+            (BodyPlan::Biped, _) => self.name(),
+            (BodyPlan::Quadruped, role) => match role {
+                Self::Hips | Self::Spine | Self::Head => role.name(),
+                Self::LeftThigh => "left hind thigh",
+                Self::LeftShin => "left hind shin",
+                Self::LeftFoot => "left hind foot",
+                Self::LeftToe => "left hind toe",
+                Self::RightThigh => "right hind thigh",
+                Self::RightShin => "right hind shin",
+                Self::RightFoot => "right hind foot",
+                Self::RightToe => "right hind toe",
+                Self::LeftUpperArm => "left upper foreleg",
+                Self::LeftForearm => "left lower foreleg",
+                Self::LeftHand => "left forefoot",
+                Self::RightUpperArm => "right upper foreleg",
+                Self::RightForearm => "right lower foreleg",
+                Self::RightHand => "right forefoot",
+            },
         }
     }
 
@@ -231,12 +353,25 @@ mod tests {
         for side in Side::BOTH {
             for role in Role::leg(side).into_iter().chain(Role::arm(side)) {
                 assert_eq!(role.side(), Some(side));
-                assert!(role.name().starts_with(if side == Side::Left {
-                    "left "
-                } else {
-                    "right "
-                }));
+                for plan in [BodyPlan::Biped, BodyPlan::Quadruped] {
+                    assert!(role.name_in(plan).starts_with(if side == Side::Left {
+                        "left "
+                    } else {
+                        "right "
+                    }));
+                }
             }
         }
+    }
+
+    #[test]
+    fn feet_are_at_their_indices_and_their_mirror_is_itself() {
+        for (index, foot) in Foot::ALL.into_iter().enumerate() {
+            assert_eq!(foot.index(), index);
+            assert_eq!((foot.mirrored().mirrored(), foot.mirrored().pair), (foot, foot.pair));
+            assert!(foot.leg().iter().all(|role| role.side() == Some(foot.side)));
+        }
+        assert_eq!(Foot::of(BodyPlan::Biped), Side::BOTH.map(Foot::from));
+        assert_eq!(Foot::of(BodyPlan::Quadruped), Foot::ALL);
     }
 }

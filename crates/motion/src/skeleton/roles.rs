@@ -2,6 +2,7 @@
 
 mod names;
 mod numbers;
+mod plan;
 #[cfg(test)]
 mod rig_tests;
 mod shape;
@@ -9,7 +10,7 @@ mod shape;
 mod tests;
 mod tokens;
 
-use super::{Role, Side, Skeleton};
+use super::{BodyPlan, Foot, Role, Side, Skeleton, WorldPose};
 use glam::Vec3;
 use std::collections::BTreeMap;
 pub(crate) use tokens::{Tokens, are_counterparts, is_control, read};
@@ -33,11 +34,11 @@ struct RoleJoint {
     found: RoleSource,
 }
 
-/// At most one joint per [`Role`].
+/// At most one joint per [`Role`], and the [`BodyPlan`].
 ///
-/// It is stored (serde) as a map from role to joint index. The indices belong to one skeleton.
-/// Since roles may come from outside, every user of them treats an index that the skeleton does not
-/// have as a missing role.
+/// It is stored (serde) as a map from role to joint index; that of a body on four legs says so. The
+/// indices belong to one skeleton. Since roles may come from outside, every user of them treats an
+/// index that the skeleton does not have as a missing role.
 ///
 /// ```
 /// use segue_motion::skeleton::{Joint, Role, Roles, Skeleton};
@@ -58,27 +59,40 @@ struct RoleJoint {
 /// # Ok::<(), segue_motion::skeleton::SkeletonError>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[serde(from = "BTreeMap<Role, RoleJoint>", into = "BTreeMap<Role, RoleJoint>")]
+#[serde(from = "StoredRoles", into = "StoredRoles")]
 pub struct Roles {
     assigned: [Option<RoleJoint>; Role::COUNT],
+    plan: BodyPlan,
 }
 
-impl From<BTreeMap<Role, RoleJoint>> for Roles {
-    fn from(map: BTreeMap<Role, RoleJoint>) -> Self {
-        let mut roles = Self::default();
-        for (role, assigned) in map {
+/// The form in which roles are stored.
+#[derive(serde::Serialize, serde::Deserialize)]
+struct StoredRoles {
+    #[serde(default, skip_serializing_if = "is_biped")]
+    plan: BodyPlan,
+    #[serde(flatten)]
+    joints: BTreeMap<Role, RoleJoint>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+fn is_biped(plan: &BodyPlan) -> bool {
+    *plan == BodyPlan::Biped
+}
+
+impl From<StoredRoles> for Roles {
+    fn from(stored: StoredRoles) -> Self {
+        let mut roles = Self { plan: stored.plan, ..Self::default() };
+        for (role, assigned) in stored.joints {
             roles.assigned[role.index()] = Some(assigned);
         }
         roles
     }
 }
 
-impl From<Roles> for BTreeMap<Role, RoleJoint> {
+impl From<Roles> for StoredRoles {
     fn from(roles: Roles) -> Self {
-        Role::ALL
-            .into_iter()
-            .filter_map(|role| Some((role, roles.assigned[role.index()]?)))
-            .collect()
+        let joint = |role: Role| Some((role, roles.assigned[role.index()]?));
+        Self { plan: roles.plan, joints: Role::ALL.into_iter().filter_map(joint).collect() }
     }
 }
 
@@ -93,12 +107,17 @@ impl Roles {
     /// joints of SMPL by their numbers, too.
     /// Shape: needs Y up and arms that are not folded over the legs; left and right follow from the
     /// toes, which point forward.
+    ///
+    /// Where the rest pose stands on four legs below a level trunk, the body is a
+    /// [quadruped](BodyPlan::Quadruped); of a rest pose that does not show it, the frames of a clip
+    /// do ([`Roles::with_plan_of`]).
     #[must_use]
     pub fn detect(skeleton: &Skeleton) -> Self {
         let mut roles = Self::by_name(skeleton);
         if roles.count() < Role::COUNT {
             roles.fill(skeleton, &shape::detect(skeleton));
         }
+        roles.plan = plan::at_rest(skeleton, &roles);
         roles
     }
 
@@ -124,14 +143,54 @@ impl Roles {
             }
         }
         roles.fill(skeleton, &Self::detect(skeleton));
+        roles.plan = plan::at_rest(skeleton, &roles);
         roles
+    }
+
+    /// Returns the number of legs on which the body stands.
+    #[must_use]
+    pub fn body_plan(&self) -> BodyPlan {
+        self.plan
+    }
+
+    /// Returns the same roles of a body that stands on this number of legs.
+    #[must_use]
+    pub fn with_body_plan(self, plan: BodyPlan) -> Self {
+        Self { plan, ..self }
+    }
+
+    /// Returns whether the body stands on four legs, so that the roles of arms are those of its
+    /// forelegs.
+    #[must_use]
+    pub fn is_quadruped(&self) -> bool {
+        self.plan == BodyPlan::Quadruped
+    }
+
+    /// Returns the same roles with the body plan that the rest pose or these poses show; a body
+    /// that is known to be a quadruped stays one.
+    ///
+    /// A quadruped has a trunk that is long beside its legs; at rest, or in half of the poses, it is
+    /// level, and all four legs point down from it to one level. A person who crawls has a shorter
+    /// trunk. Poses are asked for only where the rest pose stands on neither, and the trunk is long
+    /// enough.
+    #[must_use]
+    pub fn with_plan_of(
+        self,
+        skeleton: &Skeleton,
+        poses: impl IntoIterator<Item = WorldPose>,
+    ) -> Self {
+        if self.is_quadruped() {
+            return self;
+        }
+        let plan = plan::of(skeleton, &self, poses);
+        self.with_body_plan(plan)
     }
 
     /// Returns the roles in a skeleton that has the same joints in another order: `joint_from_own`
     /// is the new index of each joint. Roles of joints beyond its end are lost.
     #[must_use]
     pub fn renumbered(&self, joint_from_own: &[usize]) -> Self {
-        let mut roles = Self::default();
+        let mut roles = Self::default().with_body_plan(self.plan);
         for role in Role::ALL {
             let Some(assigned) = self.assigned[role.index()] else {
                 continue;
@@ -223,14 +282,21 @@ impl Roles {
     }
 
     /// Returns the points of a foot that can touch the ground: ankle, ball and tip, as far as the
-    /// skeleton has them, each as a joint and a point in its frame (metres).
+    /// skeleton has them, each as a joint and a point in its frame (metres). Of a forefoot they are
+    /// the end of the leg, the next joint and the tip.
     #[must_use]
-    pub fn foot_points(&self, skeleton: &Skeleton, side: Side) -> Vec<(usize, Vec3)> {
-        let joint = |role| self.get_within(role, skeleton.len());
-        let (foot, toe) = (joint(Role::foot(side)), joint(Role::toe(side)));
-        // The tip of a foot without toes is its own end site.
-        let tip = toe.or(foot).and_then(|last| Some((last, skeleton.joints()[last].end_site?)));
-        foot.into_iter().chain(toe).map(|j| (j, Vec3::ZERO)).chain(tip).collect()
+    pub fn foot_points(&self, skeleton: &Skeleton, foot: impl Into<Foot>) -> Vec<(usize, Vec3)> {
+        self.points_of_foot(skeleton, foot.into()).into_iter().flatten().collect()
+    }
+
+    /// Returns the points of [`foot_points`](Self::foot_points), each in its place; `None` where
+    /// the skeleton has no such point.
+    pub(crate) fn points_of_foot(
+        &self,
+        skeleton: &Skeleton,
+        foot: Foot,
+    ) -> [Option<(usize, Vec3)>; 3] {
+        plan::points_of(skeleton, self, foot)
     }
 
     /// Returns the length of a leg from hip joint over knee to ankle, metres: the mean of both

@@ -56,12 +56,31 @@ pub(crate) fn rest_is_plausible(skeleton: &Skeleton, roles: &Roles) -> Option<bo
     Some(body.stands_on_two() || body.stands_on_four())
 }
 
+/// Returns whether the rest pose is that of a body on two legs, in any direction.
+#[must_use]
+pub(crate) fn rests_on_two_legs(skeleton: &Skeleton, roles: &Roles) -> bool {
+    let body = Landmark::of(&skeleton.rest_positions(), roles);
+    body.is_some_and(|body| body.stands_on_two())
+}
+
 /// Returns how upright a pose is, from -1 (upside down) to 1 (standing straight): the mean over
 /// trunk and legs of the cosine of their angle to the vertical, a bent leg counting for less.
 /// `None` where roles are missing.
+///
+/// A body on four legs is upright where its trunk is level and its legs point down: the mean over
+/// the trunk, whose cosine is that to the ground, and all legs.
 #[must_use]
 pub(crate) fn uprightness(pose: &WorldPose, roles: &Roles) -> Option<f32> {
     let body = Landmark::of(&pose.positions, roles)?;
+    if roles.is_quadruped()
+        && let Some(arms) = &body.arms
+    {
+        let down = |limb: &Limb| (limb.start - limb.end).y / limb.length().max(1e-6);
+        let legs: f32 = body.legs.iter().chain(arms).map(down).sum();
+        let trunk = trunk_of(&body.legs, arms);
+        let level = Vec3::new(trunk.x, 0.0, trunk.z).length();
+        return Some((level + legs) / 5.0);
+    }
     let legs: f32 =
         body.legs.iter().map(|leg| (leg.start - leg.end).y / leg.length().max(1e-6)).sum();
     Some((body.up.y + legs) / 3.0)
@@ -75,10 +94,25 @@ pub(crate) fn uprightness(pose: &WorldPose, roles: &Roles) -> Option<f32> {
 /// otherwise the trunk becomes vertical, legs point down, feet ahead, arms to the sides and 40°
 /// down. Each bone is moved by the shortest rotation, which keeps its twist; joints without a role
 /// follow their parents. Where roles are missing, the reference is the stance.
+///
+/// A body on four legs ([`BodyPlan::Quadruped`](super::BodyPlan)) is only turned about the vertical,
+/// until it faces +Z.
 #[must_use]
 pub fn canonical_stance(skeleton: &Skeleton, roles: &Roles, reference: &WorldPose) -> WorldPose {
     let mut stance = Stance::new(skeleton, reference);
-    let body = Landmark::of(&reference.positions, roles).filter(|body| !body.stands_on_four());
+    let body = Landmark::of(&reference.positions, roles);
+    if roles.is_quadruped() {
+        let arms = body.as_ref().and_then(|body| Some((&body.legs, body.arms.as_ref()?)));
+        if let Some((legs, arms)) = arms {
+            let ahead = trunk_of(legs, arms);
+            let yaw = libm::atan2f(ahead.x, ahead.z);
+            if yaw.abs() > MAX_UPRIGHT_RADIANS && Vec3::new(ahead.x, 0.0, ahead.z).length() > 0.5 {
+                stance.turn(0, Quat::from_rotation_y(-yaw));
+            }
+        }
+        return stance.world_pose();
+    }
+    let body = body.filter(|body| !body.stands_on_four());
     let Some(body) = body else {
         return stance.world_pose();
     };
@@ -116,6 +150,12 @@ impl Limb {
     fn way(&self) -> Vec3 {
         (self.end - self.start) / self.length().max(1e-6)
     }
+}
+
+/// Returns the unit vector from the middle of the hip joints to that of the shoulder joints.
+fn trunk_of(legs: &[Limb; 2], arms: &[Limb; 2]) -> Vec3 {
+    let middle = |[left, right]: &[Limb; 2]| left.start + right.start;
+    (middle(arms) - middle(legs)).normalize_or_zero()
 }
 
 /// The directions of a body in a pose.

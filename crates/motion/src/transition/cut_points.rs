@@ -4,7 +4,7 @@ use super::LoopError;
 use crate::clip::{Clip, Contacts, Motion};
 use crate::math::sort::sort_by;
 use crate::registration::{PairTerms, REFERENCE_HEIGHT_M, limb_weights};
-use crate::skeleton::Side;
+use crate::skeleton::Foot;
 use std::ops::Range;
 
 /// Options of the search for a cycle.
@@ -129,9 +129,9 @@ pub fn find_cycle(source: &Motion, search: &CycleSearch) -> Result<CutPoints, Lo
 /// Returns the frames in which a foot touches down, in order. A foot that is planted in the first
 /// frame touched down before.
 fn touchdowns(contacts: &Contacts) -> Vec<usize> {
-    let starts = |side| contacts.intervals(side).into_iter().map(|stance| stance.start);
+    let starts = |&foot: &Foot| contacts.intervals(foot).into_iter().map(|stance| stance.start);
     let mut all: Vec<usize> =
-        Side::BOTH.into_iter().flat_map(starts).filter(|&at| at > 0).collect();
+        contacts.feet().iter().flat_map(starts).filter(|&at| at > 0).collect();
     all.sort_unstable();
     all
 }
@@ -212,10 +212,10 @@ impl CycleFinder<'_> {
     /// Returns whether a foot stands throughout a cycle that travels.
     fn drags_in(&self, place: &Candidate) -> bool {
         let stays =
-            |side| (place.start..=place.end).all(|frame| self.contacts.planted(side, frame));
+            |&foot: &Foot| (place.start..=place.end).all(|at| self.contacts.planted(foot, at));
         let [from, to] =
             [place.start, place.end].map(|frame| self.source.ground_frames()[frame].shift);
-        from.distance(to) * self.cm > MIN_DRAG_CM && Side::BOTH.into_iter().any(stays)
+        from.distance(to) * self.cm > MIN_DRAG_CM && self.contacts.feet().iter().any(stays)
     }
 
     /// Returns the flaws of a cycle, the worst first: it has no step, or drags a foot.
@@ -298,10 +298,11 @@ impl CycleFinder<'_> {
 
 /// Returns the mean difference of the feet's phases in two frames, 0 to 0.5.
 fn phase_gap(contacts: &Contacts, a: usize, b: usize) -> Option<f32> {
-    let gaps: Vec<f32> = Side::BOTH
-        .into_iter()
-        .filter_map(|side| {
-            let gap = (contacts.phase(side, a)? - contacts.phase(side, b)?).abs();
+    let gaps: Vec<f32> = contacts
+        .feet()
+        .iter()
+        .filter_map(|&foot| {
+            let gap = (contacts.phase(foot, a)? - contacts.phase(foot, b)?).abs();
             Some(gap.min(1.0 - gap))
         })
         .collect();
@@ -313,7 +314,7 @@ mod tests {
     use super::*;
 
     use crate::registration::fixtures::Walk;
-
+    use crate::skeleton::Side;
     use crate::synth::{Action, Params, synthesize};
     use crate::transition::{LoopOptions, close_loop};
     use std::sync::Arc;

@@ -4,7 +4,7 @@ use super::limb::{Limb, LimbPose, usual_axis};
 use crate::blend::MAX_SECS;
 use crate::clip::{Clip, ClipError, Contacts};
 use crate::registration::REFERENCE_HEIGHT_M;
-use crate::skeleton::{Roles, Side, Skeleton, WorldPose};
+use crate::skeleton::{Foot, FootPair, Roles, Side, Skeleton, WorldPose};
 use glam::{Quat, Vec3};
 use std::ops::Range;
 use std::sync::Arc;
@@ -73,7 +73,8 @@ pub enum FootLockError {
     Clip(#[from] ClipError),
 }
 
-/// Plants the feet: a foot does not slide while it is planted according to `contacts`.
+/// Plants the feet: a foot does not slide while it is planted according to `contacts`. These have
+/// two feet, or the four of a body on four legs, whose forelegs are its arms.
 ///
 /// *Planted feet.* In every step between two planted frames the point of the foot (ball, tip, or
 /// ankle; the ankle alone where there are no toes) that moves least over the ground is taken as
@@ -191,6 +192,8 @@ struct State {
     legs: Vec<Limb>,
     feet: Vec<anchor::Foot>,
     posed: Vec<Vec<LimbPose>>,
+    /// For each leg, the axis of its knee where it is straight throughout.
+    straight_axes: Vec<Vec3>,
     body_yaws: Vec<f64>,
     /// Computed when all frames are posed.
     plan: Option<Plan>,
@@ -225,9 +228,11 @@ impl State {
         check("blend time (s)", options.blend_secs, MAX_SECS)?;
         check("largest shift (m)", f64::from(options.max_shift_m), 10.0)?;
         check("clearance (m)", f64::from(options.clearance_m.unwrap_or(0.0)), 1.0)?;
-        let sides = Side::BOTH.into_iter();
-        let (sides, legs): (Vec<Side>, Vec<Limb>) =
-            sides.filter_map(|side| Some((side, Limb::leg(clip.skeleton(), roles, side)?))).unzip();
+        let leg = |&foot: &Foot| Some((foot, Limb::on(clip.skeleton(), roles, foot)?));
+        // The contacts may be those of a clip of another body.
+        let of_both = Foot::of(roles.body_plan()).iter().zip(contacts.feet());
+        let (feet, legs): (Vec<Foot>, Vec<Limb>) =
+            of_both.filter_map(|(foot, _)| leg(foot)).unzip();
         if legs.is_empty() {
             return Err(FootLockError::NoLegs);
         }
@@ -238,10 +243,11 @@ impl State {
         Ok(Self {
             options: *options,
             scale: roles.body_height(clip.skeleton()) / REFERENCE_HEIGHT_M as f32,
-            stances: sides.iter().map(|side| contacts.intervals(*side)).collect(),
-            feet: (sides.iter().zip(&legs))
-                .map(|(side, leg)| anchor::Foot::new(clip, roles, *side, leg.joints()[2]))
+            stances: feet.iter().map(|foot| contacts.intervals(*foot)).collect(),
+            feet: (feet.iter().zip(&legs))
+                .map(|(foot, leg)| anchor::Foot::new(clip, roles, *foot, leg.joints()[2]))
                 .collect(),
+            straight_axes: feet.iter().map(|foot| straight_axis(*foot)).collect(),
             posed: legs.iter().map(|_| Vec::with_capacity(clip.frames())).collect(),
             body_yaws: Vec::new(),
             legs,
@@ -310,7 +316,9 @@ impl State {
         let is_idle = shifts.iter().chain(&turns).flatten().all(|value| *value == Vec3::ZERO);
         Plan {
             heights: hips::heights(&self.posed, &shifts, clip.fps()),
-            axes: self.posed.iter().map(|posed| usual_axis(posed)).collect(),
+            axes: (self.posed.iter().zip(&self.straight_axes))
+                .map(|(posed, &straight)| usual_axis(posed, straight))
+                .collect(),
             rotations: Vec::with_capacity(if is_idle {
                 0
             } else {
@@ -336,6 +344,15 @@ impl State {
         Ok(locked
             .with_translations(clip.translations().to_vec())?
             .with_provenance(clip.provenance()))
+    }
+}
+
+/// Returns the axis about which the knee of a leg bends that shows no bend, in the frame of a thigh
+/// of a body that faces +Z: elbows of forelegs point backward.
+fn straight_axis(foot: Foot) -> Vec3 {
+    match foot.pair {
+        FootPair::Hind => Vec3::X,
+        FootPair::Fore => Vec3::NEG_X,
     }
 }
 

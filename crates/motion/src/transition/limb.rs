@@ -1,7 +1,7 @@
 //! Limbs of two bones, and rotations that bring their ends to other places.
 
 use crate::math::{curve, quat};
-use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose, two_bone_ik};
+use crate::skeleton::{Foot, Role, Roles, Side, Skeleton, WorldPose, two_bone_ik};
 use glam::{Mat3, Quat, Vec3};
 
 /// The least flexion of the knee to which a leg is stretched, unless the clip itself stretches it
@@ -40,8 +40,12 @@ pub(crate) struct Flexion {
 impl Limb {
     /// Returns the leg of a side; `None` where thigh, shin and foot are not one below the other.
     pub(crate) fn leg(skeleton: &Skeleton, roles: &Roles, side: Side) -> Option<Self> {
-        let [thigh, shin, foot, _] = Role::leg(side);
-        Self::of(skeleton, roles, [thigh, shin, foot])
+        Self::on(skeleton, roles, side.into())
+    }
+
+    /// Returns the leg on a foot; `None` where its joints are not one below the other.
+    pub(crate) fn on(skeleton: &Skeleton, roles: &Roles, foot: Foot) -> Option<Self> {
+        Self::of(skeleton, roles, foot.leg())
     }
 
     /// Returns the arm of a side; `None` where upper arm, forearm and hand are not one below the
@@ -75,7 +79,7 @@ impl Limb {
 
     /// Returns the axis about which this knee bends over some poses, in the thigh's frame.
     pub(crate) fn usual_axis<'a>(&self, worlds: impl Iterator<Item = &'a WorldPose>) -> Vec3 {
-        usual_axis(&worlds.map(|world| self.pose(world)).collect::<Vec<_>>())
+        usual_axis(&worlds.map(|world| self.pose(world)).collect::<Vec<_>>(), Vec3::X)
     }
 
     /// Moves the ankle by `shift` (metres, world) as [`foot_lock`] does, with the hips fixed:
@@ -245,9 +249,9 @@ fn basis(bone: Vec3, hinge: Vec3) -> Quat {
 }
 
 /// Returns the axis about which a knee bends over the whole clip, in the thigh's frame; bent frames
-/// count more.
-pub(crate) fn usual_axis(posed: &[LimbPose]) -> Vec3 {
+/// count more. In a clip of straight legs it is `straight`: for a knee, the lateral axis of a body
+/// that faces +Z at rest.
+pub(crate) fn usual_axis(posed: &[LimbPose], straight: Vec3) -> Vec3 {
     let sum: Vec3 = posed.iter().map(|posed| posed.rotations[0].conjugate() * posed.bend()).sum();
-    // In a clip of straight legs: the lateral axis of the body, which faces +Z at rest.
-    sum.try_normalize().unwrap_or(Vec3::X)
+    sum.try_normalize().unwrap_or(straight)
 }

@@ -83,8 +83,9 @@ def contacts(clip: Clip) -> NDArray[np.bool_]:
 
     Returns
     -------
-    ndarray of bool, shape (frames, 2)
-        Left foot, right foot. A foot is planted while it is low and slow, as in the page.
+    ndarray of bool, shape (frames, 2) or (frames, 4)
+        Left foot, right foot; of a body on four legs the hind feet, then the left and the right
+        forefoot. A foot is planted while it is low and slow, as in the page.
     """
     return clip.contacts()
 

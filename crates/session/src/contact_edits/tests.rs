@@ -129,7 +129,7 @@ fn clip_at_another_rate_or_on_another_skeleton_takes_its_corrections_along() {
         registered.stances(Some(Slot::B), Side::Left)
     };
     let before = stances(&session);
-    let correction = ContactCorrection { side: Side::Left, frames: 0..240, planted: false };
+    let correction = ContactCorrection { foot: Side::Left.into(), frames: 0..240, planted: false };
     let edits = session
         .params()
         .contact_edits_with("walk(body_height:1.5)", [correction].into_iter().collect());
@@ -148,7 +148,7 @@ fn result_of_a_corrected_clip_is_made_again_alike() {
     ] {
         let mut session = opened_without_problems(&format!("{link}&play=off"));
         // Those of a clip that is not used are not part of the recipe.
-        let unused = ContactCorrection { side: Side::Left, frames: 0..9, planted: true };
+        let unused = ContactCorrection { foot: Side::Left.into(), frames: 0..9, planted: true };
         let unused = session.params().contact_edits_with("idle", [unused].into_iter().collect());
         session.apply(Command::Set(vec![(Key::ContactEdits, unused)])).unwrap();
         correct(&mut session, |motion| late(motion, 5));

@@ -2,19 +2,20 @@
 
 use super::clip_parcel::{ClipHead, put_clip};
 use super::error::JobError;
+use super::motion_parcel::take_contacts;
 use super::parcel::{put, split_floats, take, take_floats};
 use super::task::{JobClip, Task};
 use super::worker_memory::WorkerMemory;
 use super::{Parcel, ParcelError};
 use glam::{DVec2, Vec3};
-use segue_motion::clip::{Clip, Contacts, Motion};
+use segue_motion::clip::{Clip, Motion};
 use segue_motion::matching::{
     ClipMeasurement, DatabaseClip, DatabaseClipParts, DatabaseOptions, FootState, MeasuredClip,
     Pace, TagRange,
 };
 use segue_motion::math::Planar;
 use segue_motion::retarget::RetargetErrors;
-use segue_motion::skeleton::{Roles, Side};
+use segue_motion::skeleton::{Foot, Roles};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -48,6 +49,9 @@ struct MotionHead<'a> {
     mirrored: bool,
     cycle: Option<Planar>,
     tags: Vec<TagRange>,
+    /// The number of feet that have contacts, and of those that have states.
+    feet: usize,
+    states: usize,
 }
 
 impl Task for DatabaseClipTask {
@@ -121,6 +125,8 @@ impl<'a> MotionHead<'a> {
             mirrored: parts.mirrored,
             cycle: parts.cycle,
             tags: parts.tags.clone(),
+            feet: parts.contacts.feet().len(),
+            states: parts.feet.iter().filter(|states| !states.is_empty()).count(),
         }
     }
 
@@ -137,15 +143,13 @@ impl<'a> MotionHead<'a> {
         let body = body.as_chunks().0.to_vec();
         let roots = take::<[f64; 3]>(bytes, frames)?.into_iter();
         let roots = roots.map(|[yaw, x, z]| Planar { yaw, shift: DVec2::new(x, z) }).collect();
-        let mut flags = || -> Result<Vec<bool>, ParcelError> {
-            Ok(take::<u8>(bytes, frames)?.into_iter().map(|flag| flag != 0).collect())
-        };
-        let contacts = Contacts::from_flags([flags()?, flags()?]);
-        let mut feet = |side: Side| -> Result<Vec<FootState>, ParcelError> {
+        let with_contacts = Foot::ALL.get(..self.feet).ok_or(ParcelError::Arrays)?;
+        let contacts = take_contacts(bytes, frames, with_contacts)?;
+        let mut states_of = |foot: Foot| -> Result<Vec<FootState>, ParcelError> {
             let counts = take::<[u32; 2]>(bytes, frames)?;
             let numbers = split_floats(floats, frames, 5)?.chunks_exact(5);
             let state = |(frame, (counts, numbers)): (usize, ([u32; 2], &[f32]))| FootState {
-                planted: contacts.planted(side, frame),
+                planted: contacts.planted(foot, frame),
                 stance_frames: counts[0] as usize,
                 stillest: counts[1] as usize,
                 above_m: numbers[0],
@@ -154,7 +158,11 @@ impl<'a> MotionHead<'a> {
             };
             Ok(counts.into_iter().zip(numbers).enumerate().map(state).collect())
         };
-        let feet = [feet(Side::Left)?, feet(Side::Right)?];
+        let mut feet: [Vec<FootState>; 4] = Default::default();
+        let with_states = Foot::ALL.get(..self.states).ok_or(ParcelError::Arrays)?;
+        for (foot, states) in with_states.iter().zip(&mut feet) {
+            *states = states_of(*foot)?;
+        }
         let (travel_mps, turn_radps) = (self.travel_mps, self.turn_radps);
         DatabaseClip::of_parts(DatabaseClipParts {
             clip,
@@ -182,9 +190,9 @@ fn put_parts(Parcel { floats, bytes, .. }: &mut Parcel, parts: &DatabaseClipPart
     for root in &parts.roots {
         put(bytes, &[root.yaw, root.shift.x, root.shift.y]);
     }
-    for side in Side::BOTH {
+    for &foot in parts.contacts.feet() {
         let frames = 0..parts.contacts.frames();
-        bytes.extend(frames.map(|frame| u8::from(parts.contacts.planted(side, frame))));
+        bytes.extend(frames.map(|frame| u8::from(parts.contacts.planted(foot, frame))));
     }
     for foot in parts.feet.iter().flatten() {
         put(bytes, &[foot.stance_frames as u32, foot.stillest as u32]);

@@ -6,7 +6,7 @@ use super::{Parcel, ParcelError};
 use glam::DVec2;
 use segue_motion::clip::{ContactCorrection, ContactOptions, Contacts, FootOptions, Motion};
 use segue_motion::math::Planar;
-use segue_motion::skeleton::{FoldedChain, Joint, Roles, Side, Skeleton};
+use segue_motion::skeleton::{FoldedChain, Foot, Joint, Roles, Skeleton};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::ops::Range;
@@ -22,12 +22,14 @@ struct Head<'a> {
     contacts: ContactOptions,
     /// The height of the ground that is set by hand.
     set_ground_m: Option<f32>,
-    /// For each correction, whether it is of the left foot, its frames, and whether it plants it.
-    corrections: Vec<(bool, Range<usize>, bool)>,
+    /// For each correction, the index of its foot, its frames, and whether it plants it.
+    corrections: Vec<(usize, Range<usize>, bool)>,
     seams: Vec<Range<usize>>,
     is_cycle: bool,
-    /// Which of ground frames and contacts are known.
-    known: [bool; 2],
+    /// Whether the ground frames are known.
+    knows_places: bool,
+    /// The number of feet whose contacts are known.
+    feet: usize,
     ground_m: Option<f32>,
 }
 
@@ -44,11 +46,12 @@ pub(super) fn pack(motion: &Motion) -> Result<Parcel, ParcelError> {
         contacts: motion.feet().contacts,
         set_ground_m: motion.feet().ground_m,
         corrections: (motion.contact_corrections().list().iter())
-            .map(|of| (of.side == Side::Left, of.frames.clone(), of.planted))
+            .map(|of| (of.foot.index(), of.frames.clone(), of.planted))
             .collect(),
         seams: motion.seams().to_vec(),
         is_cycle: motion.is_cycle(),
-        known: [motion.known_ground_frames().is_some(), motion.known_contacts().is_some()],
+        knows_places: motion.known_ground_frames().is_some(),
+        feet: motion.known_contacts().map_or(0, |contacts| contacts.feet().len()),
         ground_m: motion.known_ground_m(),
     };
     let mut floats = Vec::new();
@@ -58,8 +61,8 @@ pub(super) fn pack(motion: &Motion) -> Result<Parcel, ParcelError> {
         put(&mut bytes, &[place.yaw, place.shift.x, place.shift.y]);
     }
     if let Some(found) = motion.known_contacts() {
-        for side in Side::BOTH {
-            bytes.extend((0..clip.frames()).map(|frame| u8::from(found.planted(side, frame))));
+        for &foot in found.feet() {
+            bytes.extend((0..clip.frames()).map(|frame| u8::from(found.planted(foot, frame))));
         }
     }
     Ok(Parcel { head: serde_json::to_string(&head)?, floats, bytes })
@@ -72,32 +75,41 @@ pub(super) fn unpack(parcel: &Parcel) -> Result<Motion, ParcelError> {
     let skeleton = Skeleton::new(head.joints.into_owned()).map_err(|_| ParcelError::Arrays)?;
     let skeleton = Arc::new(skeleton.with_folded_chain(head.above.into_owned()));
     let clip = head.clip.take(&skeleton, &mut floats)?;
-    let [knows_places, knows_contacts] = head.known;
-    let places = take::<[f64; 3]>(&mut bytes, if knows_places { frames } else { 0 })?;
+    let places = take::<[f64; 3]>(&mut bytes, if head.knows_places { frames } else { 0 })?;
     let places =
         places.into_iter().map(|[yaw, x, z]| Planar { yaw, shift: DVec2::new(x, z) }).collect();
-    let mut flags = || -> Result<Vec<bool>, ParcelError> {
-        let flags = take::<u8>(&mut bytes, if knows_contacts { frames } else { 0 })?;
-        Ok(flags.into_iter().map(|flag| flag != 0).collect())
-    };
-    let contacts = [flags()?, flags()?];
-    let corrections = head.corrections.into_iter().map(|(is_left, frames, planted)| {
-        let side = if is_left { Side::Left } else { Side::Right };
-        ContactCorrection { side, frames, planted }
+    let known_feet = Foot::ALL.get(..head.feet).ok_or(ParcelError::Arrays)?;
+    let contacts = take_contacts(&mut bytes, frames, known_feet)?;
+    let corrections = head.corrections.into_iter().filter_map(|(foot, frames, planted)| {
+        Some(ContactCorrection { foot: *Foot::ALL.get(foot)?, frames, planted })
     });
     let feet = FootOptions { contacts: head.contacts, ground_m: head.set_ground_m };
-    let mut motion = if knows_places {
+    let mut motion = if head.knows_places {
         Motion::with_ground_frames(clip, &head.roles, places)
     } else {
         Motion::with_roles(clip, &head.roles)
     }
     .with_feet(feet);
-    if knows_contacts {
-        motion = motion.with_contacts(Contacts::from_flags(contacts));
+    if !known_feet.is_empty() {
+        motion = motion.with_contacts(contacts);
     }
     motion = motion.with_contact_corrections(corrections.collect());
     if let Some(ground_m) = head.ground_m {
         motion = motion.with_ground_m(ground_m);
     }
     Ok(motion.with_seams(head.seams).declared_cycle(head.is_cycle))
+}
+
+/// Moves the flags of some feet from the front of `bytes`, foot by foot.
+pub(super) fn take_contacts(
+    bytes: &mut &[u8],
+    frames: usize,
+    feet: &[Foot],
+) -> Result<Contacts, ParcelError> {
+    let mut planted: Vec<Vec<bool>> = Vec::with_capacity(feet.len());
+    for _ in feet {
+        planted.push(take::<u8>(bytes, frames)?.into_iter().map(|flag| flag != 0).collect());
+    }
+    let mut planted = planted.into_iter();
+    Ok(Contacts::of_feet(feet, |_| planted.next().unwrap_or_default()))
 }

@@ -7,8 +7,9 @@ use crate::labs::Distances;
 use crate::params::MAX_PANES;
 use proptest::prelude::*;
 use segue_motion::clip::ContactCorrection;
+use segue_motion::clip::fixtures::QuadrupedWalk;
 use segue_motion::matching::Database;
-use segue_motion::skeleton::Side;
+use segue_motion::skeleton::{Foot, Side};
 use std::collections::BTreeSet;
 
 /// Workers as a page has them: jobs, clips and answers are messages.
@@ -397,13 +398,18 @@ fn short_work_is_not_offered() {
 fn motion_in_a_parcel_stays_the_same() {
     let session = opened("lab=view&a=walk");
     let motion = &session.main_outcome().unwrap().motion;
-    let correction = ContactCorrection { side: Side::Left, frames: 3..9, planted: false };
+    let correction = ContactCorrection { foot: Side::Left.into(), frames: 3..9, planted: false };
     let corrected = Motion::clone(motion)
         .with_contact_corrections([correction].into_iter().collect())
         .with_seams(std::iter::once(4..7).collect())
         .declared_cycle(true);
     let fresh = Motion::with_roles(Arc::clone(motion.clip()), motion.roles());
-    for motion in [Motion::clone(motion), corrected, fresh] {
+    let on_four = Motion::analyze(QuadrupedWalk::default().clip());
+    let correction = ContactCorrection { foot: Foot::ALL[3], frames: 3..9, planted: true };
+    let of_forefeet =
+        on_four.clone().with_contact_corrections(std::iter::once(correction).collect());
+    assert_eq!(of_forefeet.contacts().feet(), Foot::ALL);
+    for motion in [Motion::clone(motion), corrected, fresh, on_four, of_forefeet] {
         let clip = JobClip { number: 1, motion: Arc::new(motion.clone()) };
         let parcel = clip.parcel().unwrap();
         assert!(motion_parcel::unpack(&parcel).unwrap() == motion);

@@ -24,7 +24,7 @@ use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::math::Planar;
 use segue_motion::metrics::{deepest_penetration, worst_foot_slide};
 use segue_motion::registration::Registration;
-use segue_motion::skeleton::Side;
+use segue_motion::skeleton::{Foot, Side};
 use segue_text::{Message, msg};
 use std::ops::Range;
 use std::sync::Arc;
@@ -156,26 +156,27 @@ impl RegistrationFacts {
     /// Returns the stances of a foot of a source in the result's time; of the result itself if
     /// there is no source.
     #[must_use]
-    pub fn stances(&self, of: Option<Slot>, side: Side) -> Vec<Range<f64>> {
+    pub fn stances(&self, of: Option<Slot>, foot: impl Into<Foot>) -> Vec<Range<f64>> {
+        let foot = foot.into();
         let secs =
             |frames: Range<usize>| frames.start as f64 / self.fps()..frames.end as f64 / self.fps();
         let Some(slot) = of else {
-            return self.steps.intervals(side).into_iter().map(secs).collect();
+            return self.steps.intervals(foot).into_iter().map(secs).collect();
         };
         let clip = usize::from(slot == Slot::B);
         let contacts = self.map.motions()[clip].contacts();
         let flags = self
             .frame_pairs
             .iter()
-            .map(|frame_pair| stands(contacts, side, frame_pair.frames[clip]))
+            .map(|frame_pair| stands(contacts, foot, frame_pair.frames[clip]))
             .collect();
         let in_result = Contacts::from_flags([flags, Vec::new()]);
-        in_result.intervals(Side::BOTH[0]).into_iter().map(secs).collect()
+        in_result.intervals(Side::Left).into_iter().map(secs).collect()
     }
 }
 
-fn stands(contacts: &Contacts, side: Side, frame: f64) -> bool {
-    frame > -0.5 && contacts.planted(side, frame.round() as usize)
+fn stands(contacts: &Contacts, foot: Foot, frame: f64) -> bool {
+    frame > -0.5 && contacts.planted(foot, frame.round() as usize)
 }
 
 /// The kind of result of two registered clips.

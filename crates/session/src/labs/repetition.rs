@@ -5,7 +5,7 @@ use crate::labs::LabError;
 use crate::metrics::Metric;
 use segue_motion::clip::{Clip, Contacts, Motion, character_frames};
 use segue_motion::metrics::{Extreme, worst_foot_slide};
-use segue_motion::skeleton::{Roles, Side};
+use segue_motion::skeleton::Roles;
 use segue_motion::transition::repeat_clip;
 use std::sync::Arc;
 
@@ -71,10 +71,9 @@ pub(super) fn repeated(
     cycle: &std::ops::Range<usize>,
     frames: usize,
 ) -> Contacts {
-    let flags = |side: Side| {
+    Contacts::of_feet(contacts.feet(), |foot| {
         (0..frames)
-            .map(|frame| contacts.planted(side, cycle.start + frame % cycle.len().max(1)))
+            .map(|frame| contacts.planted(foot, cycle.start + frame % cycle.len().max(1)))
             .collect()
-    };
-    Contacts::from_flags(Side::BOTH.map(flags))
+    })
 }

@@ -8,8 +8,9 @@ use super::{Cycle, CycleMade, Outcome, Slot};
 use crate::labs::LabError;
 use crate::metrics::{Metric, MetricId};
 use crate::params::{Key, Kind, Params};
-use segue_motion::clip::{Motion, ground_speed};
+use segue_motion::clip::{Contacts, Motion, ground_speed};
 use segue_motion::gait::{GaitCycle, PhaseAlignment, SpeedBlend, SpeedOptions};
+use segue_motion::skeleton::BodyPlan;
 use segue_text::{Message, msg};
 use std::sync::Arc;
 
@@ -149,11 +150,16 @@ impl LabInputs for SpeedInputs {
         let fps = pair.a.clip().fps();
         let three = blend.cycles_at(self.asked_mps, 3)?;
         let (facts, cycle_frames) = (three.facts, (three.clip.frames() - 1) / 3);
+        // The events of the gait are those of the hind feet.
+        let contacts = match roles.body_plan() {
+            BodyPlan::Biped => three.contacts,
+            BodyPlan::Quadruped => Contacts::detect(&three.clip, roles, &pair.a.feet().contacts),
+        };
         let Repetition { motion, mut slides } = repeat_cycle(
             roles,
             cycle_frames,
             three.clip,
-            &three.contacts,
+            &contacts,
             pair.ground_m(),
             self.foot_lock,
         )?;

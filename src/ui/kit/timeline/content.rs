@@ -35,8 +35,9 @@ pub(crate) struct Stripe<'a> {
     pub(crate) part: Part,
     /// The label before them.
     pub(crate) label: Text<'a>,
-    /// The stances, seconds: left, right.
-    pub(crate) feet: [Vec<Range<f64>>; 2],
+    /// The stances of each foot, seconds: left, right; of a body on four legs those of the hind
+    /// feet, then those of the forefeet.
+    pub(crate) feet: Vec<Vec<Range<f64>>>,
     /// The correction of the stances; `None` where they can only be seen.
     pub(crate) edit: Option<StanceEdit>,
 }
@@ -44,8 +45,8 @@ pub(crate) struct Stripe<'a> {
 /// The correction of stances by hand.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct StanceEdit {
-    /// The parts that are corrected, seconds: left, right.
-    pub(crate) corrected: [Vec<Range<f64>>; 2],
+    /// The parts of each foot that are corrected, seconds.
+    pub(crate) corrected: Vec<Vec<Range<f64>>>,
     /// A sentence about the corrections; `None` without any.
     pub(crate) hint: Option<Message>,
 }
@@ -100,7 +101,7 @@ pub(crate) struct Timeline<'a> {
 pub(crate) enum StanceEvent {
     /// Move an end of a stance.
     Move {
-        /// The foot: left, right.
+        /// The foot.
         foot: usize,
         /// The stance.
         stance: usize,

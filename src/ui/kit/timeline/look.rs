@@ -123,10 +123,14 @@ pub(super) fn paint_playhead(x: f32, top: f32, bottom: f32, scrub: &Response, ui
     ui.painter().circle_filled(pos2(x, top + 2.0), (3.5 + hot) * theme.scale(), palette.handle);
 }
 
-/// Returns the lines of the left and the right foot in the row of a stripe.
-pub(super) fn stripe_lanes(row: Rangef) -> [Rangef; 2] {
-    let half = 0.5 * (row.span() - 1.0);
-    [0.0, half + 1.0].map(|top| Rangef::new(row.min + top, row.min + top + half))
+/// Returns the lines of the feet in the row of a stripe.
+pub(super) fn stripe_lanes(feet: usize, row: Rangef) -> impl Iterator<Item = Rangef> {
+    let count = feet.max(1) as f32;
+    let height = (row.span() - (count - 1.0)) / count;
+    (0..feet).map(move |foot| {
+        let top = row.min + foot as f32 * (height + 1.0);
+        Rangef::new(top, top + height)
+    })
 }
 
 /// Draws the stances of a motion as bars.
@@ -134,7 +138,7 @@ pub(super) fn paint_stripe(stripe: &Stripe<'_>, row: Rangef, axis: TimeAxis, ui:
     let palette = palette_of(ui);
     let color =
         if stripe.part == Part::Result { palette.accent } else { stripe.part.fill(palette).0 };
-    for (stances, lane) in stripe.feet.iter().zip(stripe_lanes(row)) {
+    for (stances, lane) in stripe.feet.iter().zip(stripe_lanes(stripe.feet.len(), row)) {
         let lane = Rect::from_x_y_ranges(axis.x, lane);
         ui.painter().rect_filled(lane, 1.0, palette.track.gamma_multiply(0.5));
         for stance in stances {

@@ -29,13 +29,11 @@ pub(super) struct Lanes<'a> {
     pub(super) index: usize,
     pub(super) stripe: &'a Stripe<'a>,
     pub(super) edit: &'a StanceEdit,
-    /// Left and right foot.
-    pub(super) rows: [Rangef; 2],
+    /// The line of each foot.
+    pub(super) rows: Vec<Rangef>,
     pub(super) axis: TimeAxis,
     pub(super) id: Id,
 }
-
-const FEET: [Word; 2] = [words::LEFT_FOOT, words::RIGHT_FOOT];
 
 impl Lanes<'_> {
     /// Handles the input to the stances and to the gaps between them, and draws their marks.
@@ -45,9 +43,9 @@ impl Lanes<'_> {
         events: &mut Vec<TimelineEvent>,
         ui: &mut Ui,
     ) {
-        for (foot, lane) in self.rows.into_iter().enumerate() {
+        for (foot, (&lane, stances)) in self.rows.iter().zip(&self.stripe.feet).enumerate() {
             self.gaps_ui(foot, lane, timeline, events, ui);
-            for (stance, span) in self.stripe.feet[foot].iter().enumerate() {
+            for (stance, span) in stances.iter().enumerate() {
                 let rect = Rect::from_x_y_ranges(
                     self.axis.x_of(span.start)..=self.axis.x_of(span.end.min(timeline.duration)),
                     lane,
@@ -56,13 +54,18 @@ impl Lanes<'_> {
                     self.stance_ui([foot, stance], span, rect, timeline, events, ui);
                 }
             }
-            for span in &self.edit.corrected[foot] {
+            for span in self.edit.corrected.get(foot).into_iter().flatten() {
                 let x =
                     self.axis.x_of(span.start)..=self.axis.x_of(span.end.min(timeline.duration));
                 let stroke = Stroke::new(1.5 * theme_of(ui).scale(), palette_of(ui).text);
                 ui.painter().hline(x, lane.max - 1.0, stroke);
             }
         }
+    }
+
+    /// Returns the words for the feet.
+    fn words(&self) -> &'static [words::FootWords] {
+        words::feet(self.stripe.feet.len())
     }
 
     fn event(&self, event: StanceEvent) -> TimelineEvent {
@@ -193,7 +196,8 @@ impl Lanes<'_> {
         });
         paint_ends(hot, rect, &response, ui);
         let said = msg!("{from:.2} to {to:.2} s", from = span.start, to = span.end);
-        let name = msg!("{foot}, contact {number}", foot = FEET[foot], number = stance + 1);
+        let foot = self.words().get(foot).map_or(Word::default(), |words| words.name);
+        let name = msg!("{foot}, contact {number}", foot, number = stance + 1);
         let adjustable = Adjustable {
             name: say(&name, ui),
             value: span.start,
@@ -204,15 +208,14 @@ impl Lanes<'_> {
         };
         adjustable.describe(&response, ui);
         focus_ring(rect, radius::S, &response, ui);
-        let hint =
-            msg!("{foot}: {said}. {help}", foot = FEET[foot], said, help = words::STANCE_HELP);
+        let hint = msg!("{foot}: {said}. {help}", foot, said, help = words::STANCE_HELP);
         response.on_hover_text(say(&hint, ui));
     }
 
-    /// Draws the letters of the feet at the right edge of `place`.
+    /// Draws the signs of the feet at the right edge of `place`.
     fn letters_ui(&self, place: Rect, ui: &Ui) {
-        for (letter, lane) in [words::LEFT, words::RIGHT].into_iter().zip(self.rows) {
-            let run = Run::new(letter, Type::Small, palette_of(ui).muted);
+        for (words, lane) in self.words().iter().zip(&self.rows) {
+            let run = Run::new(words.sign, Type::Small, palette_of(ui).muted);
             let at = pos2(place.right(), lane.center());
             put(ui.painter(), at, Align2::RIGHT_CENTER, line_of(&[run], f32::INFINITY, ui));
         }
@@ -228,7 +231,9 @@ impl Lanes<'_> {
     ) {
         let (theme, palette) = (theme_of(ui), palette_of(ui));
         self.letters_ui(place, ui);
-        let place = place.with_max_x(place.right() - 18.0 * theme.scale());
+        // The signs of four feet are wider.
+        let signs = if self.rows.len() > 2 { 34.0 } else { 18.0 };
+        let place = place.with_max_x(place.right() - signs * theme.scale());
         let response = ui
             .interact(place, self.id.with("menu"), Sense::click())
             .on_hover_cursor(CursorIcon::PointingHand);
@@ -255,11 +260,9 @@ impl Lanes<'_> {
             None => response,
         };
         menu_ui(&response, RectAlign::TOP_START, |ui| {
-            for (foot, add) in
-                [words::ADD_LEFT_CONTACT, words::ADD_RIGHT_CONTACT].into_iter().enumerate()
-            {
-                let planted = self.stripe.feet[foot].iter().any(|span| span.contains(&now));
-                if item_ui(add, !planted, ui) {
+            for (foot, (words, stances)) in self.words().iter().zip(&self.stripe.feet).enumerate() {
+                let planted = stances.iter().any(|span| span.contains(&now));
+                if item_ui(words.add, !planted, ui) {
                     events.extend(self.once(StanceEvent::Add { foot, time: now }));
                 }
             }

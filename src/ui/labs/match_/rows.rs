@@ -198,6 +198,9 @@ fn going_over_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         }
     }
     row(Key::PlantFeet, session, out, ui);
+    if shown(session).is_some_and(|(driven, _)| driven.database.roles().is_quadruped()) {
+        kit::note_ui(text::HIND_FEET_ALONE, palette_of(ui).muted, ui);
+    }
 }
 
 /// Draws the clips of the database, and the number of characters.

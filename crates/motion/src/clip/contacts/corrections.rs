@@ -1,14 +1,14 @@
 //! Manual corrections of contacts.
 
 use super::Contacts;
-use crate::skeleton::Side;
+use crate::skeleton::Foot;
 use std::ops::Range;
 
 /// A correction: whether a foot is planted in these frames, whatever was detected.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ContactCorrection {
     /// The foot.
-    pub side: Side,
+    pub foot: Foot,
     /// The frames.
     pub frames: Range<usize>,
     /// Whether it is planted.
@@ -26,24 +26,24 @@ impl FromIterator<ContactCorrection> for ContactCorrections {
 }
 
 impl ContactCorrections {
-    /// Returns the fewest corrections that turn the contacts `found` into `wanted`: the left foot
-    /// first, in order of time. Frames beyond those of `found` are ignored.
+    /// Returns the fewest corrections that turn the contacts `found` into `wanted`: foot by foot,
+    /// the left one first, in order of time. Frames beyond those of `found` are ignored.
     #[must_use]
     pub fn between(found: &Contacts, wanted: &Contacts) -> Self {
         let mut list: Vec<ContactCorrection> = Vec::new();
-        for side in Side::BOTH {
+        for &foot in found.feet() {
             for frame in 0..found.frames() {
-                let planted = wanted.planted(side, frame);
-                if planted == found.planted(side, frame) {
+                let planted = wanted.planted(foot, frame);
+                if planted == found.planted(foot, frame) {
                     continue;
                 }
                 match list.last_mut() {
                     Some(last)
-                        if (last.side, last.frames.end, last.planted) == (side, frame, planted) =>
+                        if (last.foot, last.frames.end, last.planted) == (foot, frame, planted) =>
                     {
                         last.frames.end += 1;
                     }
-                    _ => list.push(ContactCorrection { side, frames: frame..frame + 1, planted }),
+                    _ => list.push(ContactCorrection { foot, frames: frame..frame + 1, planted }),
                 }
             }
         }
@@ -62,22 +62,22 @@ impl ContactCorrections {
         self.0.is_empty()
     }
 
-    /// Returns whether the foot of `side` is planted in `frame` by a correction; `None` without
-    /// one.
+    /// Returns whether a foot is planted in `frame` by a correction; `None` without one.
     #[must_use]
-    pub fn planted(&self, side: Side, frame: usize) -> Option<bool> {
+    pub fn planted(&self, foot: impl Into<Foot>, frame: usize) -> Option<bool> {
+        let foot = foot.into();
         let covers = |correction: &&ContactCorrection| {
-            correction.side == side && correction.frames.contains(&frame)
+            correction.foot == foot && correction.frames.contains(&frame)
         };
         self.0.iter().rev().find(covers).map(|correction| correction.planted)
     }
 
-    /// Returns the corrected contacts.
+    /// Returns the corrected contacts. Corrections of feet that the body does not have are ignored.
     #[must_use]
     pub fn applied_to(&self, found: &Contacts) -> Contacts {
         let mut planted = found.planted.clone();
-        for ContactCorrection { side, frames, planted: is_planted } in &self.0 {
-            let flags = &mut planted[side.index()];
+        for ContactCorrection { foot, frames, planted: is_planted } in &self.0 {
+            let Some(flags) = planted.get_mut(foot.index()) else { continue };
             let end = frames.end.min(flags.len());
             if let Some(flags) = flags.get_mut(frames.start.min(end)..end) {
                 flags.fill(*is_planted);
@@ -114,8 +114,15 @@ impl Contacts {
     /// [`intervals`](Self::intervals), at another frame: a stance keeps at least one frame, and at
     /// least one frame stays between it and its neighbours. Unchanged without such a stance.
     #[must_use]
-    pub fn with_end_at(&self, side: Side, stance: usize, end: StanceEnd, frame: usize) -> Self {
-        let stances = self.intervals(side);
+    pub fn with_end_at(
+        &self,
+        foot: impl Into<Foot>,
+        stance: usize,
+        end: StanceEnd,
+        frame: usize,
+    ) -> Self {
+        let foot = foot.into();
+        let stances = self.intervals(foot);
         let Some(moved) = stances.get(stance) else {
             return self.clone();
         };
@@ -126,14 +133,14 @@ impl Contacts {
             StanceEnd::Strike => frame.clamp(least, moved.end - 1)..moved.end,
             StanceEnd::Lift => moved.start..frame.clamp(moved.start + 1, most),
         };
-        self.with(side, moved.clone(), false).with(side, frames, true)
+        self.with(foot, moved.clone(), false).with(foot, frames, true)
     }
 
     /// Returns the contacts with a foot planted, or not planted, in some frames; those beyond the
     /// clip are ignored.
     #[must_use]
-    pub fn with(&self, side: Side, frames: Range<usize>, planted: bool) -> Self {
-        let correction = ContactCorrection { side, frames, planted };
+    pub fn with(&self, foot: impl Into<Foot>, frames: Range<usize>, planted: bool) -> Self {
+        let correction = ContactCorrection { foot: foot.into(), frames, planted };
         ContactCorrections(vec![correction]).applied_to(self)
     }
 
@@ -142,11 +149,12 @@ impl Contacts {
     /// no room for more than it takes to separate them is closed. Unchanged where the foot is
     /// planted already, and beyond the clip.
     #[must_use]
-    pub fn with_stance_at(&self, side: Side, frame: usize, length: usize) -> Self {
-        if frame >= self.frames() || self.planted(side, frame) {
+    pub fn with_stance_at(&self, foot: impl Into<Foot>, frame: usize, length: usize) -> Self {
+        let foot = foot.into();
+        if frame >= self.frames() || self.planted(foot, frame) {
             return self.clone();
         }
-        let stances = self.intervals(side);
+        let stances = self.intervals(foot);
         let next = stances.partition_point(|stance| stance.start <= frame);
         let free = next.checked_sub(1).and_then(|before| stances.get(before)).map_or(0, |s| s.end)
             ..stances.get(next).map_or(self.frames(), |stance| stance.start);
@@ -154,17 +162,18 @@ impl Contacts {
         let room = free.start + usize::from(free.start > 0)
             ..free.end - usize::from(free.end < self.frames());
         if room.is_empty() {
-            return self.with(side, free, true);
+            return self.with(foot, free, true);
         }
         let length = length.clamp(1, room.len());
         let start = frame.saturating_sub(length / 2).clamp(room.start, room.end - length);
-        self.with(side, start..start + length, true)
+        self.with(foot, start..start + length, true)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::skeleton::Side;
     use proptest::prelude::*;
 
     fn flags(text: &str) -> Vec<bool> {
@@ -212,7 +221,8 @@ mod tests {
 
     #[test]
     fn later_correction_counts_and_frames_beyond_the_clip_are_ignored() {
-        let correction = |frames, planted| ContactCorrection { side: Side::Right, frames, planted };
+        let correction =
+            |frames, planted| ContactCorrection { foot: Side::Right.into(), frames, planted };
         let corrections: ContactCorrections =
             [correction(1..4, true), correction(2..3, false), correction(5..99, true)]
                 .into_iter()

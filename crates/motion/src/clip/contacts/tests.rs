@@ -5,7 +5,7 @@ use crate::clip::estimate_ground;
 use crate::clip::fixtures::wander_by;
 use crate::clip::ground::foot_level;
 use crate::clip::{Interpolation, JointTranslations, resample};
-use crate::skeleton::fixtures;
+use crate::skeleton::{Side, fixtures};
 use proptest::prelude::*;
 use std::f32::consts::{PI, TAU};
 use std::sync::Arc;
@@ -179,7 +179,7 @@ fn contacts_without_feet_or_frames_are_empty() {
     assert_eq!((without.frames(), without.intervals(Side::Left).len()), (3, 0));
     assert_eq!(foot_level(&clip, &Roles::default()), 0.0);
     let empty = clip.crop(0..0).unwrap();
-    assert_eq!(detect(&empty, &roles), Contacts { planted: [vec![], vec![]] });
+    assert_eq!(detect(&empty, &roles), Contacts::default());
     assert_eq!(foot_level(&empty, &roles), 0.0);
     let one = clip.crop(0..1).unwrap();
     assert!(detect(&one, &roles).planted(Side::Left, 0));
@@ -229,7 +229,7 @@ fn phase_runs_from_touchdown_to_touchdown() {
         flags
     };
     let contacts =
-        Contacts { planted: [stances(&[0..5, 20..30, 40..50, 80..90]), stances(&[0..40, 60..70])] };
+        Contacts::from_flags([stances(&[0..5, 20..30, 40..50, 80..90]), stances(&[0..40, 60..70])]);
     let phase = |frame| contacts.phase(Side::Left, frame).unwrap();
     assert_eq!([phase(20), phase(25), phase(40), phase(60)], [0.0, 0.25, 0.0, 0.5]);
     // The nearest stride is repeated before the first and after the last touchdown.

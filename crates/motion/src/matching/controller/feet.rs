@@ -6,7 +6,7 @@ use super::options::FootPlanting;
 use crate::math::curve::smoothstep;
 use crate::math::{quat, spring};
 use crate::registration::REFERENCE_HEIGHT_M;
-use crate::skeleton::{Pose, Side, Skeleton, WorldPose, world_pose_of};
+use crate::skeleton::{self, Pose, Skeleton, WorldPose, world_pose_of};
 use crate::transition::Limb;
 use glam::{Quat, Vec3};
 
@@ -36,7 +36,7 @@ use glam::{Quat, Vec3};
 /// does, it is lifted, as in a step, and not dragged.
 #[derive(Clone, Debug)]
 pub(super) struct Feet {
-    both: Vec<Foot>,
+    all: Vec<Foot>,
     needed: Vec<usize>,
     scale: f32,
     ground_m: f32,
@@ -108,7 +108,8 @@ fn clearance(speed_mps: f32) -> f32 {
 
 #[derive(Clone, Debug)]
 struct Foot {
-    side: Side,
+    /// The index of the foot.
+    index: usize,
     leg: Limb,
     axis: Vec3,
     points: Vec<(usize, Vec3)>,
@@ -137,13 +138,13 @@ impl Feet {
             .filter_map(|frame| database.place(frame))
             .filter_map(|place| Some(database.motion(place.motion)?.clip().world_pose(place.frame)))
             .collect();
-        let foot = |side: Side| {
-            let leg = Limb::leg(skeleton, roles, side)?;
+        let foot = |&foot: &skeleton::Foot| {
+            let leg = Limb::on(skeleton, roles, foot)?;
             Some(Foot {
-                side,
+                index: foot.index(),
                 axis: leg.usual_axis(examples.iter()),
                 leg,
-                points: roles.foot_points(skeleton, side),
+                points: roles.foot_points(skeleton, foot),
                 before: Vec::new(),
                 shift: Vec3::ZERO,
                 rate: Vec3::ZERO,
@@ -155,11 +156,12 @@ impl Feet {
                 turned: [Quat::IDENTITY; 3],
             })
         };
-        let feet: Vec<Foot> = Side::BOTH.into_iter().filter_map(foot).collect();
+        let of_body = skeleton::Foot::of(roles.body_plan());
+        let feet: Vec<Foot> = of_body.iter().filter_map(foot).collect();
         let joints = feet.iter().flat_map(|foot| foot.points.iter().map(|&(joint, _)| joint));
         Self {
             needed: skeleton.with_ancestors(joints),
-            both: feet,
+            all: feet,
             scale: roles.body_height(skeleton) / REFERENCE_HEIGHT_M as f32,
             ground_m: database.ground_m(),
             stand_m: database.stand_m(),
@@ -176,11 +178,11 @@ impl Feet {
         &mut self,
         skeleton: &Skeleton,
         pose: &mut Pose,
-        own: [FootState; 2],
+        own: [FootState; 4],
         options: Option<&FootPlanting>,
         usual_radps: &[f32],
         dt_secs: f64,
-    ) -> [bool; 2] {
+    ) -> [bool; 4] {
         world_pose_of(
             skeleton,
             pose.root_translation,
@@ -189,12 +191,12 @@ impl Feet {
             &self.needed,
             &mut self.world,
         );
-        let (mut stand, mut too_high) = ([false; 2], 0.0_f32);
-        for foot in &mut self.both {
+        let (mut stand, mut too_high) = ([false; 4], 0.0_f32);
+        for foot in &mut self.all {
             let now: Vec<Vec3> =
                 foot.points.iter().map(|&(joint, point)| self.world.point(joint, point)).collect();
             let lowest = now.iter().map(|point| point.y).fold(f32::INFINITY, f32::min);
-            let own = own[foot.side.index()];
+            let own = own[foot.index];
             let points = foot.before.get(own.stillest).zip(now.get(own.stillest));
             let step = points.map(|(before, now)| (*now - *before) * Vec3::new(1.0, 0.0, 1.0));
             let slow =
@@ -204,7 +206,7 @@ impl Feet {
             foot.before = now;
             let Some(options) = options else {
                 foot.stands = own.planted && (stood || (slow && down));
-                stand[foot.side.index()] = foot.stands;
+                stand[foot.index] = foot.stands;
                 (foot.shift, foot.rate, foot.lift, foot.lift_rate) =
                     (Vec3::ZERO, Vec3::ZERO, 0.0, 0.0);
                 foot.turned = [Quat::IDENTITY; 3];
@@ -221,7 +223,7 @@ impl Feet {
             foot.released &= own.planted && foot.shift.length() > RESUME_SHARE * most_shift;
             foot.stands =
                 own.planted && !foot.released && (stood || (holds && down && step.is_some()));
-            stand[foot.side.index()] = foot.stands;
+            stand[foot.index] = foot.stands;
             let before = foot.shift;
             match step.filter(|_| stood) {
                 Some(step) if foot.stands => {
@@ -266,7 +268,7 @@ impl Feet {
         (self.lower, self.lower_rate) =
             towards_f32(self.lower, self.lower_rate, target, LOWER_HALF_LIFE_SECS, dt_secs);
         pose.root_translation.y -= self.lower;
-        for foot in &mut self.both {
+        for foot in &mut self.all {
             let shift = foot.moved + Vec3::Y * self.lower;
             let free = foot.leg.joints().map(|joint| pose.rotations[joint]);
             // A correction of a hundredth of a millimetre is invisible.
@@ -329,7 +331,7 @@ mod tests {
     use super::*;
     use crate::clip::{Clip, Motion};
     use crate::matching::DatabaseOptions;
-    use crate::skeleton::Role;
+    use crate::skeleton::{Role, Side};
     use crate::synth::{Action, Params, synthesize};
     use std::sync::Arc;
 
@@ -359,8 +361,9 @@ mod tests {
         let pose = |frame: usize| {
             let mut pose = clip.pose(frame);
             change(frame, &mut pose);
-            let own = [own(frame), FootState::default()];
-            feet.apply(database.skeleton(), &mut pose, own, Some(&PLANTING), usual, TICK_SECS);
+            let mut feet_own = [FootState::default(); 4];
+            feet_own[0] = own(frame);
+            feet.apply(database.skeleton(), &mut pose, feet_own, Some(&PLANTING), usual, TICK_SECS);
             pose
         };
         frames.map(pose).collect()
@@ -472,7 +475,7 @@ mod tests {
         };
         let own = |frame: usize| motion.feet(frame)[0].turned(&motion.root(frame));
         let poses = played(&database, &[], 0..motion.frames(), own, push);
-        let leg = &Feet::new(&database).both[0];
+        let leg = &Feet::new(&database).all[0];
         let needed: Vec<usize> = (0..database.skeleton().len()).collect();
         let lowest = |pose: &Pose| {
             let (moved, mut world) = (pose.translations.iter().copied(), WorldPose::default());
@@ -520,7 +523,7 @@ mod tests {
     fn knee_axes_come_from_all_motions() {
         let [walk, both] = [&[Action::Walk][..], &[Action::Idle, Action::Walk]]
             .map(|actions| Feet::new(&database(actions)));
-        for (walk, both) in walk.both.iter().zip(&both.both) {
+        for (walk, both) in walk.all.iter().zip(&both.all) {
             assert!(walk.axis.angle_between(both.axis) < 0.15, "{} {}", walk.axis, both.axis);
         }
     }

@@ -117,7 +117,7 @@ fn mirrored_motion_has_mirrored_features() {
 fn corrected_contacts_are_those_of_the_database_at_its_rate_and_mirrored() {
     let walk = synthesize(&Params { fps: 30.0, ..Params::new(Action::Walk) }).unwrap();
     let corrections = [(10..20, false), (30..40, true)]
-        .map(|(frames, planted)| ContactCorrection { side: Side::Left, frames, planted });
+        .map(|(frames, planted)| ContactCorrection { foot: Side::Left.into(), frames, planted });
     let corrected =
         Motion::analyze(walk.clip).with_contact_corrections(corrections.into_iter().collect());
     let database = Database::new(vec![Arc::new(corrected)], &cycle_options(false)).unwrap();

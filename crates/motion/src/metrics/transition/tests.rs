@@ -3,6 +3,7 @@
 use super::*;
 use crate::blend::{DissolveOptions, RootBlend, WeightLaw, dissolve};
 use crate::registration::fixtures::Walk;
+use crate::skeleton::Side;
 use crate::synth::{Action, Params, synthesize};
 use glam::Quat;
 use std::sync::Arc;

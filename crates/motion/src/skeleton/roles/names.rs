@@ -30,18 +30,54 @@ const SPINE: Vocabulary = &[&[
 const HEAD: Vocabulary = &[&["head", "skull"]];
 // A lone "LeftHip" is the thigh, but beside "LeftUpLeg" it is the bone that leads there (CMU);
 // "LeftLeg" is the shin, unless a "LeftKnee" follows it.
-const THIGH: Vocabulary = &[&["thigh", "upleg", "upperleg", "uleg", "femur"], &["hip"], &["leg"]];
-const SHIN: Vocabulary =
-    &[&["shin", "calf", "lowerleg", "lowleg", "tibia", "shank", "knee"], &["leg"]];
+const THIGH: Vocabulary =
+    &[&["thigh", "upleg", "upperleg", "uleg", "femur"], &["hip"], &["leg"], &[HIND_LEG]];
+const SHIN: Vocabulary = &[
+    &["shin", "calf", "lowerleg", "lowleg", "tibia", "shank", "knee"],
+    &["leg"],
+    &["stifle"],
+    &[HIND_LEG],
+];
 // In SMPL, "L_Ankle" has a child "L_Foot", which is the ball of the foot. The same holds for
 // "L_Wrist" and "L_Hand", and for "lwrist" and "lhand" in CMU's ASF.
-const FOOT: Vocabulary = &[&["ankle"], &["foot"]];
-const TOE: Vocabulary = &[&["toe", "toes", "ball"], &["foot"]];
+const FOOT: Vocabulary = &[&["ankle"], &["foot"], &["hock"], &[HIND_LEG], &["paw", "hoof"]];
+const TOE: Vocabulary = &[&["toe", "toes", "ball"], &["foot"], &["fetlock"], &["paw", "hoof"]];
 // "LeftShoulder" is the upper arm only where no "LeftArm" follows it.
 const UPPER_ARM: Vocabulary =
-    &[&["upperarm", "uparm", "uarm", "humerus"], &["arm"], &["shoulder", "shldr"]];
-const FOREARM: Vocabulary = &[&["forearm", "lowerarm", "lowarm", "farm", "radius", "elbow"]];
-const HAND: Vocabulary = &[&["wrist"], &["hand"]];
+    &[&["upperarm", "uparm", "uarm", "humerus"], &["arm"], &["shoulder", "shldr"], &[FORELEG]];
+const FOREARM: Vocabulary =
+    &[&["forearm", "lowerarm", "lowarm", "farm", "radius", "elbow"], &[FORELEG]];
+const HAND: Vocabulary = &[&["wrist"], &["hand"], &["cannon"], &[FORELEG], &["paw", "hoof"]];
+
+/// The words for joints of a foreleg and of a hind leg whose names say no more: `FrontLeg2`.
+const FORELEG: &str = "foreleg";
+const HIND_LEG: &str = "hindleg";
+/// The words of a leg's joints, and those of an arm's joints in the same places.
+const LEG_TO_ARM: [(&str, &str); 17] = [
+    ("upperleg", "upperarm"),
+    ("upleg", "upperarm"),
+    ("uleg", "upperarm"),
+    ("thigh", "upperarm"),
+    ("hip", "shoulder"),
+    ("lowerleg", "forearm"),
+    ("lowleg", "forearm"),
+    ("shin", "forearm"),
+    ("calf", "forearm"),
+    ("knee", "forearm"),
+    ("ankle", "wrist"),
+    ("foot", "hand"),
+    ("paw", "paw"),
+    ("hoof", "hoof"),
+    ("toe", "finger"),
+    ("toes", "finger"),
+    ("leg", FORELEG),
+];
+/// The words of legs, without which words for the front say nothing: a `forefoot` of a person is
+/// the ball of the foot.
+const LEGS: [&str; 7] = ["upperleg", "upleg", "uleg", "thigh", "lowerleg", "lowleg", "leg"];
+/// The words that tell the pairs of legs of a body on four legs.
+const FRONT: [&str; 2] = ["front", "fore"];
+const BEHIND: [&str; 3] = ["hind", "back", "rear"];
 
 /// The greatest number of limbs of one name on one side of a body with the limbs of a person; a
 /// second one may be a control without a telling name.
@@ -85,6 +121,31 @@ pub(super) fn detect(skeleton: &Skeleton) -> Roles {
     roles
 }
 
+/// Gives the forelegs of a body whose names tell front and hind legs apart the words of arms, and
+/// its hind legs those of legs: `FrontUpperLeg.L`, `HindLeg1.L`, `LeftForeLowerLeg`.
+fn rename_four_legs(names: &mut [Option<Tokens>]) {
+    let part_of = |core: &str, words: &[&str]| {
+        let rest = |word: &&str| core.strip_prefix(word).or_else(|| core.strip_suffix(word));
+        let rest = words.iter().find_map(rest)?;
+        LEG_TO_ARM.into_iter().find(|(leg, _)| *leg == rest)
+    };
+    let is_foreleg =
+        |name: &&Tokens| part_of(&name.core, &FRONT).is_some_and(|(leg, _)| LEGS.contains(&leg));
+    if names.iter().flatten().filter(is_foreleg).count() < Side::BOTH.len() {
+        return;
+    }
+    for name in names.iter_mut().flatten() {
+        let word = match (part_of(&name.core, &FRONT), part_of(&name.core, &BEHIND)) {
+            (Some((_, arm)), _) => arm,
+            (None, Some(("leg", _))) => HIND_LEG,
+            (None, Some((leg, _))) => leg,
+            (None, None) => continue,
+        };
+        word.clone_into(&mut name.core);
+        word.clone_into(&mut name.last);
+    }
+}
+
 struct Search<'a> {
     skeleton: &'a Skeleton,
     /// The parts of the names; `None` for joints that are no parts of the body.
@@ -122,6 +183,7 @@ impl<'a> Search<'a> {
                 }
             }
         }
+        rename_four_legs(&mut names);
         Self { skeleton, names, depths: depths(skeleton), is_hinged }
     }
 

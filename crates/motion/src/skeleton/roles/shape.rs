@@ -1,6 +1,6 @@
 //! Roles by the shape of a skeleton at rest.
 
-use super::{RoleSource, Roles, is_below};
+use super::{RoleSource, Roles, is_below, plan};
 use crate::math::sort::sort_by;
 use crate::skeleton::{Role, Side, Skeleton};
 use glam::Vec3;
@@ -18,11 +18,16 @@ const MAX_FEET: usize = 4;
 const MIN_REACH: f32 = 0.05;
 
 /// Finds roles by the tree and the rest positions alone: the two lowest chains are legs, the two
-/// that reach farthest sideways above them are arms, and the highest one between is the head. +Y
-/// must be up at rest.
+/// that reach farthest sideways above them are arms, and the highest one between is the head. Of
+/// four chains that reach the ground, the pair nearer to the head are the forelegs. +Y must be up
+/// at rest.
 pub(super) fn detect(skeleton: &Skeleton) -> Roles {
     let mut roles = Roles::default();
     let shape = Shape::of(skeleton);
+    let on_four = shape.four_legs().map(|legs| shape.quadruped(&legs));
+    if let Some(roles) = on_four.filter(|roles| plan::stands_at_rest(skeleton, roles)) {
+        return roles;
+    }
     let Some((hips, legs)) = shape.legs() else {
         return roles;
     };
@@ -56,6 +61,16 @@ pub(super) fn detect(skeleton: &Skeleton) -> Roles {
     let chest = shape.arms(&above, left, hips, &mut roles);
     shape.back_and_head(&above, hips, chest, &mut roles);
     roles
+}
+
+/// The legs of a body on four: where each pair meets, a leaf of each leg, and the leaves of the
+/// neck and the head.
+struct FourLegs {
+    hips: usize,
+    chest: usize,
+    hind: [usize; 2],
+    fore: [usize; 2],
+    neck: Vec<usize>,
 }
 
 #[derive(Default)]
@@ -118,8 +133,7 @@ impl<'a> Shape<'a> {
 
     /// Returns the joint at which the legs meet, and a leaf of either leg.
     fn legs(&self) -> Option<(usize, [usize; 2])> {
-        let mut by_height = self.leaves.clone();
-        sort_by(&mut by_height, |&a, &b| self.tip(a).y.total_cmp(&self.tip(b).y));
+        let by_height = self.by_height();
         let &first = by_height.first()?;
         by_height
             .iter()
@@ -130,12 +144,94 @@ impl<'a> Shape<'a> {
                 (self.rest[meeting].y - lower > MIN_LEG * self.height)
                     .then_some((meeting, [first, second]))
             })
-            .filter(|_| self.count_feet(&by_height) <= MAX_FEET)
+            .filter(|_| self.feet(&by_height).len() <= MAX_FEET)
     }
 
-    /// Returns the number of chains that reach the ground and meet at the height of hips: those of
-    /// the leaves, which are sorted by height.
-    fn count_feet(&self, leaves: &[usize]) -> usize {
+    /// Returns the leaves, the lowest first.
+    fn by_height(&self) -> Vec<usize> {
+        let mut by_height = self.leaves.clone();
+        sort_by(&mut by_height, |&a, &b| self.tip(a).y.total_cmp(&self.tip(b).y));
+        by_height
+    }
+
+    /// Returns the legs of a body that stands on four, whose hind legs meet at another joint than
+    /// its forelegs.
+    fn four_legs(&self) -> Option<FourLegs> {
+        let &[a, b, c, d] = self.feet(&self.by_height()).as_slice() else { return None };
+        // Legs of one pair meet farther from the root than legs of both.
+        let pairs = [([a, b], [c, d]), ([a, c], [b, d]), ([a, d], [b, c])];
+        let meetings = pairs.map(|(one, other)| {
+            let meet = |[left, right]: [usize; 2]| self.meeting(left, right);
+            (meet(one), meet(other))
+        });
+        let deepest = |index: &usize| {
+            let (one, other) = meetings[*index];
+            [one, other].map(|joint| self.path(0, joint).len()).into_iter().max()
+        };
+        let index = (0..pairs.len()).max_by_key(deepest)?;
+        let ((one, other), (at_one, at_other)) = (pairs[index], meetings[index]);
+        if at_one == at_other {
+            return None;
+        }
+        let tops = [a, b, c, d].map(|foot| {
+            let at = if one.contains(&foot) { at_one } else { at_other };
+            self.path(at, foot).first().copied().unwrap_or(foot)
+        });
+        let in_leg =
+            |leaf: usize| tops.iter().any(|&top| leaf == top || is_below(self.skeleton, leaf, top));
+        let is_tail =
+            |leaf: usize| self.skeleton.joints()[leaf].name.to_ascii_lowercase().contains("tail");
+        let free = || self.leaves.iter().copied().filter(|&leaf| !in_leg(leaf) && !is_tail(leaf));
+        let head = free().max_by(|&x, &y| self.tip(x).y.total_cmp(&self.tip(y).y))?;
+        // The head follows one of the joints at which legs meet: the one farther from the root.
+        let (deep, high) = if is_below(self.skeleton, at_one, at_other) {
+            ((at_one, one), (at_other, other))
+        } else {
+            ((at_other, other), (at_one, one))
+        };
+        let ((hips, hind), (chest, fore)) =
+            if is_below(self.skeleton, head, deep.0) { (high, deep) } else { (deep, high) };
+        let neck = free().filter(|&leaf| is_below(self.skeleton, leaf, chest)).collect();
+        Some(FourLegs { hips, chest, hind, fore, neck })
+    }
+
+    /// Returns the roles of a body on four legs. Its left follows from the way from its hind legs
+    /// to its forelegs.
+    fn quadruped(&self, legs: &FourLegs) -> Roles {
+        let mut roles = Roles::default();
+        let limbs = |top: usize, tips: [usize; 2]| tips.map(|tip| self.leg(top, tip));
+        let (hind, fore) = (limbs(legs.hips, legs.hind), limbs(legs.chest, legs.fore));
+        let at = |leg: &Leg| leg.thigh.map(|joint| self.rest[joint]);
+        let [Some(a), Some(b), Some(c), Some(d)] = [&hind[0], &hind[1], &fore[0], &fore[1]].map(at)
+        else {
+            return roles;
+        };
+        let left = Vec3::Y.cross(c + d - a - b);
+        roles.assign(Role::Hips, Some(legs.hips), RoleSource::ByShape);
+        let sides = |one: Vec3, other: Vec3| {
+            let first = if (one - other).dot(left) > 0.0 { Side::Left } else { Side::Right };
+            [first, first.other()]
+        };
+        for (leg, side) in hind.iter().zip(sides(a, b)) {
+            let joints = [leg.thigh, leg.shin, leg.foot, leg.toe];
+            for (role, joint) in Role::leg(side).into_iter().zip(joints) {
+                roles.assign(role, joint, RoleSource::ByShape);
+            }
+        }
+        for (leg, side) in fore.iter().zip(sides(c, d)) {
+            for (role, joint) in Role::arm(side).into_iter().zip([leg.thigh, leg.shin, leg.foot]) {
+                roles.assign(role, joint, RoleSource::ByShape);
+            }
+        }
+        if is_below(self.skeleton, legs.chest, legs.hips) {
+            self.back_and_head(&legs.neck, legs.hips, Some(legs.chest), &mut roles);
+        }
+        roles
+    }
+
+    /// Returns a leaf of each chain that reaches the ground, where these meet at the height of
+    /// hips; the leaves are sorted by height.
+    fn feet(&self, leaves: &[usize]) -> Vec<usize> {
         let lowest = leaves.first().map_or(0.0, |&leaf| self.tip(leaf).y);
         let mut feet: Vec<usize> = Vec::new();
         for &leaf in leaves {
@@ -149,7 +245,7 @@ impl<'a> Shape<'a> {
                 feet.push(leaf);
             }
         }
-        feet.len()
+        feet
     }
 
     /// Returns the last two long bones of a limb on the path from `top` to the leaf `tip`: (upper,

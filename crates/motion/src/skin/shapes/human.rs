@@ -70,7 +70,7 @@ pub(in crate::skin) fn is_person(rest: &[Vec3], roles: &Roles) -> bool {
         let [left, right] = legs.map(|leg| leg.map_or(0.0, |leg| -leg.dot(up)));
         Some(left.min(right) >= MIN_UPRIGHT)
     };
-    has_arms && is_upright().unwrap_or(false)
+    has_arms && !roles.is_quadruped() && is_upright().unwrap_or(false)
 }
 
 /// Returns the shapes, or `None` where the roles are not those of a person.

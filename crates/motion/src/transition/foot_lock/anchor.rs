@@ -4,7 +4,7 @@ use super::FootLockOptions;
 use super::envelope::{largest_around, smoothed};
 use crate::clip::{Clip, stillest_step};
 use crate::math::{Decay, curve, stats, wrap_angle};
-use crate::skeleton::{Roles, Side, WorldPose};
+use crate::skeleton::{self, Roles, WorldPose};
 use glam::{Quat, Vec3};
 use std::ops::Range;
 
@@ -42,8 +42,8 @@ pub(crate) struct Foot {
 }
 
 impl Foot {
-    pub(super) fn new(clip: &Clip, roles: &Roles, side: Side, ankle: usize) -> Self {
-        let points = roles.foot_points(clip.skeleton(), side);
+    pub(super) fn new(clip: &Clip, roles: &Roles, foot: skeleton::Foot, ankle: usize) -> Self {
+        let points = roles.foot_points(clip.skeleton(), foot);
         Self {
             ankle,
             ankles: Vec::with_capacity(clip.frames()),

@@ -1,10 +1,11 @@
 //! Tests of the foot lock.
 
 use super::*;
-use crate::clip::fixtures::wander_by;
-use crate::clip::{ContactOptions, stillest_step};
+use crate::clip::fixtures::{QuadrupedWalk, wander_by};
+use crate::clip::{ContactOptions, Motion, stillest_step};
 use crate::math::quat;
 use crate::math::{Planar, wrap_angle};
+use crate::metrics::foot_slides;
 use crate::registration::fixtures::Walk;
 use crate::skeleton::{Joint, Role, Skeleton, fixtures};
 use crate::synth::{Action, Params, synthesize};
@@ -423,4 +424,34 @@ fn foot_lock_of_invalid_input_is_refused() {
     assert!(lock(&roles, &contacts, &hard).is_ok());
     let empty = clip.crop(0..0).unwrap();
     assert_eq!(foot_lock(&empty, &roles, &Contacts::default(), &options), Ok(empty));
+}
+
+/// The forefeet of a body on four legs are held as its hind feet are, and no leg bends the other
+/// way.
+#[test]
+fn foot_lock_holds_sliding_forefeet() {
+    for axis in [None, Some(Vec3::X), Some(Vec3::Y)] {
+        let made = QuadrupedWalk { axis, fore_slide_mps: 0.1, ..QuadrupedWalk::default() };
+        let motion = Motion::analyze(made.clip());
+        let (clip, roles, contacts) = (motion.clip(), motion.roles(), motion.contacts());
+        let locked = foot_lock(clip, roles, contacts, &FootLockOptions::default()).unwrap();
+        for pair in FootPair::BOTH {
+            let worst = |clip: &Clip| {
+                let slides = foot_slides(clip, roles, contacts).into_iter();
+                let of_pair = slides.filter(|slide| slide.foot.pair == pair);
+                of_pair.map(|slide| slide.slide_cm).fold(0.0, f64::max)
+            };
+            let (before, after) = (worst(clip), worst(&locked));
+            assert!(pair == FootPair::Hind || before > 3.0, "{axis:?}: {before} cm");
+            assert!(after < 0.2, "{axis:?}, {pair:?}: {before} to {after} cm");
+        }
+        for foot in Foot::ALL {
+            let leg = Limb::on(clip.skeleton(), roles, foot).unwrap();
+            for frame in 0..clip.frames() {
+                let [before, after] =
+                    [clip, &locked].map(|clip: &Clip| leg.pose(&clip.world_pose(frame)).bend());
+                assert!(before.dot(after) > 0.0, "{axis:?}, {foot:?}, {frame}");
+            }
+        }
+    }
 }

@@ -14,7 +14,7 @@ use segue_motion::graph::{
     WalkAssembly, WalkMeter, WalkPiece,
 };
 use segue_motion::metrics::{MotionTrace, SlideMeter, TraceMeter};
-use segue_motion::skeleton::Side;
+use segue_motion::skeleton::Foot;
 use segue_motion::transition::FootLocking;
 use std::sync::Arc;
 
@@ -130,8 +130,8 @@ pub(super) struct WalkBuilder {
     pieces: Vec<WalkPiece>,
     /// The number of pieces that are measured, as far as they are to be.
     metered: usize,
-    /// The frames in which the left and the right foot are planted.
-    planted: [Vec<bool>; 2],
+    /// The frames in which each foot is planted, by [`Foot::index`].
+    planted: [Vec<bool>; 4],
     frames: usize,
     ends: bool,
     /// The length to extend the walk to next, frames.
@@ -463,11 +463,11 @@ impl WalkBuilder {
         for frame in 0..piece.clip.frames() {
             let place = piece.shown_at(frame);
             let motion = self.built.clips.motions().get(place.clip);
-            for side in Side::BOTH {
+            for (foot, planted) in Foot::ALL.into_iter().zip(&mut self.planted) {
                 let stands = motion.is_some_and(|motion| {
-                    motion.contacts().planted(side, place.frame.min(motion.clip().frames() - 1))
+                    motion.contacts().planted(foot, place.frame.min(motion.clip().frames() - 1))
                 });
-                self.planted[side.index()].push(stands);
+                planted.push(stands);
             }
         }
         self.frames += piece.clip.frames();
@@ -481,19 +481,18 @@ impl WalkBuilder {
     /// Returns the assembled frames as a motion.
     fn motion(&self, assembling: WalkAssembly) -> Result<Motion, GraphError> {
         let (clip, ground_frames) = assembling.finish()?;
-        let planted = self.planted.clone().map(|mut flags| {
-            flags.truncate(clip.frames());
-            flags
-        });
         let motions = self.built.clips.motions();
         let first = motions.first();
         let roles = first.map(|motion| motion.roles().clone()).unwrap_or_default();
         // The lowest ground: no foot is lifted off the ground of its own clip.
         let ground_m = motions.iter().map(|motion| motion.ground_m()).min_by(f32::total_cmp);
+        let contacts = Contacts::of_feet(Foot::of(roles.body_plan()), |foot| {
+            self.planted[foot.index()].iter().copied().take(clip.frames()).collect()
+        });
         // Without seams: a walk is left anywhere, since all of it is transitions.
         Ok(Motion::with_ground_frames(clip, &roles, ground_frames)
             .with_feet(first.map(|motion| motion.feet()).unwrap_or_default())
-            .with_contacts(Contacts::from_flags(planted))
+            .with_contacts(contacts)
             .with_ground_m(ground_m.unwrap_or(0.0)))
     }
 

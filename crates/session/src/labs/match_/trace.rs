@@ -9,7 +9,7 @@ use segue_motion::matching::{
     Simulation, Steering,
 };
 use segue_motion::math::Planar;
-use segue_motion::skeleton::Pose;
+use segue_motion::skeleton::{Foot, Pose};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -96,7 +96,7 @@ impl DriveHistory {
 pub(super) struct Tracer {
     pub(super) controller: Controller,
     poses: VecDeque<Pose>,
-    planted: VecDeque<[bool; 2]>,
+    planted: VecDeque<[bool; 4]>,
     moments: VecDeque<Arc<DriveMoment>>,
     /// The greatest number of frames that are kept.
     most: usize,
@@ -177,9 +177,10 @@ impl Tracer {
     }
 
     fn contacts(&self) -> Contacts {
-        Contacts::from_flags(
-            [0, 1].map(|side| self.planted.iter().map(|feet: &[bool; 2]| feet[side]).collect()),
-        )
+        let roles = self.controller.database().roles();
+        Contacts::of_feet(Foot::of(roles.body_plan()), |foot| {
+            self.planted.iter().map(|feet| feet[foot.index()]).collect()
+        })
     }
 
     /// Returns the metrics of the history.

@@ -24,7 +24,7 @@ pub(super) struct LockedFeet {
 
 #[derive(Debug)]
 enum Stage {
-    Locking(FootLocking, Contacts),
+    Locking(Box<FootLocking>, Contacts),
     Measuring(Arc<Clip>, Contacts, SlideMeter),
 }
 
@@ -98,7 +98,7 @@ fn begin(of: &PathInputs) -> Result<Stage, LabError> {
     let (_, free) = free_motion(of)?;
     let (roles, clip) = (of.fitted.motion.roles(), Arc::new(free.clip));
     Ok(match of.locking(&clip, &free.contacts, &free.turns)? {
-        Some(locking) => Stage::Locking(locking, free.contacts),
+        Some(locking) => Stage::Locking(Box::new(locking), free.contacts),
         None => Stage::Measuring(Arc::clone(&clip), free.contacts, SlideMeter::new(&clip, roles)),
     })
 }

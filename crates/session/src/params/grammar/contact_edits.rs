@@ -1,10 +1,13 @@
-//! Contacts that are corrected by hand: `walk:L12-30;-R40-52,run:R3-9`.
+//! Contacts that are corrected by hand: `walk:L12-30;-R40-52,run:R3-9`. `L` and `R` are the feet of
+//! a body on two legs and the hind feet of one on four, whose forefeet are `FL` and `FR`.
 
 use super::clip_ids::{all_parts, read_id, write_id};
 use super::{Misread, entries, joined};
 use segue_motion::clip::{ContactCorrection, ContactCorrections};
-use segue_motion::skeleton::Side;
+use segue_motion::skeleton::Foot;
 
+/// The words for feet, by [`Foot::index`].
+const FEET: [&str; 4] = ["L", "R", "FL", "FR"];
 /// The greatest number of clips, and of corrections of one clip; a link with more is an accident.
 const MAX_CLIPS: usize = 200;
 const MAX_CORRECTIONS: usize = 1000;
@@ -37,22 +40,19 @@ pub(super) fn read(text: &str) -> Result<Vec<ClipContacts>, Misread> {
 
 fn read_correction(text: &str) -> Option<ContactCorrection> {
     let (text, planted) = text.strip_prefix('-').map_or((text, true), |text| (text, false));
-    let (side, frames) = match text.split_at_checked(1)? {
-        ("L", frames) => (Side::Left, frames),
-        ("R", frames) => (Side::Right, frames),
-        _ => return None,
-    };
+    let of_foot = |(foot, word): (Foot, &str)| Some((foot, text.strip_prefix(word)?));
+    let (foot, frames) = Foot::ALL.into_iter().zip(FEET).find_map(of_foot)?;
     let (first, last) = frames.split_once('-')?;
     let number = |text: &str| text.trim().parse().ok().filter(|frame| *frame <= MAX_FRAME);
     let (first, last): (usize, usize) = (number(first)?, number(last)?);
-    (first <= last).then(|| ContactCorrection { side, frames: first..last + 1, planted })
+    (first <= last).then(|| ContactCorrection { foot, frames: first..last + 1, planted })
 }
 
 pub(super) fn write(clips: &[ClipContacts]) -> String {
     joined(clips, |ClipContacts { clip, corrections }| {
         let written = corrections.list().iter().map(|correction| {
             let sign = if correction.planted { "" } else { "-" };
-            let foot = if correction.side == Side::Left { "L" } else { "R" };
+            let foot = FEET[correction.foot.index()];
             let frames = &correction.frames;
             format!("{sign}{foot}{}-{}", frames.start, frames.end - 1)
         });
@@ -63,12 +63,14 @@ pub(super) fn write(clips: &[ClipContacts]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use segue_motion::skeleton::Side;
 
     #[test]
     fn contact_edits_read_back_as_written() {
         for text in [
             "walk:L12-30;-R40-52,run:R3-3",
             "blend(a:walk,b:run):L0-9",
+            "fox:L1-2;-FL3-4;FR5-6;-R7-8",
             "a%2C b%3A c~0a1b2c3d:-L1000000-1000000",
         ] {
             assert_eq!(write(&read(text).unwrap()), text);
@@ -90,6 +92,8 @@ mod tests {
             "walk:L1",
             "walk:L3-1",
             "walk:X1-2",
+            "walk:F1-2",
+            "walk:LF1-2",
             "walk:L1-2;",
             "walk:--L1-2",
             ":L1-2",

@@ -4,7 +4,7 @@ use super::{ClipHead, ClipsHead, FileHead, Head, MeshHead, WireError};
 use crate::reading::{ReadClip, ReadFile, ReadReport};
 use bytemuck::NoUninit;
 use segue_motion::clip::Motion;
-use segue_motion::skeleton::Side;
+use segue_motion::skeleton::{Foot, FootPair, Side};
 use segue_motion::skin::{RigidTransform, SkinnedMesh};
 use std::sync::Arc;
 
@@ -68,8 +68,14 @@ fn put_motion(piece: &mut Piece<'_>, motion: &Motion) {
     for place in motion.ground_frames() {
         piece.put(&[[place.yaw, place.shift.x, place.shift.y]]);
     }
+    let contacts = motion.contacts();
     for frame in 0..clip.frames() {
-        piece.put(&[Side::BOTH.map(|side| u8::from(motion.contacts().planted(side, frame)))]);
+        // A bit for each foot of a side.
+        let of_side = |side: Side| {
+            let planted = |pair| u8::from(contacts.planted(Foot { pair, side }, frame));
+            planted(FootPair::Hind) | planted(FootPair::Fore) << 1
+        };
+        piece.put(&[Side::BOTH.map(of_side)]);
     }
 }
 

@@ -6,7 +6,7 @@ use bytemuck::{AnyBitPattern, pod_read_unaligned};
 use glam::{DVec2, Quat, Vec3};
 use segue_motion::clip::{Clip, Contacts, JointTranslations, Motion};
 use segue_motion::math::Planar;
-use segue_motion::skeleton::Skeleton;
+use segue_motion::skeleton::{Foot, FootPair, Skeleton};
 use segue_motion::skin::{RigidTransform, SkinnedMesh};
 use std::collections::TryReserveError;
 use std::sync::Arc;
@@ -49,7 +49,8 @@ struct Arrays {
     /// The root's, then those of each joint that moves.
     translations: Vec<Vec<Vec3>>,
     ground_frames: Vec<Planar>,
-    contacts: [Vec<bool>; 2],
+    /// For the left and the right, a bit for each foot.
+    contacts: [Vec<u8>; 2],
 }
 
 impl Arrays {
@@ -83,7 +84,7 @@ impl Arrays {
         fill(&mut pairs, frames - self.contacts[0].len().min(frames), bytes, |pair| pair);
         for pair in pairs {
             for (flags, flag) in self.contacts.iter_mut().zip(pair) {
-                flags.push(flag != 0);
+                flags.push(flag);
             }
         }
     }
@@ -96,13 +97,20 @@ impl Arrays {
         let tracks = head.moving.into_iter().zip(translations);
         let tracks = tracks.map(|(joint, values)| JointTranslations { joint, values }).collect();
         let clip = Clip::new(head.name, skeleton, head.fps, self.rotations, root)?;
+        let contacts = Contacts::of_feet(Foot::of(head.roles.body_plan()), |foot| {
+            let bit = match foot.pair {
+                FootPair::Hind => 1,
+                FootPair::Fore => 2,
+            };
+            self.contacts[foot.side.index()].iter().map(|flags| flags & bit != 0).collect()
+        });
         Ok(ReadClip {
             motion: Motion::with_ground_frames(
                 clip.with_translations(tracks)?.with_provenance(head.provenance),
                 &head.roles,
                 self.ground_frames,
             )
-            .with_contacts(Contacts::from_flags(self.contacts))
+            .with_contacts(contacts)
             .with_ground_m(head.ground_m),
             about: head.about,
             mesh,

@@ -3,6 +3,7 @@
 use super::*;
 use crate::reading::{Parcel, ReadSetup, read};
 use segue_formats::bvh;
+use segue_motion::clip::fixtures::QuadrupedWalk;
 use segue_motion::skeleton::Roles;
 use segue_motion::synth::{Action, Params, synthesize};
 
@@ -36,6 +37,12 @@ fn report(secs: f32) -> ReadReport {
     let made = synthesize(&Params { duration_secs: secs, ..Params::new(Action::Walk) });
     let text = bvh::write(&made.unwrap().clip, &bvh::WriteOptions::default());
     read("walk.bvh", text.as_bytes(), &ReadSetup::default(), &mut |_| true).unwrap()
+}
+
+/// Returns the report on a file of a body on four legs.
+fn report_on_four_legs() -> ReadReport {
+    let text = bvh::write(&QuadrupedWalk::default().clip(), &bvh::WriteOptions::default());
+    read("dog.bvh", text.as_bytes(), &ReadSetup::default(), &mut |_| true).unwrap()
 }
 
 fn sent(report: &ReadReport) -> ReadReport {
@@ -89,6 +96,10 @@ fn unpacker_returns_the_report_as_sent() {
     assert_eq!(arrived, long);
     let clips = &arrived.files[0].result.as_ref().unwrap().clips;
     assert!(Arc::ptr_eq(clips[0].mesh.as_ref().unwrap(), clips[1].mesh.as_ref().unwrap()));
+    let on_four = report_on_four_legs();
+    assert_eq!(sent(&on_four), on_four);
+    let clip = &on_four.files[0].result.as_ref().unwrap().clips[0];
+    assert_eq!(clip.motion.contacts().feet().len(), 4);
     let refused = read("no.bvh", b"HIERARCHY x", &ReadSetup::default(), &mut |_| true).unwrap();
     assert!(refused.files[0].result.is_err());
     assert_eq!(sent(&refused), refused);
