@@ -41,9 +41,9 @@ pub(crate) fn components(vectors: Vec<Vec3>) -> Vec<f32> {
         .unwrap_or_else(|(_, vectors)| vectors.iter().flat_map(Vec3::to_array).collect())
 }
 
-/// Returns the components of quaternions in the order w x y z.
-pub(crate) fn wxyz<'a>(quats: impl Iterator<Item = &'a Quat>) -> Vec<f32> {
-    quats.flat_map(|quat| [quat.w, quat.x, quat.y, quat.z]).collect()
+/// Returns the components of a quaternion in the order w x y z.
+pub(crate) fn wxyz(quat: &Quat) -> [f32; 4] {
+    [quat.w, quat.x, quat.y, quat.z]
 }
 
 /// Checks the shape of an array.

@@ -3,9 +3,11 @@
 use crate::arrays::{
     array, components, expect_shape, fixed_array, unit_quaternions, vectors, wxyz,
 };
+use crate::cores::detached;
 use crate::errors::{read_error, unusable, write_error};
+use crate::origin::{Origin, Source, SourceFile};
 use crate::save::{SaveOptions, bytes_of};
-use glam::Quat;
+use glam::{Quat, Vec3};
 use numpy::{
     PyArray1, PyArray2, PyArray3, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods as _,
 };
@@ -20,22 +22,12 @@ use segue_formats::numpy::write_npz;
 use segue_motion::clip::Motion;
 use segue_motion::skeleton::{Joint, Role, Skeleton, WorldPose};
 use segue_motion::skin::Character;
-use segue_session::file_id;
 use segue_session::reading::{ReadFile, ReadReport, ReadSetup, read};
 use std::path::PathBuf;
 use std::sync::Arc;
 
 /// The number of frames whose kinematics one core computes at a time.
 const FRAMES_PER_PART: usize = 256;
-
-/// The origin of a clip: what a session needs to have it.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Origin {
-    /// Its id in links; `None` if no link can say it.
-    pub(crate) id: Option<String>,
-    /// The files that the id names.
-    pub(crate) files: Vec<Arc<ReadFile>>,
-}
 
 /// The clips of a file, or the reason why there are none.
 pub(crate) type Loaded = Result<Vec<Clip>, PyErr>;
@@ -49,7 +41,7 @@ pub(crate) struct Clip {
     pub(crate) motion: Arc<Motion>,
     /// The character whose mesh a GLB file gets.
     pub(crate) character: Option<Arc<Character>>,
-    pub(crate) origin: Origin,
+    source: Source,
     /// The warnings of the reader, one sentence each.
     warnings: Vec<String>,
     offsets: PyOnceLock<Py<PyArray2<f32>>>,
@@ -66,10 +58,19 @@ impl Clip {
         origin: Origin,
         warnings: Vec<String>,
     ) -> Self {
+        Self::of_source(motion, character, Source::Known(origin), warnings)
+    }
+
+    fn of_source(
+        motion: Arc<Motion>,
+        character: Option<Arc<Character>>,
+        source: Source,
+        warnings: Vec<String>,
+    ) -> Self {
         Self {
             motion,
             character,
-            origin,
+            source,
             warnings,
             offsets: PyOnceLock::new(),
             parents: PyOnceLock::new(),
@@ -78,25 +79,45 @@ impl Clip {
         }
     }
 
-    /// Returns the world pose of every frame, converted by `take` into a part of `out` that is
-    /// `joints × width` long.
-    fn world<T: Send + Copy + Default>(
+    /// Returns the origin of the clip.
+    pub(crate) fn origin(&self) -> Origin {
+        self.source.origin()
+    }
+
+    /// Returns `N` components of each joint in each frame, by a function that sets those of one
+    /// frame, with a buffer for it. All cores compute.
+    fn by_frame<B: Default, const N: usize>(
         &self,
-        take: impl Fn(&WorldPose, &mut [T]) + Sync,
-    ) -> Vec<T> {
+        set: impl Fn(&segue_motion::clip::Clip, usize, &mut B, &mut [[f32; N]]) + Sync,
+    ) -> Vec<f32> {
         let clip = self.motion.clip();
         let joints = clip.skeleton().len();
-        let mut out = vec![T::default(); clip.frames() * joints];
+        let mut out = vec![[0.0; N]; clip.frames() * joints];
         let parts = out.par_chunks_mut((FRAMES_PER_PART * joints).max(1)).enumerate();
         parts.for_each(|(part, out)| {
-            let mut pose = WorldPose::default();
+            let mut buffer = B::default();
             for (frame, out) in (part * FRAMES_PER_PART..).zip(out.chunks_mut(joints)) {
-                clip.world_pose_into(frame, &mut pose);
-                take(&pose, out);
+                set(clip, frame, &mut buffer, out);
             }
         });
-        out
+        out.into_flattened()
     }
+
+    /// Returns the rotation of each joint in its parent in each frame.
+    fn rotations_by(&self, components: impl Fn(&Quat) -> [f32; 4] + Sync) -> Vec<f32> {
+        self.by_frame(|clip, frame, (): &mut (), out| {
+            set_each(out, clip.rotations(frame), &components);
+        })
+    }
+}
+
+/// Sets the components of some values.
+fn set_each<T, const N: usize>(
+    out: &mut [[f32; N]],
+    values: &[T],
+    components: impl Fn(&T) -> [f32; N],
+) {
+    out.iter_mut().zip(values).for_each(|(out, value)| *out = components(value));
 }
 
 impl Clip {
@@ -112,11 +133,16 @@ impl Clip {
     pub(crate) fn read_all(name: &str, bytes: &[u8], options: ImportOptions) -> Loaded {
         let setup = ReadSetup { options, ..ReadSetup::default() };
         let report = read(name, bytes, &setup, &mut |_| true).unwrap_or_default();
-        Self::of_report(name, report)
+        Self::of_report(name, report, None)
     }
 
-    /// Returns the clips of a report; an archive's clips in its order.
-    pub(crate) fn of_report(name: &str, report: ReadReport) -> Loaded {
+    /// Returns the clips of a report; an archive's clips in its order. `unhashed` are the bytes of
+    /// a file whose SHA-256 is not known.
+    pub(crate) fn of_report(
+        name: &str,
+        report: ReadReport,
+        mut unhashed: Option<Vec<u8>>,
+    ) -> Loaded {
         let mut clips = Vec::new();
         for file in report.files {
             match &file.result {
@@ -127,7 +153,10 @@ impl Clip {
                         format!("{}: it needs its skeleton, an ASF file: {how}", file.name);
                     return Err(unusable(&file.name, reason));
                 }
-                Ok(_) => clips.extend(Self::of_file(file)),
+                Ok(_) => {
+                    let bytes = unhashed.take_if(|_| file.sha256.is_empty());
+                    clips.extend(Self::of_file(file, bytes));
+                }
             }
         }
         if clips.is_empty() {
@@ -136,11 +165,15 @@ impl Clip {
         Ok(clips)
     }
 
-    /// Returns the clips of a file that was read.
-    fn of_file(mut file: ReadFile) -> Vec<Self> {
+    /// Returns the clips of a file that was read, which has these bytes if its SHA-256 is not
+    /// known.
+    fn of_file(mut file: ReadFile, unhashed: Option<Vec<u8>>) -> Vec<Self> {
         file.unpacked = None;
-        let file = Arc::new(file);
-        let Ok(read) = &file.result else {
+        let file = match unhashed {
+            Some(bytes) => SourceFile::of_bytes(file, bytes),
+            None => Arc::new(SourceFile::hashed(file)),
+        };
+        let Ok(read) = &file.read().result else {
             return Vec::new();
         };
         let warnings: Vec<String> = read.warnings.iter().map(ToString::to_string).collect();
@@ -152,9 +185,8 @@ impl Clip {
                     mesh: mesh.clone(),
                 })
             });
-            let id = Some(file_id(&file.name, &file.sha256, index));
-            let origin = Origin { id, files: vec![Arc::clone(&file)] };
-            Self::new(Arc::new(own.motion.clone()), character, origin, warnings.clone())
+            let source = Source::File(Arc::clone(&file), index);
+            Self::of_source(Arc::new(own.motion.clone()), character, source, warnings.clone())
         });
         clips.collect()
     }
@@ -234,8 +266,7 @@ impl Clip {
     fn rotations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f32>>> {
         let made = self.rotations.get_or_try_init(py, || {
             let clip = self.motion.clip();
-            let values =
-                py.detach(|| wxyz((0..clip.frames()).flat_map(|frame| clip.rotations(frame))));
+            let values = detached(py, || self.rotations_by(wxyz));
             fixed_array(py, values, [clip.frames(), clip.skeleton().len(), 4])
         })?;
         Ok(made.bind(py).clone())
@@ -264,8 +295,13 @@ impl Clip {
     ///     Metres, Y up. Computed on all cores, without the interpreter's lock.
     fn global_positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f32>>> {
         let clip = self.motion.clip();
-        let positions = py.detach(|| self.world(|pose, out| out.copy_from_slice(&pose.positions)));
-        array(py, components(positions), [clip.frames(), clip.skeleton().len(), 3])
+        let positions = detached(py, || {
+            self.by_frame(|clip, frame, pose: &mut WorldPose, out| {
+                clip.world_pose_into(frame, pose);
+                set_each(out, &pose.positions, Vec3::to_array);
+            })
+        });
+        array(py, positions, [clip.frames(), clip.skeleton().len(), 3])
     }
 
     /// Return the rotations of all joints in the world.
@@ -276,8 +312,12 @@ impl Clip {
     ///     Quaternions w x y z.
     fn global_rotations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f32>>> {
         let clip = self.motion.clip();
-        let rotations =
-            py.detach(|| wxyz(self.world(|pose, out| out.copy_from_slice(&pose.rotations)).iter()));
+        let rotations = detached(py, || {
+            self.by_frame(|clip, frame, pose: &mut WorldPose, out| {
+                clip.world_pose_into(frame, pose);
+                set_each(out, &pose.rotations, wxyz);
+            })
+        });
         array(py, rotations, [clip.frames(), clip.skeleton().len(), 4])
     }
 
@@ -305,7 +345,7 @@ impl Clip {
     ///     forefoot.
     fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<bool>>> {
         let frames = self.motion.clip().frames();
-        let (planted, feet) = py.detach(|| {
+        let (planted, feet) = detached(py, || {
             let contacts = self.motion.contacts();
             let feet = contacts.feet();
             let of_frame = |frame: usize| feet.iter().map(move |foot| (*foot, frame));
@@ -342,8 +382,8 @@ impl Clip {
 
     /// The name of the clip in links; None where no link can say how it was made.
     #[getter]
-    fn id(&self) -> Option<&str> {
-        self.origin.id.as_deref()
+    fn id(&self, py: Python<'_>) -> Option<String> {
+        detached(py, || self.origin().id)
     }
 
     /// The warnings of the reader, one sentence each.
@@ -395,8 +435,8 @@ impl Clip {
         body: Option<String>,
     ) -> PyResult<PathBuf> {
         let options = SaveOptions { format, unit, up, fps, root, body }.read(Some(&path))?;
-        let bytes = py.detach(|| bytes_of(&self.motion, self.character.as_deref(), &options))?;
-        py.detach(|| std::fs::write(&path, bytes))?;
+        let bytes = detached(py, || bytes_of(&self.motion, self.character.as_deref(), &options))?;
+        detached(py, || std::fs::write(&path, bytes))?;
         Ok(path)
     }
 
@@ -424,7 +464,7 @@ impl Clip {
         body: Option<String>,
     ) -> PyResult<Py<PyBytes>> {
         let options = SaveOptions { format: Some(format), unit, up, fps, root, body }.read(None)?;
-        let bytes = py.detach(|| bytes_of(&self.motion, self.character.as_deref(), &options))?;
+        let bytes = detached(py, || bytes_of(&self.motion, self.character.as_deref(), &options))?;
         Ok(PyBytes::new(py, &bytes).unbind())
     }
 
@@ -437,10 +477,8 @@ impl Clip {
     ///     `[f * joints : (f + 1) * joints]`.
     fn as_scipy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let clip = self.motion.clip();
-        let rotations = (0..clip.frames()).flat_map(|frame| clip.rotations(frame));
-        let xyzw: Vec<f32> = rotations.flat_map(Quat::to_array).collect();
-        let count = xyzw.len() / 4;
-        let quats = array(py, xyzw, [count, 4])?;
+        let count = clip.frames() * clip.skeleton().len();
+        let quats = array(py, detached(py, || self.rotations_by(Quat::to_array)), [count, 4])?;
         let class = py.import("scipy.spatial.transform")?.getattr("Rotation")?;
         class.call_method1("from_quat", (quats,))
     }
@@ -459,7 +497,7 @@ impl Clip {
     #[pyo3(signature = (name=None))]
     fn as_file(&self, py: Python<'_>, name: Option<String>) -> PyResult<Self> {
         let name = name.unwrap_or_else(|| self.motion.clip().name().to_owned());
-        py.detach(|| Self::of_npz(&self.motion.clip().as_ref().clone().with_name(name)))
+        detached(py, || Self::of_npz(&self.motion.clip().as_ref().clone().with_name(name)))
     }
 
     /// Return a clip of arrays; see `segue.from_arrays`.

@@ -3,7 +3,9 @@
 //! Python drives: it finds files, hands their bytes to [`corpus_record`] on as many workers as
 //! there are, keeps the records, and writes the files of a corpus.
 
-use crate::clip::{Clip, Origin};
+use crate::clip::Clip;
+use crate::cores::detached;
+use crate::origin::Origin;
 use numpy::PyReadonlyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -45,7 +47,7 @@ pub(crate) fn corpus_key(
     beside: Beside,
     clean: bool,
 ) -> String {
-    py.detach(|| work_key(name, data, &skeleton_files(&beside), &Options { clean }))
+    detached(py, || work_key(name, data, &skeleton_files(&beside), &Options { clean }))
 }
 
 /// Returns the record of a file. It never fails: what goes wrong is a row.
@@ -57,7 +59,7 @@ pub(crate) fn corpus_record<'py>(
     beside: Beside,
     clean: bool,
 ) -> PyResult<Bound<'py, PyBytes>> {
-    let made = py.detach(|| {
+    let made = detached(py, || {
         let process = || process_file(name, data, &skeleton_files(&beside), &Options { clean });
         // A panic on one file must not end the work on the others.
         let record = catch_unwind(AssertUnwindSafe(process))
@@ -115,7 +117,7 @@ impl CorpusGatherer {
 
     /// Adds a record.
     fn add(&self, py: Python<'_>, key: &str, record: &[u8]) -> PyResult<()> {
-        py.detach(|| {
+        detached(py, || {
             let record = FileRecord::from_bytes(record)?;
             match locked(&self.gatherer).as_mut() {
                 Some(gatherer) => gatherer.add(key, &record),
@@ -129,7 +131,7 @@ impl CorpusGatherer {
     fn finish<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let taken = locked(&self.gatherer).take();
         let gatherer = taken.ok_or_else(|| value_error("this corpus is made already"))?;
-        let made = py.detach(|| gatherer.finish()).map_err(value_error)?;
+        let made = detached(py, || gatherer.finish()).map_err(value_error)?;
         let dict = PyDict::new(py);
         let rows =
             made.rows.iter().map(|row| row_as_dict(py, row)).collect::<PyResult<Vec<_>>>()?;
@@ -208,7 +210,7 @@ fn row_as_dict<'py>(py: Python<'py>, row: &CorpusRow) -> PyResult<Bound<'py, PyD
 /// Returns the clip of a range of a shard.
 #[pyfunction]
 pub(crate) fn corpus_clip(py: Python<'_>, name: &str, data: &[u8]) -> PyResult<Clip> {
-    let motion = py.detach(|| -> Result<Motion, CorpusError> {
+    let motion = detached(py, || -> Result<Motion, CorpusError> {
         let body = StandardBody::new()?;
         let read = decode_poses(name, data, body.skeleton())?;
         Ok(Motion::with_roles(read.clip, body.roles()).with_contacts(read.contacts))
@@ -227,7 +229,7 @@ pub(crate) fn corpus_query(
     factors: Vec<f32>,
 ) -> PyResult<Option<Vec<f32>>> {
     let motion = Arc::clone(&clip.motion);
-    py.detach(|| {
+    detached(py, || {
         let scaling = Scaling { means, factors };
         let body = StandardBody::new().map_err(|error| error.to_string())?;
         scaling.check(body.layout()).map_err(|error| error.to_string())?;

@@ -2,6 +2,7 @@
 
 use crate::arrays::{array, fixed_array};
 use crate::clip::Clip;
+use crate::cores::detached;
 use crate::errors::lab_error;
 use crate::labs::{LabResult, Recipe, collect, values_of};
 use crate::words::lab_of;
@@ -27,7 +28,7 @@ const MAX_FRAMES: usize = 20_000;
 fn graph_recipe(clips: &[PyRef<'_, Clip>], values: &[(String, String)]) -> PyResult<Recipe> {
     let lab = lab_of("graph")?;
     let values = values_of(lab, values)?;
-    let clips = clips.iter().map(|clip| clip.origin.clone()).collect();
+    let clips = clips.iter().map(|clip| clip.origin()).collect();
     Ok(Recipe { lab, link: None, clips, body: None, values })
 }
 
@@ -78,7 +79,7 @@ pub(crate) fn distance_matrix<'py>(
     window: usize,
 ) -> PyResult<(Bound<'py, PyArray2<f32>>, Vec<usize>)> {
     let recipe = graph_recipe(&clips, &[])?;
-    let (values, frames, starts) = py.detach(|| {
+    let (values, frames, starts) = detached(py, || {
         let set = frame_set(&mut recipe.driven()?)?;
         let frames = set.frames();
         if frames > MAX_FRAMES {
@@ -117,7 +118,7 @@ pub(crate) fn graph(
     values: Vec<(String, String)>,
 ) -> PyResult<Graph> {
     let recipe = graph_recipe(&clips, &values)?;
-    py.detach(|| {
+    detached(py, || {
         let mut driven = recipe.driven()?;
         driven.settle();
         let problem = driven.session.first_result().err();
@@ -137,7 +138,7 @@ impl Graph {
     /// Takes a walk.
     fn walk(&self, py: Python<'_>, values: Vec<(String, String)>) -> PyResult<Py<LabResult>> {
         let values = values_of(lab_of("graph")?, &values)?;
-        let made = py.detach(|| {
+        let made = detached(py, || {
             let mut driven = self.driven.lock().unwrap_or_else(PoisonError::into_inner);
             let set = Command::Set(values);
             driven.session.apply(set).map_err(|error| lab_error(error.to_string()))?;

@@ -1,8 +1,10 @@
 //! Results of labs, made by the session as the command line and the page make them.
 
-use crate::clip::{Clip, Origin};
+use crate::clip::Clip;
+use crate::cores::detached;
 use crate::errors::{batch_error, lab_error};
 use crate::metrics::MetricValue;
+use crate::origin::Origin;
 use crate::words::lab_of;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -257,7 +259,7 @@ pub(crate) fn values_of(lab: LabId, values: &[(String, String)]) -> PyResult<Vec
 }
 
 fn origins(clips: &[PyRef<'_, Clip>]) -> Vec<Origin> {
-    clips.iter().map(|clip| clip.origin.clone()).collect()
+    clips.iter().map(|clip| clip.origin()).collect()
 }
 
 /// Makes results by a lab, of the clips together.
@@ -272,9 +274,9 @@ pub(crate) fn make(
 ) -> PyResult<Vec<Py<LabResult>>> {
     let lab = lab_of(lab)?;
     let values = values_of(lab, &values)?;
-    let body = body.map(|body| body.origin.clone());
+    let body = body.map(|body| body.origin());
     let recipe = Recipe { lab, link: None, clips: origins(&clips), body, values };
-    let made = py.detach(|| recipe.make())?;
+    let made = detached(py, || recipe.make())?;
     made.into_iter().map(|made| made.into_object(py)).collect()
 }
 
@@ -290,7 +292,7 @@ pub(crate) fn make_each(
 ) -> PyResult<Vec<Vec<Py<LabResult>>>> {
     let lab = lab_of(lab)?;
     let values = values_of(lab, &values)?;
-    let body = body.map(|body| body.origin.clone());
+    let body = body.map(|body| body.origin());
     let recipe = |clip: Origin| Recipe {
         lab,
         link: None,
@@ -300,7 +302,7 @@ pub(crate) fn make_each(
     };
     let recipes: Vec<Recipe> = origins(&clips).into_iter().map(recipe).collect();
     let made: Vec<PyResult<Vec<Made>>> =
-        py.detach(|| recipes.par_iter().map(Recipe::make).collect());
+        detached(py, || recipes.par_iter().map(Recipe::make).collect());
     let as_objects = |made: PyResult<Vec<Made>>| {
         made?.into_iter().map(|made| made.into_object(py)).collect::<PyResult<Vec<_>>>()
     };
@@ -319,9 +321,9 @@ pub(crate) fn query(
 ) -> PyResult<String> {
     let lab = lab_of(lab)?;
     let values = values_of(lab, &values)?;
-    let body = body.map(|body| body.origin.clone());
+    let body = body.map(|body| body.origin());
     let recipe = Recipe { lab, link: None, clips: origins(&clips), body, values };
-    py.detach(|| Ok(query_of(&page_link(&recipe.driven()?.session, ""))))
+    detached(py, || Ok(query_of(&page_link(&recipe.driven()?.session, ""))))
 }
 
 /// Makes the results of a link; the clips are those of the files that it names.
@@ -332,7 +334,7 @@ pub(crate) fn open_link(
     clips: Vec<PyRef<'_, Clip>>,
 ) -> PyResult<Vec<Py<LabResult>>> {
     let clips = origins(&clips);
-    let made = py.detach(|| {
+    let made = detached(py, || {
         let lab = lab_of_link(&link).map_err(batch_error)?;
         Recipe { lab, link: Some(link), clips, body: None, values: Vec::new() }.make()
     })?;
@@ -342,7 +344,7 @@ pub(crate) fn open_link(
 /// Returns a clip that needs no file: a synthesised or bundled one, or a recipe of some.
 #[pyfunction]
 pub(crate) fn builtin(py: Python<'_>, name: String) -> PyResult<Clip> {
-    let (motion, id) = py.detach(|| {
+    let (motion, id) = detached(py, || {
         let lab = lab_of("view")?;
         let id = known_clip(&Session::new(), &name).ok_or_else(|| {
             lab_error(format!("there is no built-in clip {name:?}: segue.builtins() lists them"))

@@ -9,6 +9,7 @@
 
 mod arrays;
 mod clip;
+mod cores;
 mod corpus;
 mod errors;
 mod graph;
@@ -16,6 +17,7 @@ mod labs;
 mod load;
 mod matching;
 mod metrics;
+mod origin;
 mod save;
 mod words;
 
@@ -45,6 +47,7 @@ mod _core {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        super::cores::note_process();
         module.add("PAGE", segue_batch::PAGE)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }

@@ -1,6 +1,7 @@
 //! Reading of files into clips.
 
 use crate::clip::{Clip, Loaded};
+use crate::cores::detached;
 use crate::errors::{batch_error, file_error};
 use crate::words::unit_of;
 use pyo3::exceptions::{PyFileNotFoundError, PyValueError};
@@ -9,6 +10,9 @@ use segue_batch::{Input, Inputs, Reader, for_each, parse_rate, parse_up, shown};
 use segue_formats::ImportOptions;
 use std::ffi::OsString;
 use std::path::PathBuf;
+
+/// Files from this size on have their SHA-256 computed after they are read, bytes.
+const HASHED_LATER_BYTES: usize = 1 << 18;
 
 /// Returns the options of reading.
 fn options_of(
@@ -46,12 +50,14 @@ pub(crate) fn load_each<'py>(
         Input { name: shown(&relative), path, relative, is_named: true }
     };
     let inputs: Vec<Input> = paths.into_iter().map(input).collect();
-    let loaded = py
-        .detach(|| {
-            let reader = Reader::new(&inputs, options, &skeletons)?;
-            Ok(for_each(&inputs, |input| Some(clips_of(&reader, input)), || ()))
-        })
-        .map_err(batch_error)?;
+    let loaded = detached(py, || {
+        let reader = Reader::new(&inputs, options, &skeletons)?;
+        if let [input] = inputs.as_slice() {
+            return Ok(vec![clips_of_one(&reader, input)]);
+        }
+        Ok(for_each(&inputs, |input| Some(clips_of(&reader, input)), || ()))
+    })
+    .map_err(batch_error)?;
     let as_object = |loaded: Loaded| match loaded {
         Ok(clips) => clips.into_pyobject(py).map(Bound::into_any),
         Err(error) => Ok(error.into_value(py).into_bound(py).into_any()),
@@ -83,13 +89,26 @@ pub(crate) fn read_bytes(
     fps: Option<f64>,
 ) -> PyResult<Vec<Clip>> {
     let options = options_of(unit.as_ref(), up.as_deref(), fps)?;
-    py.detach(|| Clip::read_all(name, data, options))
+    detached(py, || Clip::read_all(name, data, options))
 }
 
-/// Reads the clips of a file from disk.
+/// Reads the clips of a file from disk on all cores.
+fn clips_of_one(reader: &Reader, input: &Input) -> Loaded {
+    match reader.bytes(input) {
+        Some(Ok(bytes)) if bytes.len() >= HASHED_LATER_BYTES => {
+            let report = reader.read_unhashed(input, &bytes);
+            Clip::of_report(&input.name, report, Some(bytes))
+        }
+        Some(Ok(bytes)) => Clip::of_report(&input.name, reader.read_bytes(input, &bytes), None),
+        Some(Err(error)) => Err(file_error(error)),
+        None => Ok(Vec::new()),
+    }
+}
+
+/// Reads the clips of a file from disk, one of many.
 fn clips_of(reader: &Reader, input: &Input) -> Loaded {
     match reader.read(input) {
-        Some(Ok(report)) => Clip::of_report(&input.name, report),
+        Some(Ok(report)) => Clip::of_report(&input.name, report, None),
         Some(Err(error)) => Err(file_error(error)),
         None => Ok(Vec::new()),
     }

@@ -2,6 +2,7 @@
 
 use crate::arrays::{array, fixed_array};
 use crate::clip::Clip;
+use crate::cores::detached;
 use crate::errors::lab_error;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
@@ -37,8 +38,7 @@ pub(crate) fn match_database(
         None => FeatureOptions::default(),
     };
     let options = DatabaseOptions { features, mirrored, ..DatabaseOptions::default() };
-    let database = py
-        .detach(|| Database::new(motions, &options))
+    let database = detached(py, || Database::new(motions, &options))
         .map_err(|error| lab_error(error.to_string()))?;
     Ok(Matches { database, features: PyOnceLock::new() })
 }
@@ -144,7 +144,7 @@ impl Matches {
         if rows.iter().any(|value| !value.is_finite()) {
             return Err(PyValueError::new_err("queries: expected finite numbers"));
         }
-        let hits: Vec<Hit> = py.detach(|| {
+        let hits: Vec<Hit> = detached(py, || {
             let weights = weights.spread(self.database.features().layout());
             let candidates = self.database.candidates();
             let nearest = |row: &[f32]| {

@@ -1,6 +1,7 @@
 //! The numbers of motions, and the tables of what there is.
 
 use crate::clip::Clip;
+use crate::cores::detached;
 use crate::words::lab_of;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -40,7 +41,7 @@ pub(crate) fn metrics_of<'py>(
     clips: Vec<PyRef<'py, Clip>>,
 ) -> PyResult<Vec<Bound<'py, PyDict>>> {
     let motions: Vec<Arc<Motion>> = clips.iter().map(|clip| Arc::clone(&clip.motion)).collect();
-    let measured: Vec<Vec<MetricValue>> = py.detach(|| {
+    let measured: Vec<Vec<MetricValue>> = detached(py, || {
         let of_motion =
             |motion: &Arc<Motion>| metrics_of_clip(motion).iter().map(MetricValue::of).collect();
         motions.par_iter().map(of_motion).collect()

@@ -1,7 +1,10 @@
 """Reading of files: errors with their place, lists, folders, and the interpreter's lock."""
 
 import gzip
+import hashlib
+import os
 import pickle
+import signal
 import threading
 import time
 import zipfile
@@ -20,6 +23,17 @@ def broken(text):
 @pytest.fixture(scope="module")
 def walk_text(files):
     return (files / "walk.bvh").read_text()
+
+
+@pytest.fixture(scope="module")
+def large(tmp_path_factory, walk_text):
+    """Return a file of 2 MB, which all cores read."""
+    head, motion = walk_text.split("MOTION\n")
+    _, spacing, *rows = motion.splitlines()
+    rows *= 2_000_000 // len(walk_text) + 1
+    path = tmp_path_factory.mktemp("large") / "large.bvh"
+    path.write_text("\n".join([f"{head}MOTION", f"Frames: {len(rows)}", spacing, *rows, ""]))
+    return path
 
 
 def test_error_names_file_line_and_column(tmp_path, walk_text):
@@ -166,3 +180,47 @@ def test_other_threads_run_meanwhile(walk):
     took = time.perf_counter() - start
     # With the lock held there would be one tick, at the end.
     assert took > 0.01 and ticks > 5, (took, ticks)
+
+
+def test_id_of_a_large_file_is_its_sha256(tmp_path, large):
+    data = large.read_bytes()
+    digest = hashlib.sha256(data).hexdigest()
+    path = tmp_path / "large.bvh"
+    path.write_bytes(data)
+    alone, (listed,) = segue.load(path), segue.load([path])
+    # It is that of what was read, whatever becomes of the file.
+    path.write_text("something else")
+    path.unlink()
+    in_memory = segue.read_bytes(data, "large.bvh")
+    for clip in (alone, listed, in_memory):
+        name, _, start = clip.id.partition("~")
+        assert name == "large" and len(start) >= 8 and digest.startswith(start)
+        assert segue.link(clip) == segue.link(in_memory)
+        assert (clip.rotations.tobytes(), clip.fps) == (in_memory.rotations.tobytes(), in_memory.fps)
+
+
+def test_large_file_with_an_error_names_its_place(tmp_path, large):
+    lines = large.read_text().splitlines(keepends=True)
+    at = len(lines) - 100
+    lines[at] = "x" + lines[at]
+    path = tmp_path / "bad.bvh"
+    path.write_text("".join(lines))
+    with pytest.raises(segue.ReadError) as caught:
+        segue.load(path)
+    assert (caught.value.line, caught.value.column) == (at + 1, 1)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="the system has no fork")
+@pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
+def test_forked_process_reads_and_computes(large):
+    clip = segue.load(large)
+    positions = clip.global_positions()
+    child = os.fork()
+    if child == 0:
+        # Fails by waiting for threads that it does not have.
+        signal.alarm(60)
+        again = segue.load(large)
+        same = again.global_positions().tobytes() == positions.tobytes()
+        os._exit(0 if same and again.id == clip.id and len(segue.load([large] * 4)) == 4 else 1)
+    _, status = os.waitpid(child, 0)
+    assert os.waitstatus_to_exitcode(status) == 0

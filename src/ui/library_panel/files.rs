@@ -89,7 +89,7 @@ pub(super) fn files_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
     } else {
         let hot = ui.input(|input| !input.raw.hovered_files.is_empty());
         let rows = [files, corpora];
-        let rows = &rows[..1 + usize::from(!corpora.is_empty())];
+        let rows = &rows[..=usize::from(!corpora.is_empty())];
         kit::drop_zone_ui(text::DROP_HERE, rows, hot, ui)
     };
     match pressed {
