@@ -71,8 +71,8 @@ impl StandardBody {
     /// second frame is kept. A clip of less than a second has no features.
     ///
     /// # Errors
-    /// [`PlaceError`] if it is empty, too long, not finite, that of a body on four legs, or no part of
-    /// it corresponds to the body.
+    /// [`PlaceError`] if it is empty, too long, not finite, that of a body on four legs, or no part
+    /// of it corresponds to the body.
     pub fn place(&self, motion: &Motion) -> Result<PlacedClip, PlaceError> {
         let own = motion.clip();
         let secs = own.duration_secs();

@@ -13,8 +13,8 @@ const SAMPLES: usize = 1_000;
 /// The usual speeds of a motion's joints and root, and the motion of its feet.
 #[derive(Clone, Debug)]
 pub(crate) struct UsualMotion {
-    /// Per foot ([`Foot::of`]) and frame: the distance that the stillest point of the foot moves over the ground
-    /// in the step into that frame, metres.
+    /// Per foot ([`Foot::of`]) and frame: the distance that the stillest point of the foot moves
+    /// over the ground in the step into that frame, metres.
     pub(crate) slides: Vec<Vec<f32>>,
     /// Per joint, the 99th percentile of the turn from one frame to the next, radians.
     pub(crate) turn: Vec<f32>,
