@@ -212,9 +212,9 @@ impl Contacts {
         self.flags(foot.into()).get(frame).copied().unwrap_or(false)
     }
 
-    /// Returns the phase of a foot in `frame`: 0 at a touchdown, rising to 1 at the next. Before the
-    /// first and after the last touchdown the nearest stride is repeated. `None` for a foot with
-    /// fewer than two touchdowns.
+    /// Returns the phase of a foot in `frame`: 0 at a touchdown, rising to 1 at the next. Before
+    /// the first and after the last touchdown the nearest stride is repeated. `None` for a foot
+    /// with fewer than two touchdowns.
     #[must_use]
     pub fn phase(&self, foot: impl Into<Foot>, frame: usize) -> Option<f32> {
         // A foot that is planted when the clip begins touched down before.

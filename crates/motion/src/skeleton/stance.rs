@@ -95,8 +95,8 @@ pub(crate) fn uprightness(pose: &WorldPose, roles: &Roles) -> Option<f32> {
 /// down. Each bone is moved by the shortest rotation, which keeps its twist; joints without a role
 /// follow their parents. Where roles are missing, the reference is the stance.
 ///
-/// A body on four legs ([`BodyPlan::Quadruped`](super::BodyPlan)) is only turned about the vertical,
-/// until it faces +Z.
+/// A body on four legs ([`BodyPlan::Quadruped`](super::BodyPlan)) is only turned about the
+/// vertical, until it faces +Z.
 #[must_use]
 pub fn canonical_stance(skeleton: &Skeleton, roles: &Roles, reference: &WorldPose) -> WorldPose {
     let mut stance = Stance::new(skeleton, reference);
