@@ -154,7 +154,9 @@ impl Gatherer {
         let scaling = Scaling::of(self.body.layout(), all);
         let mut scaled = Vec::with_capacity(features.iter().map(Vec::len).sum());
         // One after the other, so that all of them are not in memory twice.
-        features.into_iter().for_each(|own| scaled.extend(own));
+        for own in features {
+            scaled.extend(own);
+        }
         scaled.chunks_exact_mut(dims).for_each(|row| scaling.apply(row));
         for (row, place) in rows.iter_mut().zip(map::places(&scaled, dims, &moments)) {
             row.map = place;

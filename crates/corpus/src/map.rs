@@ -100,13 +100,14 @@ fn eigenvectors(matrix: &mut [Vec<f64>]) -> Vec<Vec<f64>> {
                 let tangent = sign / (theta.abs() + (theta * theta + 1.0).sqrt());
                 let cosine = 1.0 / (tangent * tangent + 1.0).sqrt();
                 let turn = Turn { p, q, cosine, sine: tangent * cosine };
-                matrix.iter_mut().for_each(|row| turn.apply(row));
-                for column in 0..dims {
-                    let (a, b) = (matrix[p][column], matrix[q][column]);
-                    matrix[p][column] = cosine * a - turn.sine * b;
-                    matrix[q][column] = turn.sine * a + cosine * b;
+                for row in matrix.iter_mut().chain(&mut vectors) {
+                    turn.apply(row);
                 }
-                vectors.iter_mut().for_each(|row| turn.apply(row));
+                // And its rows, which lie in both halves.
+                let (above, below) = matrix.split_at_mut(q);
+                for (p, q) in above[p].iter_mut().zip(&mut below[0]) {
+                    (*p, *q) = (cosine * *p - turn.sine * *q, turn.sine * *p + cosine * *q);
+                }
             }
         }
         if is_done {

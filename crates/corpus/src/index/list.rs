@@ -31,7 +31,7 @@ const LOWER_BITS: u32 = 23 - FRACTION_BITS;
 
 /// Returns the code of the least size of steps that is not below a number.
 fn size_code(size: f32) -> u8 {
-    if !(size > 0.0) {
+    if size <= 0.0 || size.is_nan() {
         return 0;
     }
     let bits = size.to_bits();

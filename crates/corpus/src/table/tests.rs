@@ -160,6 +160,32 @@ fn histogram_counts_what_the_other_columns_leave() {
 }
 
 #[test]
+fn histogram_of_levels_has_no_empty_bins_between_full_ones() {
+    let row = |at: usize| CorpusRow {
+        id: format!("{at:08x}-0"),
+        key: format!("{at:08x}"),
+        clip: 0,
+        row: ClipRow {
+            metrics: [("skating_cmps".to_owned(), Some(at as f64 * 0.01))].into(),
+            ..ClipRow::of_file(Status::Ok)
+        },
+        poses: None,
+        thumbnail: None,
+        moments: 0,
+        map: None,
+        copy_of: None,
+        is_mirrored: false,
+    };
+    let rows: Vec<CorpusRow> = (0..4000).map(row).collect();
+    let texts = vec![RowTexts::default(); 4000];
+    let table = Table::read(&write_columns(&rows, &texts).unwrap()).unwrap();
+    let counts = table.histogram("skating_cmps", &Filter::default(), 80).unwrap();
+    assert_eq!(counts.iter().sum::<u32>(), 4000);
+    // 1 % beyond either end are counted there.
+    assert!(counts[1..79].iter().all(|count| (35..65).contains(count)), "{counts:?}");
+}
+
+#[test]
 fn columns_are_described() {
     let columns = table().columns();
     let names: Vec<&str> = columns.iter().map(|own| own.name.as_str()).collect();
