@@ -80,8 +80,8 @@ impl Downloads {
         Some((file_name_of(address), download.progress()))
     }
 
-    /// Records that a file was fetched, or has failed. `name` is that of the file, where the address
-    /// has another one.
+    /// Records that a file was fetched, or has failed. `name` is that of the file, where the
+    /// address has another one.
     pub(crate) fn finished(&mut self, address: &str, name: Option<String>, fetched: FetchResult) {
         if let Some(download) = self.find(address) {
             (download.name, download.fetched) = (name, Some(fetched));

@@ -31,13 +31,13 @@ await corpusServer(folder, { after: Number(values.after) }, async (address, aske
   await page.waitForTimeout(5000);
   const filled = () => [...document.querySelectorAll("#corpus .row b")].filter((title) => title.textContent).length > 5;
   /** Returns the seconds from an action until a condition holds, by the page's own clock. */
-  const timed = (act, test) => page.evaluate(async ([act, test]) => {
+  const timed = (act, test) => page.evaluate(`(async () => {
     window.tasks = [];
     const start = performance.now();
-    (0, eval)(act);
-    while (!(0, eval)(test)) await new Promise((resolve) => setTimeout(resolve, 2));
+    ${act};
+    while (!(${test})) await new Promise((resolve) => setTimeout(resolve, 2));
     return (performance.now() - start) / 1e3;
-  }, [act, test]);
+  })()`);
   const longest = () => page.evaluate(() => Math.round(Math.max(0, ...window.tasks)));
   const bytesOf = (requests) => requests.reduce((sum, { bytes }) => sum + bytes, 0);
 

@@ -25,7 +25,7 @@ pub(crate) fn set_corpora(call: Function) {
 
 /// Calls a function of the modules. They are loaded with the first call.
 fn call(name: &str, args: &Array) -> Result<Promise, JsValue> {
-    let corpora = CORPORA.with_borrow(Clone::clone).ok_or("this page has no modules for corpora")?;
+    let corpora = CORPORA.with_borrow(Clone::clone).ok_or("corpora")?;
     args.unshift(&JsValue::from_str(name));
     corpora.apply(&JsValue::NULL, args)?.dyn_into()
 }

@@ -16,8 +16,6 @@ export class Player {
   #discard;
   /** Clips that were only looked at: id in the library by address or by a key of its own. */
   #lookedAt = new Map();
-  /** The ids of clips in the library by their addresses. */
-  #ids = new Map();
   #queue = Promise.resolve();
   #latest = 0;
 
@@ -97,15 +95,12 @@ export class Player {
 
   /** Returns the id in the library of the clip at an address; undefined if it is not there. */
   #idOf(address) {
-    const clips = this.#api.clips();
-    const known = this.#ids.get(address);
-    if (clips.some(({ id }) => id === known)) return known;
     const read = clipsRead.get(address);
     if (!read) return undefined;
-    // Without a SHA-256, on an insecure address, the name must do.
-    const found = clips.find(({ id, sha256 }) => (read.sha256 ? sha256 === read.sha256 : stemOf(id) === read.name));
-    if (found) this.#ids.set(address, found.id);
-    return found?.id;
+    // Without a SHA-256, on an insecure address or of a file from the browser's storage, the name
+    // must do. Built-in clips have none.
+    const isIt = ({ id, sha256 }) => (read.sha256 ? sha256 === read.sha256 : sha256 && stemOf(id) === read.name);
+    return this.#api.clips().find(isIt)?.id;
   }
 
   /** Returns clips that were only looked at, and that nothing uses any more: their ids by their keys. */
