@@ -1,4 +1,5 @@
-//! The needs of a page with a corpus: bytes, time, and the share of the nearest moments that it finds.
+//! The needs of a page with a corpus: bytes, time, and the share of the nearest moments that it
+//! finds.
 
 use super::variants::Variant;
 use segue_corpus::{CorpusPage, ListPlace, POSE_FPS};
