@@ -174,8 +174,8 @@ mod tests {
         for (point, place) in points.iter().zip(&places) {
             let [x, y] = place.unwrap();
             let (far, near) = (point[1] / 0.6 + 0.5, point[0]);
-            assert!(x * far >= -0.02 && (x.abs() - far.abs() / 25.0).abs() < 0.06, "{x} {far}");
-            assert!(y * near >= -0.5 && x.abs() <= 1.0 && y.abs() <= 1.0, "{y} {near}");
+            assert!((x - 0.9 * far / 24.5).abs() < 0.05, "{x} {far}");
+            assert!((y - 0.9 * near / 5.0).abs() < 0.15, "{y} {near}");
         }
     }
 
