@@ -14,8 +14,8 @@ pub(crate) fn note_process() {
 }
 
 /// Does something without the interpreter's lock. It may use all cores, also in a process that was
-/// forked, as the workers of `PyTorch`'s `DataLoader` are: such a process has none of the threads of
-/// its parent, and would wait for them for ever.
+/// forked, as the workers of `PyTorch`'s `DataLoader` are: such a process has none of the threads
+/// of its parent, and would wait for them for ever.
 pub(crate) fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> T {
     py.detach(|| match forked_pool() {
         Some(pool) => pool.install(work),
