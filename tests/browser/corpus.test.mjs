@@ -173,8 +173,16 @@ onOneBackend("more like this finds moments in the corpus, from its clips and fro
       return Math.abs((await segue("time")) - Number(at)) < 0.05 && (await corpusClips(segue)).length > 0;
     });
     await page.getByRole("button", { name: "All clips" }).click();
+    /** Plays a clip that is not on the stage, and waits until it stands at its start. */
+    const playOther = async (row) => {
+      const { a: before } = await segue("params");
+      await row.click();
+      await until("it is on the stage", async () => (await segue("params")).a !== before);
+      await segue("set", {});
+    };
     const copies = page.locator("#corpus .row", { hasText: "copy" }).first();
-    await copies.click();
+    await playOther(page.locator("#corpus .row", { hasText: "jump" }).first());
+    await playOther(copies);
     const name = await copies.locator("b").textContent();
     await until("the copy is at the foot", () => page.evaluate((name) => document.querySelector("#corpus .dock b").textContent === name, name));
     await segue("seek", 0.3);
