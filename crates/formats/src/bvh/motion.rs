@@ -173,6 +173,8 @@ impl Rows<'_, '_> {
         // The first rows show how much memory all of them need.
         let mut goes_on = count >= FIRST_ROWS && !self.lexer.commas;
         while goes_on {
+            // The line feed of the last row would count as that of another one.
+            self.lexer.skip_blank();
             let Self { rounds, lexer, row, .. } = self;
             let Some(found) = rounds.read(lexer.text, lexer.at, row, sink) else { break };
             lexer.at = found.end;
@@ -399,6 +401,51 @@ mod tests {
         );
         assert_eq!((fault("1 2\n3\n5 6", 2).at, fault("1\n3 4", 2).at), (4, 0));
         assert_eq!(fault("1 2\n3 4 5\n", 2).found.to_string(), "a row of more than 2 numbers");
+    }
+
+    /// A sink that notes for how many rows of parts it is asked.
+    #[cfg(feature = "parallel")]
+    #[derive(Default)]
+    struct Asked {
+        kept: Kept,
+        rows: usize,
+    }
+
+    #[cfg(feature = "parallel")]
+    impl RowSink for Asked {
+        type Part<'p> = <Kept as RowSink>::Part<'p>;
+
+        fn row(&mut self, values: &[f64], end: usize) -> Result<(), Fault> {
+            self.kept.row(values, end)
+        }
+
+        fn parts(&mut self, most: &[usize], end: usize) -> Option<Vec<Self::Part<'_>>> {
+            self.rows += most.iter().sum::<usize>();
+            self.kept.parts(most, end)
+        }
+
+        fn keep(&mut self, parts: &[crate::bvh::row_sink::KeptPart]) {
+            self.kept.keep(parts);
+        }
+    }
+
+    /// Fails when more room is asked for than there are rows: a motion has room for those that the
+    /// header declares, and the rest of the file would be read on one core.
+    #[cfg(feature = "parallel")]
+    #[test]
+    fn rows_of_parts_are_as_many_as_the_file_has() {
+        if rayon::current_num_threads() < 2 {
+            return;
+        }
+        for line_end in ["\n", "\r\n"] {
+            let rows_in_all = 40_000;
+            let text = format!("12.25 -3.5{line_end}").repeat(rows_in_all);
+            let mut asked = Asked::default();
+            let mut lexer = Lexer::new(text.as_bytes(), false);
+            assert!(rows(&mut lexer, vec![0.0; 2], &mut asked, &mut |_| true).is_ok());
+            assert_eq!(asked.kept.rows.len(), rows_in_all);
+            assert_eq!(FIRST_ROWS + asked.rows, rows_in_all);
+        }
     }
 
     #[test]
