@@ -25,9 +25,9 @@ mod page {
             self.0.table().rows() as u32
         }
 
-        /// Returns the numbers of the corpus, as JSON.
-        pub fn summary(&self) -> String {
-            self.0.summary()
+        /// Returns what `corpus.json` counts, as JSON.
+        pub fn counts(&self) -> Result<String, JsValue> {
+            self.0.counts().map_err(thrown)
         }
 
         /// Returns the columns of the table, as JSON.

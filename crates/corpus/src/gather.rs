@@ -1,7 +1,7 @@
 //! The gathering of records: shards, copies, scaled features, the index and the table of a corpus.
 
 use crate::index::{self, MomentRows};
-use crate::manifest::{Counts, manifest};
+use crate::manifest::{Counts, Layout, manifest};
 use crate::map;
 use crate::pack::{Packer, Piece, Slot};
 use crate::signature::MAX_SECS_APART;
@@ -174,13 +174,15 @@ impl Gatherer {
                 .filter_map(|row| row.row.seconds)
                 .sum(),
             moments: scaled.len() / dims,
+        };
+        let layout = Layout {
             lists: index.count,
             probes: index.probes,
             pose_shards: pose_shards.len(),
             thumbnail_shards: thumbnail_shards.len(),
             list_files: index.lists.len(),
         };
-        let manifest = manifest(&self.body, &self.options, &scaling, &counts);
+        let manifest = manifest(&self.body, &self.options, &scaling, &counts, &layout);
         Ok(Gathered {
             rows,
             pose_shards,

@@ -6,6 +6,7 @@ use crate::{
 };
 use segue_motion::matching::Block;
 use segue_session::metrics::METRICS;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value as Json, json};
 
 /// The version of the format.
@@ -14,9 +15,10 @@ pub const FORMAT: u32 = 2;
 /// The name of the file with the columns for a page.
 pub const COLUMNS: &str = "columns.bin";
 
-/// Numbers of a corpus.
-#[derive(Clone, Debug)]
+/// What `corpus.json` counts.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Counts {
+    /// Rows of the table.
     pub(crate) rows: usize,
     pub(crate) clips: usize,
     pub(crate) unplaced: usize,
@@ -24,7 +26,14 @@ pub(crate) struct Counts {
     pub(crate) copies: usize,
     pub(crate) seconds: f64,
     pub(crate) moments: usize,
+}
+
+/// The files of a corpus, and how its index is searched.
+#[derive(Clone, Debug)]
+pub(crate) struct Layout {
+    /// Lists of the index.
     pub(crate) lists: usize,
+    /// The number of lists that a search reads.
     pub(crate) probes: usize,
     pub(crate) pose_shards: usize,
     pub(crate) thumbnail_shards: usize,
@@ -43,6 +52,7 @@ pub(crate) fn manifest(
     options: &Options,
     scaling: &Scaling,
     counts: &Counts,
+    layout: &Layout,
 ) -> Json {
     let joints: Vec<Json> = (body.skeleton().joints().iter())
         .map(|joint| {
@@ -64,25 +74,17 @@ pub(crate) fn manifest(
         "format": FORMAT,
         "made_by": format!("segue {}", env!("CARGO_PKG_VERSION")),
         "options": options,
-        "counts": {
-            "rows": counts.rows,
-            "clips": counts.clips,
-            "unplaced": counts.unplaced,
-            "unreadable": counts.unreadable,
-            "copies": counts.copies,
-            "seconds": counts.seconds,
-            "moments": counts.moments,
-        },
+        "counts": counts,
         "clips": { "file": "clips.parquet" },
         "page": { "columns": COLUMNS },
         "body": { "joints": joints },
         "poses": {
             "fps": POSE_FPS,
-            "shards": counts.pose_shards,
+            "shards": layout.pose_shards,
             "most_bytes": SHARD_BYTES,
         },
         "thumbnails": {
-            "shards": counts.thumbnail_shards,
+            "shards": layout.thumbnail_shards,
             "poses": THUMBNAIL_POSES,
             "width": THUMBNAIL_SIZE[0],
             "height": THUMBNAIL_SIZE[1],
@@ -93,9 +95,9 @@ pub(crate) fn manifest(
             "scaling": scaling,
         },
         "index": {
-            "lists": counts.lists,
-            "files": counts.list_files,
-            "probes": counts.probes,
+            "lists": layout.lists,
+            "files": layout.list_files,
+            "probes": layout.probes,
         },
         "copies": { "most_cm": MAX_DISTANCE_CM },
     })

@@ -6,6 +6,7 @@
 #[cfg(test)]
 mod tests;
 
+use crate::manifest::Counts;
 use crate::table::Table;
 use crate::{
     CorpusError, FEATURE_STEP, FORMAT, Filter, Index, ListPlace, POSE_FPS, PlaceError, Scaling,
@@ -77,26 +78,8 @@ pub enum PageError {
 #[derive(Debug, Deserialize)]
 struct Manifest {
     counts: Counts,
-    poses: Shards,
-    thumbnails: Shards,
     features: Features,
     index: IndexFacts,
-}
-
-#[derive(Debug, Deserialize)]
-struct Counts {
-    rows: usize,
-    clips: usize,
-    unplaced: usize,
-    unreadable: usize,
-    copies: usize,
-    seconds: f64,
-    moments: usize,
-}
-
-#[derive(Debug, Deserialize)]
-struct Shards {
-    shards: usize,
 }
 
 #[derive(Debug, Deserialize)]
@@ -106,7 +89,6 @@ struct Features {
 
 #[derive(Debug, Deserialize)]
 struct IndexFacts {
-    files: usize,
     probes: usize,
 }
 
@@ -166,28 +148,12 @@ impl CorpusPage {
         &self.table
     }
 
-    /// Returns the numbers of the corpus, as JSON.
-    #[must_use]
-    pub fn summary(&self) -> String {
-        let Manifest { counts, poses, thumbnails, index, .. } = &self.manifest;
-        json!({
-            "rows": counts.rows,
-            "clips": counts.clips,
-            "unplaced": counts.unplaced,
-            "unreadable": counts.unreadable,
-            "copies": counts.copies,
-            "seconds": counts.seconds,
-            "moments": counts.moments,
-            "files": {
-                "poses": poses.shards,
-                "thumbnails": thumbnails.shards,
-                "lists": index.files,
-            },
-            "probes": index.probes,
-            "featureSeconds": AHEAD_SECS,
-            "poseFps": POSE_FPS,
-        })
-        .to_string()
+    /// Returns what `corpus.json` counts, as JSON.
+    ///
+    /// # Errors
+    /// [`CorpusError::Json`].
+    pub fn counts(&self) -> Result<String, PageError> {
+        Ok(json_text(&self.manifest.counts)?)
     }
 
     /// Returns the columns of the table, as JSON.

@@ -62,7 +62,7 @@ class Client {
       event.preventDefault();
       this.#fail(new Error(sentence("noWorker", { reason: event.message ?? "" })));
     };
-    /** What the corpus says of itself: { summary, columns }. */
+    /** What the corpus says of itself: { rows, counts, columns }. */
     this.opened = this.call("open", place);
   }
 

@@ -282,8 +282,8 @@ export class Panel {
     ];
     const place = this.#place;
     const host = place?.address ? new URL(place.address).host : place?.files ? sentence("local") : "";
-    const facts = this.#facts?.summary;
-    const about = [host, facts && lengthText(facts.seconds)].filter(Boolean).join(" · ");
+    const counts = this.#facts?.counts;
+    const about = [host, counts && lengthText(counts.seconds)].filter(Boolean).join(" · ");
     this.#parts.views = views ? segments(sentence("view"), views) : element("span");
     this.#parts.resizer = element("div", {
       class: "resizer", role: "separator", tabIndex: 0, "aria-orientation": "vertical", "aria-label": sentence("resize"), "aria-valuemin": WIDTHS.least, "aria-valuemax": WIDTHS.most,

@@ -64,7 +64,7 @@ const calls = {
     const bytes = named === COLUMNS ? await columns : await source.whole(named, signal);
     await started;
     corpus = readable(() => new Corpus(text, bytes));
-    return [{ rows: corpus.rows(), summary: JSON.parse(corpus.summary()), columns: JSON.parse(corpus.columns()) }];
+    return [{ rows: corpus.rows(), counts: JSON.parse(corpus.counts()), columns: JSON.parse(corpus.columns()) }];
   },
 
   select({ filter }) {

@@ -43,7 +43,7 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Columns, CorpusError> {
         return Err(DAMAGED);
     }
     let (names, named) = names(&mut reader, &bits)?;
-    // What a clip may lack begins with 1.
+    // 0 stands for none where a clip may be without: rig, rate and message.
     let formats = listed(&mut reader, count, facts.formats.len())?;
     let rigs = listed(&mut reader, count, facts.rigs.len() + 1)?;
     let rates = listed(&mut reader, count, facts.rates.len() + 1)?;

@@ -84,12 +84,12 @@ fn like(page: &mut CorpusPage, query: &[f32], count: usize) -> Vec<Json> {
 #[test]
 fn page_has_the_numbers_of_the_corpus() {
     let page = page();
-    let summary: Json = serde_json::from_str(&page.summary()).unwrap();
+    let counts: Json = serde_json::from_str(&page.counts().unwrap()).unwrap();
     assert_eq!(
-        (&summary["rows"], &summary["clips"], &summary["unreadable"], &summary["poseFps"]),
-        (&7.into(), &6.into(), &1.into(), &30.into())
+        (&counts["rows"], &counts["clips"], &counts["unreadable"]),
+        (&7.into(), &6.into(), &1.into())
     );
-    assert_eq!(summary["files"]["poses"], 1);
+    assert!(counts["seconds"].as_f64().unwrap() > 6.0, "{counts}");
     let rows = page.select(r#"{"text": "walk", "sort": {"by": "name"}}"#).unwrap();
     let cells: Vec<Json> = serde_json::from_str(&page.cells(&rows).unwrap()).unwrap();
     let names: Vec<&str> = cells.iter().map(|own| own["name"].as_str().unwrap()).collect();
