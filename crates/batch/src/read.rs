@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// Files from this size on are read on all cores, bytes.
 const LARGE_BYTES: u64 = 1 << 20;
 
-/// What a core reads at once of a large file, bytes.
+/// The size of the parts in which the cores read a large file from disk, bytes.
 const PART_BYTES: usize = 1 << 18;
 
 /// A file that was read, or the reason why it was not.

@@ -114,16 +114,16 @@ pub(crate) enum Pick {
     Span(Range<f64>),
 }
 
-/// What is known of a curve without its tangents.
+/// The variation of a curve, as far as its keys show it without their tangents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Shape {
     /// It has no keys.
     Empty,
     /// It has the same value for all times.
     Constant,
-    /// It has not.
+    /// Its keys have different values.
     Varied,
-    /// Its keys have the same value; the tangents decide.
+    /// Its keys have the same value, and tangents that may leave it between them.
     Level,
     /// Its keys cannot be taken apart, and are always written.
     Unknown,

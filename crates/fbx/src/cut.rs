@@ -3,7 +3,7 @@
 use crate::curves::{CurveFile, Pick, Piece};
 use std::io::{self, Read};
 
-/// What is written of a file.
+/// A reader that returns the bytes of a file with only some of its keys.
 pub(crate) struct Cut<'a> {
     file: &'a CurveFile<'a>,
     /// The keys of a curve, by its index.
@@ -75,7 +75,7 @@ impl<'a> Cut<'a> {
             }
         }
         if self.at == file.end {
-            // What follows is no record.
+            // Behind the last record stands the footer.
             self.copied = file.bytes.get(self.at..)?;
             self.at = file.bytes.len();
             return Some(());

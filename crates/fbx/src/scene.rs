@@ -318,8 +318,9 @@ impl Transform {
         Self { translation: [0.0; 3], rotation: [0.0, 0.0, 0.0, 1.0], scale: [1.0; 3] };
 }
 
-/// What a scene is read from.
+/// The bytes of a scene.
 pub(crate) enum Source<'a> {
+    /// A whole file.
     Bytes(&'a [u8]),
     /// A file with a part of its keys.
     Cut(Cut<'a>),

@@ -41,7 +41,7 @@ pub struct Take {
     pub movements: Vec<Movement>,
 }
 
-/// What takes need to know of curves.
+/// Facts about curves, whether all their keys are in memory or a part.
 pub(crate) trait Curves {
     /// Returns whether a curve has no keys.
     fn is_empty(&self, curve: &AnimCurve) -> bool;

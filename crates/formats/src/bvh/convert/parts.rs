@@ -8,7 +8,7 @@ use crate::raw::{RawMotion, WildAngles};
 use glam::{Quat, Vec3};
 use std::slice::IterMut;
 
-/// What a part of a character needs for itself.
+/// Buffers of one part, so that parts can be converted at the same time.
 #[derive(Debug)]
 pub(super) struct PartBuffers {
     turns: Turns,
