@@ -68,7 +68,7 @@ fn every_lab_with_a_body_on_four_legs_has_a_result_with_four_feet() {
                 assert!(stances >= 2, "{axis:?}: {link}, {foot:?}: {stances} stances");
             }
             let slid = number_of(outcome, MetricId::FootSlide);
-            assert!(slid.is_nan() || slid < 3.0, "{axis:?}: {link}: {slid} cm");
+            assert!(slid < 3.0, "{axis:?}: {link}: {slid} cm");
         }
     }
 }
@@ -95,7 +95,7 @@ fn contacts_of_forefeet_are_corrected_in_the_link() {
     let edits = session.params().contact_edits_with(&clip.id, corrections);
     session.apply(Command::Set(vec![(Key::ContactEdits, edits)])).unwrap();
     settle(&mut session);
-    assert!(session.query().contains("FR"), "{}", session.query());
+    assert!(session.query().contains("RF"), "{}", session.query());
     let shown = |session: &Session| session.main_outcome().unwrap().motion.contacts().clone();
     assert_eq!(shown(&session), wanted);
     let query = session.query();

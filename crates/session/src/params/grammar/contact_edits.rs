@@ -1,5 +1,5 @@
 //! Contacts that are corrected by hand: `walk:L12-30;-R40-52,run:R3-9`. `L` and `R` are the feet of
-//! a body on two legs and the hind feet of one on four, whose forefeet are `FL` and `FR`.
+//! a body on two legs and the hind feet of one on four, whose forefeet are `LF` and `RF`.
 
 use super::clip_ids::{all_parts, read_id, write_id};
 use super::{Misread, entries, joined};
@@ -7,7 +7,7 @@ use segue_motion::clip::{ContactCorrection, ContactCorrections};
 use segue_motion::skeleton::Foot;
 
 /// The words for feet, by [`Foot::index`].
-const FEET: [&str; 4] = ["L", "R", "FL", "FR"];
+const FEET: [&str; 4] = ["L", "R", "LF", "RF"];
 /// The greatest number of clips, and of corrections of one clip; a link with more is an accident.
 const MAX_CLIPS: usize = 200;
 const MAX_CORRECTIONS: usize = 1000;
@@ -41,7 +41,8 @@ pub(super) fn read(text: &str) -> Result<Vec<ClipContacts>, Misread> {
 fn read_correction(text: &str) -> Option<ContactCorrection> {
     let (text, planted) = text.strip_prefix('-').map_or((text, true), |text| (text, false));
     let of_foot = |(foot, word): (Foot, &str)| Some((foot, text.strip_prefix(word)?));
-    let (foot, frames) = Foot::ALL.into_iter().zip(FEET).find_map(of_foot)?;
+    // The longer words first: they begin with the shorter ones.
+    let (foot, frames) = Foot::ALL.into_iter().zip(FEET).rev().find_map(of_foot)?;
     let (first, last) = frames.split_once('-')?;
     let number = |text: &str| text.trim().parse().ok().filter(|frame| *frame <= MAX_FRAME);
     let (first, last): (usize, usize) = (number(first)?, number(last)?);
@@ -70,7 +71,7 @@ mod tests {
         for text in [
             "walk:L12-30;-R40-52,run:R3-3",
             "blend(a:walk,b:run):L0-9",
-            "fox:L1-2;-FL3-4;FR5-6;-R7-8",
+            "fox:L1-2;-LF3-4;RF5-6;-R7-8",
             "a%2C b%3A c~0a1b2c3d:-L1000000-1000000",
         ] {
             assert_eq!(write(&read(text).unwrap()), text);
@@ -93,7 +94,7 @@ mod tests {
             "walk:L3-1",
             "walk:X1-2",
             "walk:F1-2",
-            "walk:LF1-2",
+            "walk:FL1-2",
             "walk:L1-2;",
             "walk:--L1-2",
             ":L1-2",
