@@ -4,7 +4,7 @@ use crate::context::{DrawContext, PosedResult};
 use crate::{Body, Color, Colors, Layer, Lens, Pane, with_alpha};
 use glam::Vec3;
 use segue_motion::clip::Motion;
-use segue_motion::skeleton::{FootPair, Role, WorldPose};
+use segue_motion::skeleton::WorldPose;
 use segue_session::{Key, joint_of};
 
 /// Speed over the ground above which a planted foot is shown as sliding, metres per second.
@@ -132,15 +132,10 @@ pub(crate) fn add_contacts(shown: &PosedResult<'_>, context: &DrawContext<'_>, p
             continue;
         }
         let [_, _, end] = foot.leg();
-        let Some(end) = roles.get(end) else {
+        let (Some(joint), Some(foot)) = (roles.ball_or_ankle(skeleton, foot), roles.get(end))
+        else {
             continue;
         };
-        let joint = match foot.pair {
-            FootPair::Hind => roles.get(Role::toe(foot.side)),
-            // The joint after the end of the leg.
-            FootPair::Fore => roles.foot_points(skeleton, foot).get(1).map(|point| point.0),
-        };
-        let (foot, joint) = (end, joint.unwrap_or(end));
         let (Some(&toe), Some(&ankle)) = (world.positions.get(joint), world.positions.get(foot))
         else {
             continue;

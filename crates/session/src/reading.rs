@@ -19,7 +19,7 @@ use segue_formats::{
     FileKind, ImportError, ImportOptions, ImportedClip, ImportedFile, Resolve, fbx, gltf,
     import_with_progress, kind_of, unpack_gzip,
 };
-use segue_motion::clip::Motion;
+use segue_motion::clip::{Motion, with_body_plan_of};
 use segue_motion::skeleton::Roles;
 use segue_motion::skin::SkinnedMesh;
 use segue_text::{Message, ToMessage, msg};
@@ -530,6 +530,7 @@ impl ReadClip {
         let skeleton = imported.clip.skeleton();
         let roles = roles.or(imported.roles).unwrap_or_else(|| Roles::detect(skeleton));
         let roles = mapped(maps, skeleton, &roles).unwrap_or(roles);
+        let roles = with_body_plan_of(&imported.clip, roles);
         Self { mesh: imported.mesh, motion: Motion::with_roles(imported.clip, &roles), about }
     }
 }

@@ -290,14 +290,25 @@ impl FootTracks {
     }
 
     fn leave_high_points_out(&mut self, scale: f32) {
+        let levels = |kind: &Vec<(Foot, Vec<Vec3>)>| {
+            kind.iter().map(|(_, track)| level_of(track)).collect::<Vec<_>>()
+        };
+        let levels: Vec<Vec<Option<f32>>> = self.feet.iter().map(levels).collect();
         let mut lowest = [f32::INFINITY; 4];
-        for (foot, track) in self.feet.iter().flatten() {
+        for ((foot, _), level) in self.feet.iter().flatten().zip(levels.iter().flatten()) {
             let lowest = &mut lowest[foot.index()];
-            *lowest = level_of(track).map_or(*lowest, |level| lowest.min(level));
+            *lowest = level.map_or(*lowest, |level| lowest.min(level));
         }
         let most = lowest.map(|level| level + MAX_ABOVE_FOOT_M * scale);
-        for kind in &mut self.feet {
-            kind.retain(|(foot, track)| level_of(track) <= Some(most[foot.index()]));
+        for ((kind, points), levels) in self.feet.iter_mut().zip(&mut self.points).zip(levels) {
+            let stays: Vec<bool> = (kind.iter().zip(levels))
+                .map(|((foot, _), level)| level <= Some(most[foot.index()]))
+                .collect();
+            // Tracks and the points that they follow go together.
+            let mut of_tracks = stays.iter();
+            kind.retain(|_| of_tracks.next() == Some(&true));
+            let mut of_points = stays.iter();
+            points.retain(|_| of_points.next() == Some(&true));
         }
     }
 

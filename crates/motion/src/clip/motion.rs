@@ -9,7 +9,7 @@ use crate::skeleton::{Role, Roles};
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-/// The most frames in which the body plan is sought.
+/// The greatest number of frames that are sampled to find the body plan.
 const MAX_PLAN_SAMPLES: usize = 60;
 
 /// Options for the feet of a clip: the contacts, and the height of the ground.
@@ -59,28 +59,33 @@ impl PartialEq for Motion {
     }
 }
 
+/// Returns roles with the body plan of a clip: that of the rest pose, or, where that does not stand,
+/// that of the frames ([`Roles::with_plan_of`]). It belongs to a file: a part of its clip, or a
+/// result, has the plan of its roles.
+#[must_use]
+pub fn with_body_plan_of(clip: &Clip, roles: Roles) -> Roles {
+    let step = clip.frames().div_ceil(MAX_PLAN_SAMPLES).max(1);
+    let poses = (0..clip.frames()).step_by(step).map(|frame| clip.world_pose(frame));
+    roles.with_plan_of(clip.skeleton(), poses)
+}
+
 impl Motion {
     /// Analyses a clip; the roles of its joints are found in its skeleton ([`Roles::detect`]), and
     /// its frames show whether it stands on four legs where the rest pose does not
-    /// ([`Roles::with_plan_of`]).
+    /// ([`with_body_plan_of`]).
     #[must_use]
     pub fn analyze(clip: impl Into<Arc<Clip>>) -> Self {
         let clip = clip.into();
-        let roles = Roles::detect(clip.skeleton());
+        let roles = with_body_plan_of(&clip, Roles::detect(clip.skeleton()));
         Self::with_roles(clip, &roles)
     }
 
-    /// Analyses a clip whose joints have these roles. The body plan is that of the roles, or that
-    /// which the rest pose or the frames show ([`Roles::with_plan_of`]).
+    /// Analyses a clip whose joints have these roles, on a body of their plan.
     #[must_use]
     pub fn with_roles(clip: impl Into<Arc<Clip>>, roles: &Roles) -> Self {
-        let clip: Arc<Clip> = clip.into();
-        let step = clip.frames().div_ceil(MAX_PLAN_SAMPLES).max(1);
-        let poses = (0..clip.frames()).step_by(step).map(|frame| clip.world_pose(frame));
-        let roles = roles.clone().with_plan_of(clip.skeleton(), poses);
         Self {
-            clip,
-            roles,
+            clip: clip.into(),
+            roles: roles.clone(),
             ground_frames: OnceLock::new(),
             feet: FootOptions::default(),
             found_contacts: OnceLock::new(),
@@ -191,8 +196,9 @@ impl Motion {
         }
     }
 
-    /// Returns the same motion with corrected roles. Roles of joints that the skeleton does not
-    /// have, as they may be stored for another version of the clip, are ignored.
+    /// Returns the same motion with corrected roles, and the body plan that goes with them. Roles of
+    /// joints that the skeleton does not have, as they may be stored for another version of the
+    /// clip, are ignored.
     #[must_use]
     pub fn with_corrected_roles(self, roles: &Roles) -> Self {
         let joints = self.clip.skeleton().len();
@@ -201,7 +207,8 @@ impl Motion {
         if !fits || *roles == self.roles {
             return self;
         }
-        Self::with_roles(self.clip, roles)
+        let roles = with_body_plan_of(&self.clip, roles.clone());
+        Self::with_roles(self.clip, &roles)
             .with_feet(self.feet)
             .with_contact_corrections(self.corrections)
             .with_seams(self.seams)

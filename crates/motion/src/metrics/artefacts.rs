@@ -240,10 +240,7 @@ impl BodyTracks {
     fn new(clip: &Clip, roles: &Roles) -> Self {
         let skeleton = clip.skeleton();
         let joint = |role| roles.get_within(role, skeleton.len());
-        let of_foot = |&foot: &skeleton::Foot| match roles.points_of_foot(skeleton, foot) {
-            [_, Some((ball, _)), _] => Some(ball),
-            [ankle, ..] => ankle.map(|(joint, _)| joint),
-        };
+        let of_foot = |&foot: &skeleton::Foot| roles.ball_or_ankle(skeleton, foot);
         let feet: Vec<usize> =
             skeleton::Foot::of(roles.body_plan()).iter().filter_map(of_foot).collect();
         Self {

@@ -36,8 +36,8 @@ struct RoleJoint {
 
 /// At most one joint per [`Role`], and the [`BodyPlan`].
 ///
-/// It is stored (serde) as a map from role to joint index; that of a body on four legs says so. The
-/// indices belong to one skeleton. Since roles may come from outside, every user of them treats an
+/// It is stored (serde) as a map from role to joint index; that of a quadruped has its plan, too.
+/// The indices belong to one skeleton. Since roles may come from outside, every user of them treats an
 /// index that the skeleton does not have as a missing role.
 ///
 /// ```
@@ -297,6 +297,14 @@ impl Roles {
         foot: Foot,
     ) -> [Option<(usize, Vec3)>; 3] {
         plan::points_of(skeleton, self, foot)
+    }
+
+    /// Returns the joint by which a foot's movement over the ground is told: its ball, the ankle
+    /// where it has none.
+    #[must_use]
+    pub fn ball_or_ankle(&self, skeleton: &Skeleton, foot: Foot) -> Option<usize> {
+        let [ankle, ball, _] = self.points_of_foot(skeleton, foot);
+        ball.or(ankle).map(|(joint, _)| joint)
     }
 
     /// Returns the length of a leg from hip joint over knee to ankle, metres: the mean of both

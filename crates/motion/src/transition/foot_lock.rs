@@ -1,10 +1,10 @@
 //! Foot lock: planted feet are held in place by two-bone inverse kinematics.
 
-use super::limb::{Limb, LimbPose, usual_axis};
+use super::limb::{Limb, LimbPose};
 use crate::blend::MAX_SECS;
 use crate::clip::{Clip, ClipError, Contacts};
 use crate::registration::REFERENCE_HEIGHT_M;
-use crate::skeleton::{Foot, FootPair, Roles, Side, Skeleton, WorldPose};
+use crate::skeleton::{Foot, Roles, Side, Skeleton, WorldPose};
 use glam::{Quat, Vec3};
 use std::ops::Range;
 use std::sync::Arc;
@@ -192,8 +192,6 @@ struct State {
     legs: Vec<Limb>,
     feet: Vec<anchor::Foot>,
     posed: Vec<Vec<LimbPose>>,
-    /// For each leg, the axis of its knee where it is straight throughout.
-    straight_axes: Vec<Vec3>,
     body_yaws: Vec<f64>,
     /// Computed when all frames are posed.
     plan: Option<Plan>,
@@ -247,7 +245,6 @@ impl State {
             feet: (feet.iter().zip(&legs))
                 .map(|(foot, leg)| anchor::Foot::new(clip, roles, *foot, leg.joints()[2]))
                 .collect(),
-            straight_axes: feet.iter().map(|foot| straight_axis(*foot)).collect(),
             posed: legs.iter().map(|_| Vec::with_capacity(clip.frames())).collect(),
             body_yaws: Vec::new(),
             legs,
@@ -316,8 +313,8 @@ impl State {
         let is_idle = shifts.iter().chain(&turns).flatten().all(|value| *value == Vec3::ZERO);
         Plan {
             heights: hips::heights(&self.posed, &shifts, clip.fps()),
-            axes: (self.posed.iter().zip(&self.straight_axes))
-                .map(|(posed, &straight)| usual_axis(posed, straight))
+            axes: (self.legs.iter().zip(&self.posed))
+                .map(|(leg, posed)| leg.usual_axis(posed.iter().copied()))
                 .collect(),
             rotations: Vec::with_capacity(if is_idle {
                 0
@@ -344,15 +341,6 @@ impl State {
         Ok(locked
             .with_translations(clip.translations().to_vec())?
             .with_provenance(clip.provenance()))
-    }
-}
-
-/// Returns the axis about which the knee of a leg bends that shows no bend, in the frame of a thigh
-/// of a body that faces +Z: elbows of forelegs point backward.
-fn straight_axis(foot: Foot) -> Vec3 {
-    match foot.pair {
-        FootPair::Hind => Vec3::X,
-        FootPair::Fore => Vec3::NEG_X,
     }
 }
 

@@ -1,7 +1,7 @@
 //! Limbs of two bones, and rotations that bring their ends to other places.
 
 use crate::math::{curve, quat};
-use crate::skeleton::{Foot, Role, Roles, Side, Skeleton, WorldPose, two_bone_ik};
+use crate::skeleton::{Foot, FootPair, Role, Roles, Side, Skeleton, WorldPose, two_bone_ik};
 use glam::{Mat3, Quat, Vec3};
 
 /// The least flexion of the knee to which a leg is stretched, unless the clip itself stretches it
@@ -18,6 +18,9 @@ const PLANE_SINE: f32 = 0.2;
 pub(crate) struct Limb {
     joints: [usize; 3],
     parents: [usize; 3],
+    /// The axis about which its middle joint bends where no pose shows that, in the frame of the
+    /// upper bone of a body that faces +Z.
+    straight_axis: Vec3,
 }
 
 /// The world pose of a leg or an arm in one frame of a clip.
@@ -45,7 +48,13 @@ impl Limb {
 
     /// Returns the leg on a foot; `None` where its joints are not one below the other.
     pub(crate) fn on(skeleton: &Skeleton, roles: &Roles, foot: Foot) -> Option<Self> {
-        Self::of(skeleton, roles, foot.leg())
+        let leg = Self::of(skeleton, roles, foot.leg())?;
+        // Elbows of forelegs point backward.
+        let straight_axis = match foot.pair {
+            FootPair::Hind => Vec3::X,
+            FootPair::Fore => Vec3::NEG_X,
+        };
+        Some(Self { straight_axis, ..leg })
     }
 
     /// Returns the arm of a side; `None` where upper arm, forearm and hand are not one below the
@@ -68,8 +77,11 @@ impl Limb {
         let chain = above(joints[1], joints[0]) && above(joints[2], joints[1]);
         let rest = skeleton.rest_positions();
         let bones = [0, 1].map(|bone| rest[joints[bone]].distance(rest[joints[bone + 1]]));
-        (chain && bones.iter().all(|length| *length > 1e-3))
-            .then_some(Self { joints, parents: [a, b, c] })
+        (chain && bones.iter().all(|length| *length > 1e-3)).then_some(Self {
+            joints,
+            parents: [a, b, c],
+            straight_axis: Vec3::X,
+        })
     }
 
     /// Returns thigh, shin and foot.
@@ -77,9 +89,12 @@ impl Limb {
         self.joints
     }
 
-    /// Returns the axis about which this knee bends over some poses, in the thigh's frame.
-    pub(crate) fn usual_axis<'a>(&self, worlds: impl Iterator<Item = &'a WorldPose>) -> Vec3 {
-        usual_axis(&worlds.map(|world| self.pose(world)).collect::<Vec<_>>(), Vec3::X)
+    /// Returns the axis about which this knee bends over some poses, in the thigh's frame; bent
+    /// poses count more. Where all are straight it is the lateral axis of the body.
+    pub(crate) fn usual_axis(&self, posed: impl IntoIterator<Item = LimbPose>) -> Vec3 {
+        let bend = |posed: LimbPose| posed.rotations[0].conjugate() * posed.bend();
+        let sum: Vec3 = posed.into_iter().map(bend).sum();
+        sum.try_normalize().unwrap_or(self.straight_axis)
     }
 
     /// Moves the ankle by `shift` (metres, world) as [`foot_lock`] does, with the hips fixed:
@@ -246,12 +261,4 @@ fn across(axis: Vec3, along: Vec3) -> Vec3 {
 /// Returns the rotation from X to `hinge` and from Y to `bone`, perpendicular unit vectors.
 fn basis(bone: Vec3, hinge: Vec3) -> Quat {
     Quat::from_mat3(&Mat3::from_cols(hinge, bone, hinge.cross(bone)))
-}
-
-/// Returns the axis about which a knee bends over the whole clip, in the thigh's frame; bent frames
-/// count more. In a clip of straight legs it is `straight`: for a knee, the lateral axis of a body
-/// that faces +Z at rest.
-pub(crate) fn usual_axis(posed: &[LimbPose], straight: Vec3) -> Vec3 {
-    let sum: Vec3 = posed.iter().map(|posed| posed.rotations[0].conjugate() * posed.bend()).sum();
-    sum.try_normalize().unwrap_or(straight)
 }

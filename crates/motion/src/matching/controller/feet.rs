@@ -142,7 +142,7 @@ impl Feet {
             let leg = Limb::on(skeleton, roles, foot)?;
             Some(Foot {
                 index: foot.index(),
-                axis: leg.usual_axis(examples.iter()),
+                axis: leg.usual_axis(examples.iter().map(|world| leg.pose(world))),
                 leg,
                 points: roles.foot_points(skeleton, foot),
                 before: Vec::new(),

@@ -7,7 +7,7 @@ use crate::math::quat;
 use crate::math::{Planar, wrap_angle};
 use crate::metrics::foot_slides;
 use crate::registration::fixtures::Walk;
-use crate::skeleton::{Joint, Role, Skeleton, fixtures};
+use crate::skeleton::{FootPair, Joint, Role, Skeleton, fixtures};
 use crate::synth::{Action, Params, synthesize};
 use crate::transition::limb::LimbPose;
 use proptest::prelude::*;
