@@ -159,7 +159,7 @@ impl CorpusGatherer {
         py: Python<'py>,
         texts: Vec<(String, String, Vec<String>)>,
     ) -> PyResult<Bound<'py, PyBytes>> {
-        let made = py.detach(|| {
+        let made = detached(py, || {
             let of_row = |(path, name, labels)| RowTexts { path, name, labels };
             let texts: Vec<RowTexts> = texts.into_iter().map(of_row).collect();
             write_columns(&locked(&self.rows), &texts)

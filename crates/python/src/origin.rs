@@ -1,4 +1,4 @@
-//! Where clips come from.
+//! Origins of clips: what links need to name them.
 
 use segue_session::file_id;
 use segue_session::reading::{ReadFile, sha256_hex};
@@ -13,7 +13,7 @@ pub(crate) struct Origin {
     pub(crate) files: Vec<Arc<ReadFile>>,
 }
 
-/// The origin of a clip, or what it is found from.
+/// The origin of a clip, known or computed on demand.
 #[derive(Debug)]
 pub(crate) enum Source {
     /// It is known.
@@ -40,7 +40,7 @@ impl Source {
 #[derive(Debug)]
 pub(crate) struct SourceFile {
     /// The file, perhaps without its SHA-256.
-    read: ReadFile,
+    read: Arc<ReadFile>,
     /// Its bytes, until the SHA-256 is known.
     bytes: Mutex<Option<Vec<u8>>>,
     hashed: OnceLock<Arc<ReadFile>>,
@@ -49,14 +49,15 @@ pub(crate) struct SourceFile {
 impl SourceFile {
     /// Returns a file whose SHA-256 is known.
     pub(crate) fn hashed(read: ReadFile) -> Self {
-        let hashed = Arc::new(read.clone()).into();
-        Self { read, bytes: Mutex::new(None), hashed }
+        let read = Arc::new(read);
+        Self { hashed: Arc::clone(&read).into(), read, bytes: Mutex::new(None) }
     }
 
     /// Returns a file whose SHA-256 is that of some bytes. It is computed on a core that has
-    /// nothing else to do, or by who asks for it first, and the bytes are dropped.
+    /// nothing else to do, or by the first caller that asks for it, and the bytes are dropped.
     pub(crate) fn of_bytes(read: ReadFile, bytes: Vec<u8>) -> Arc<Self> {
-        let own = Arc::new(Self { read, bytes: Mutex::new(Some(bytes)), hashed: OnceLock::new() });
+        let (read, bytes) = (Arc::new(read), Mutex::new(Some(bytes)));
+        let own = Arc::new(Self { read, bytes, hashed: OnceLock::new() });
         let later = Arc::clone(&own);
         rayon::spawn(move || {
             later.file();
@@ -74,7 +75,7 @@ impl SourceFile {
         self.hashed.get_or_init(|| {
             let bytes = self.bytes.lock().unwrap_or_else(PoisonError::into_inner).take();
             let sha256 = sha256_hex(&bytes.unwrap_or_default());
-            Arc::new(ReadFile { sha256, ..self.read.clone() })
+            Arc::new(ReadFile { sha256, ..ReadFile::clone(&self.read) })
         })
     }
 }
