@@ -25,7 +25,7 @@ mod page {
             self.0.table().rows() as u32
         }
 
-        /// Returns what `corpus.json` counts, as JSON.
+        /// Returns the counts in `corpus.json`, as JSON.
         pub fn counts(&self) -> Result<String, JsValue> {
             self.0.counts().map_err(thrown)
         }
@@ -143,7 +143,7 @@ mod page {
         [slot.shard, slot.offset, slot.length].map(|number| number as f64).to_vec()
     }
 
-    #[expect(clippy::needless_pass_by_value, reason = "what an error is mapped by")]
+    #[expect(clippy::needless_pass_by_value, reason = "passed to map_err")]
     fn thrown(error: PageError) -> JsValue {
         error.to_string().into()
     }

@@ -98,12 +98,12 @@ pub(crate) struct Columns {
     pub(crate) named: Vec<u32>,
     pub(crate) lists: Lists,
     pub(crate) formats: Vec<u32>,
-    /// From 1; 0 is none. So are rates and messages.
+    /// The index in the list plus 1; 0 where there is none. So are rates and messages.
     pub(crate) rigs: Vec<u32>,
     pub(crate) rates: Vec<u32>,
     pub(crate) label_sets: Vec<u32>,
     pub(crate) messages: Vec<u32>,
-    /// The number of frames and 1; 0 is none.
+    /// The number of frames plus 1; 0 where it is unknown.
     pub(crate) frames: Vec<u32>,
     pub(crate) states: Vec<Status>,
     pub(crate) poses: Vec<Option<Slot>>,
@@ -132,7 +132,7 @@ pub(crate) struct Ids {
 }
 
 impl Ids {
-    /// Returns what the order of ids depends on.
+    /// Returns the sort key of an id.
     fn key(&self, at: u32) -> (u32, &str, u32) {
         let number = |all: &[u32]| all.get(at as usize).copied().unwrap_or(0);
         let longer = self.longer.get(&at).map_or("", String::as_str);

@@ -15,7 +15,7 @@ pub const FORMAT: u32 = 2;
 /// The name of the file with the columns for a page.
 pub const COLUMNS: &str = "columns.bin";
 
-/// What `corpus.json` counts.
+/// The counts in `corpus.json`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Counts {
     /// Rows of the table.

@@ -14,7 +14,7 @@ use crate::index::MomentRows;
 
 /// The share of clips that lie beyond 0.9, to either side.
 const BEYOND: f64 = 0.02;
-/// Where places begin to be pressed together.
+/// The coordinate beyond which outliers are compressed.
 const KNEE: f64 = 0.9;
 /// Rounds over all pairs of dimensions; a dozen are plenty for 27.
 const SWEEPS: usize = 30;
@@ -90,7 +90,7 @@ fn eigenvectors(matrix: &mut [Vec<f64>]) -> Vec<Vec<f64>> {
         for p in 0..dims {
             for q in p + 1..dims {
                 let off = matrix[p][q];
-                // Beyond the digits of both eigenvalues.
+                // Negligible beside both diagonal entries.
                 if off.abs() <= 1e-18 * (matrix[p][p].abs() + matrix[q][q].abs()) {
                     continue;
                 }
@@ -103,7 +103,7 @@ fn eigenvectors(matrix: &mut [Vec<f64>]) -> Vec<Vec<f64>> {
                 for row in matrix.iter_mut().chain(&mut vectors) {
                     turn.apply(row);
                 }
-                // And its rows, which lie in both halves.
+                // Rows p and q are rotated alike; the split gives access to both.
                 let (above, below) = matrix.split_at_mut(q);
                 for (p, q) in above[p].iter_mut().zip(&mut below[0]) {
                     (*p, *q) = (cosine * *p - turn.sine * *q, turn.sine * *p + cosine * *q);

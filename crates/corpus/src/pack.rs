@@ -43,7 +43,7 @@ impl Placer {
     }
 }
 
-/// Places bytes one after the other, and keeps whose they are.
+/// Places bytes one after the other, and records the clips of each shard.
 #[derive(Debug, Default)]
 pub(crate) struct Packer {
     placer: Placer,

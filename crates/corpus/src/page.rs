@@ -1,7 +1,7 @@
 //! A corpus as a page reads it: `corpus.json` and `columns.bin` at once, everything else by ranges.
 //!
-//! The page fetches; this answers. It has the table, the features of a moment, and the search, all
-//! as numbers and JSON, so that what calls it from JavaScript has nothing to do.
+//! The page's scripts fetch bytes; this decodes them and answers queries about the table, the
+//! features of a moment and similar moments, as numbers and JSON.
 
 #[cfg(test)]
 mod tests;
@@ -16,7 +16,6 @@ use segue_formats::numpy::{self, write_npz};
 use segue_formats::{ImportError, ImportOptions};
 use segue_motion::clip::{ClipError, Motion};
 use serde::{Deserialize, Serialize};
-use serde_json::json;
 use std::collections::BTreeMap;
 
 /// Seconds before and after a moment of a file that are put on the body: features depend on less.
@@ -34,14 +33,14 @@ pub enum PageError {
     /// A corpus of a newer format.
     #[error("this corpus was built by a newer Segue: reload the page, or update Segue")]
     Newer,
-    /// `corpus.json` is not that of a corpus.
-    #[error("corpus.json is not that of a corpus: {0}")]
+    /// `corpus.json` does not describe a corpus.
+    #[error("corpus.json does not describe a corpus: {0}")]
     Manifest(serde_json::Error),
     /// Text that is no filter.
     #[error("the filter cannot be read: {0}")]
     Filter(serde_json::Error),
     /// A row that the table does not have.
-    #[error("the table has {rows} rows, and no row {row}")]
+    #[error("row {row} is out of range: the table has {rows} rows")]
     NoRow {
         /// The row.
         row: u32,
@@ -55,10 +54,10 @@ pub enum PageError {
     #[error("the file has no clip")]
     NoClip,
     /// A search before the centroids are there.
-    #[error("the centroids are not there yet: hand in index/centroids.bin first")]
+    #[error("index/centroids.bin is not loaded yet")]
     NoIndex,
     /// A search in a list that is not there.
-    #[error("list {0} is not there yet: hand in its bytes first")]
+    #[error("list {0} of the index is not loaded yet")]
     NoList(usize),
     /// Bytes of the corpus that cannot be read.
     #[error(transparent)]
@@ -92,7 +91,7 @@ struct IndexFacts {
     probes: usize,
 }
 
-/// The version of the format alone: nothing else of another one is known.
+/// The version of the format, which is read first: other versions may have other fields.
 #[derive(Deserialize)]
 struct Head {
     format: u32,
@@ -148,7 +147,7 @@ impl CorpusPage {
         &self.table
     }
 
-    /// Returns what `corpus.json` counts, as JSON.
+    /// Returns the counts in `corpus.json`, as JSON.
     ///
     /// # Errors
     /// [`CorpusError::Json`].

@@ -67,10 +67,10 @@ pub struct Column {
     pub help: String,
     /// Its kind.
     pub kind: ColumnKind,
-    /// Of numbers, a value that 1 % of the clips are below.
+    /// The 1st percentile of numbers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub min: Option<f64>,
-    /// Of numbers, a value that 1 % of the clips are above.
+    /// The 99th percentile of numbers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max: Option<f64>,
     /// Of choices, the values, the most frequent ones first.

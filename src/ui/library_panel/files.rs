@@ -88,8 +88,7 @@ pub(super) fn files_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
         ui.horizontal(|ui| kit::drop_buttons_ui(&buttons[..shown], ui)).inner
     } else {
         let hot = ui.input(|input| !input.raw.hovered_files.is_empty());
-        let rows = [files, corpora];
-        let rows = &rows[..=usize::from(!corpora.is_empty())];
+        let rows: &[_] = if corpora.is_empty() { &[files] } else { &[files, corpora] };
         kit::drop_zone_ui(text::DROP_HERE, rows, hot, ui)
     };
     match pressed {

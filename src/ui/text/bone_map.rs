@@ -7,7 +7,7 @@ pub(crate) const BODY_PARTS_HELP: Word = Word::new(
     "The bone of each body part, found by name or by shape. Press a part, then its bone; or drag a bone onto a part.",
 );
 pub(crate) const ON_FOUR_LEGS: Word =
-    Word::new("This body stands on four legs: its forelegs have the places of arms.");
+    Word::new("This body stands on four legs: its forelegs take the places of arms.");
 pub(crate) const BONE_MAP: Word = Word::new("Body parts and their bones");
 pub(crate) const LEFT_SIDE: Word = Word::new("left side");
 pub(crate) const RIGHT_SIDE: Word = Word::new("right side");

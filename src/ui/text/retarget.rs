@@ -29,7 +29,7 @@ pub(crate) const NO_COMMON_ARMS: Word = Word::new(
 );
 /// The note on bodies that stand on two and on four legs.
 pub(crate) const OTHER_PLAN: Word = Word::new(
-    "One of the bodies stands on two legs, the other on four: its posture does not fit, only the directions of the bones are retargeted.",
+    "One of the bodies stands on two legs, the other on four: only the directions of bones are retargeted, and the postures differ.",
 );
 
 /// Returns the position error of a limb.

@@ -3,7 +3,7 @@
 use crate::CorpusError;
 use serde::{Deserialize, Serialize};
 
-/// The share of the middle value that is the scale: from there to 0 levels are even.
+/// The scale as a share of the median magnitude: below it levels are linear, above it logarithmic.
 const SHARE_OF_MIDDLE: f64 = 0.25;
 /// The number of levels. Code 0 is no value.
 const LEVELS: i32 = 255;
@@ -22,7 +22,8 @@ pub(crate) struct Levels {
 
 impl Levels {
     /// Returns levels that span some values. 0 is one of them. `step` is their distance in the
-    /// scale of the inverse hyperbolic sine: a value beyond the scale is kept to half of it.
+    /// scale of the inverse hyperbolic sine: beyond the scale, the relative error is at most half of
+    /// it.
     pub(crate) fn spanning(values: impl Iterator<Item = f64>, step: f64) -> Self {
         let limited = |value: f64| value.clamp(-LIMITS[1], LIMITS[1]);
         let finite = values.filter(|value| value.is_finite());
@@ -51,7 +52,7 @@ impl Levels {
     /// Returns the value of each code.
     ///
     /// # Errors
-    /// [`CorpusError::Damaged`] if these are no levels.
+    /// [`CorpusError::Damaged`] if scale or step is not positive.
     pub(crate) fn values(&self) -> Result<Vec<Option<f64>>, CorpusError> {
         let is_positive = |number: f64| number > 0.0 && number.is_finite();
         if !is_positive(self.scale) || !is_positive(self.step) {

@@ -10,6 +10,8 @@ use crate::packed::{MAX_ROWS, Texts, unzigzag};
 use crate::{CorpusError, Slot};
 
 const DAMAGED: CorpusError = CorpusError::Damaged { what: WHAT };
+/// The greatest number of columns of numbers; a few bytes can be packed as millions of rows each.
+const MAX_COLUMNS: usize = 256;
 
 /// Reads `columns.bin`.
 ///
@@ -64,6 +66,9 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Columns, CorpusError> {
     let thumbnails = reader.numbers(count)?;
     let axes = [reader.packed(count)?, reader.packed(count)?];
     let originals = originals(&mut reader, &bits, &order)?;
+    if facts.numbers.len() > MAX_COLUMNS {
+        return Err(DAMAGED);
+    }
     let mut coded = Vec::new();
     for NumberFacts { name, label, unit, help, levels } in facts.numbers {
         let codes = order.by_row(&reader.packed(count)?);
@@ -150,7 +155,7 @@ fn listed(reader: &mut Reader<'_>, count: usize, end: usize) -> Result<Vec<u32>,
     if numbers.iter().all(|number| (*number as usize) < end) { Ok(numbers) } else { Err(DAMAGED) }
 }
 
-/// Returns the numbers of bytes of poses, given what they differ from the usual ones.
+/// Returns the sizes of poses, bytes, given their differences from the estimates.
 fn pose_bytes(
     differences: &[u32],
     secs: impl Iterator<Item = Option<f64>>,

@@ -106,12 +106,12 @@ impl Clip<'_> {
             | bit(self.own.is_mirrored, flags::MIRRORED)
     }
 
-    /// Returns the number of frames and 1; 0 where it is not known.
+    /// Returns the number of frames plus 1; 0 where it is unknown.
     fn frames(&self) -> Result<u32, CorpusError> {
         self.own.row.frames.map_or(Ok(0), |frames| number(frames.saturating_add(1)))
     }
 
-    /// Returns what the number of bytes of poses differs from the usual one.
+    /// Returns the difference of the size of poses from its estimate, bytes.
     fn poses(&self) -> Result<u32, CorpusError> {
         let length = self.own.poses.map_or(0, |slot| slot.length);
         let frames = self.own.row.frames.map(number).transpose()?;

@@ -1,4 +1,4 @@
-//! How many lists a search reads.
+//! The number of lists that a search probes.
 //!
 //! The more alike the clips of a corpus are, the more lists the neighbours of a moment lie in.
 //! The number is therefore measured on the corpus itself: the ten nearest moments of some moments,

@@ -1,4 +1,4 @@
-//! Which rows of the table are shown, and in which order.
+//! Filters and sorting of rows.
 
 use super::terms::Terms;
 use super::{CHOICES, Number, Table};
@@ -23,7 +23,7 @@ pub struct Filter {
     pub choices: BTreeMap<String, Vec<String>>,
     /// The way in which copies are chosen.
     pub copies: Copies,
-    /// These rows alone, in this order where no other is asked for.
+    /// Only these rows, in this order unless `sort` is set.
     pub near: Option<Vec<u32>>,
     /// The order; that of the paths where it is not given.
     pub sort: Option<Sort>,
@@ -123,9 +123,9 @@ impl Table {
         let code = usize::from(*coded.codes.get(row as usize)?);
         let level = |code: usize| coded.values.get(code).copied().flatten();
         let neighbours = code.checked_sub(1).and_then(level).zip(level(code + 1));
-        // 0 is exact. Beyond the ends lies nothing.
+        // 0 is exact, and the levels at both ends have a neighbour on one side alone.
         let Some((below, above)) = neighbours.filter(|_| value != 0.0) else { return Some(value) };
-        // The fraction of a multiple of the golden ratio: even, and the same each time.
+        // Dithering by multiples of the golden ratio is even, and the same each time.
         let share = (f64::from(row) * 0.618_033_988_749_895).fract();
         Some(0.5 * (below + value + share * (above - below)))
     }
