@@ -16,15 +16,19 @@ export const clipsRead = new Map();
 export function corpusAt(address) {
   let client = open.get(address);
   open.delete(address);
-  client ??= new Client({ address });
+  if (!client || client.hasEnded) {
+    client = new Client({ address });
+    client.opened.catch(() => {
+      client.end();
+      if (open.get(address) === client) open.delete(address);
+    });
+  }
   open.set(address, client);
-  client.opened.catch(() => {
-    if (open.get(address) === client) open.delete(address);
-    client.end();
-  });
-  for (const [oldest, { end }] of open) {
+  // One that is shown or asked stays.
+  const idle = [...open].filter(([, other]) => other !== client && !other.isShown && !other.isAsked);
+  for (const [oldest, other] of idle) {
     if (open.size <= MAX_OPEN) break;
-    end();
+    other.end();
     open.delete(oldest);
   }
   return client;
@@ -45,55 +49,78 @@ export async function readClip(address, signal) {
 }
 
 class Client {
+  /** Whether the panel shows it. */
+  isShown = false;
   #worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
   #calls = new Map();
   #count = 0;
+  /** Why the worker answers no more. */
+  #end;
 
   /** @param place { address } or { files } */
   constructor(place) {
     this.#worker.onmessage = ({ data: { call, part, result, error } }) => {
       const waiting = this.#calls.get(call);
       if (part !== undefined) return waiting?.onPart(part);
-      this.#calls.delete(call);
-      if (error) waiting?.reject(asError(error));
-      else waiting?.resolve(result);
+      if (!error) return waiting?.resolve(result);
+      const reason = asError(error);
+      waiting?.reject(reason);
+      // WebAssembly that has trapped gives wrong answers from then on, or none.
+      if (error.word === "trapped") this.#stop(reason);
     };
     this.#worker.onerror = (event) => {
       event.preventDefault();
-      this.#fail(new Error(sentence("noWorker", { reason: event.message ?? "" })));
+      this.#stop(new Error(sentence("noWorker", { reason: event.message ?? "" })));
     };
     /** What the corpus says of itself: { rows, counts, columns }. */
     this.opened = this.call("open", place);
   }
 
+  /** Whether calls are refused. */
+  get hasEnded() {
+    return this.#end !== undefined;
+  }
+
+  /** Whether a call waits for its answer. */
+  get isAsked() {
+    return this.#calls.size > 0;
+  }
+
   /**
-   * Calls the worker.
+   * Calls the worker. Once it has ended, calls are refused.
    * @param options.signal cancels the call
    * @param options.onPart gets the parts of its answer
    */
   call(name, args = {}, { signal, onPart = () => {} } = {}) {
+    if (this.#end) return Promise.reject(this.#end);
+    if (signal?.aborted) return Promise.reject(signal.reason);
     const call = ++this.#count;
     return new Promise((resolve, reject) => {
-      if (signal?.aborted) return reject(signal.reason);
-      this.#calls.set(call, { resolve, reject, onPart });
-      signal?.addEventListener("abort", () => {
-        if (!this.#calls.delete(call)) return;
+      const cancel = () => {
         this.#worker.postMessage({ cancel: call });
-        reject(signal.reason);
-      });
+        this.#calls.get(call)?.reject(signal.reason);
+      };
+      const done = (settle) => (value) => {
+        this.#calls.delete(call);
+        signal?.removeEventListener("abort", cancel);
+        settle(value);
+      };
+      this.#calls.set(call, { resolve: done(resolve), reject: done(reject), onPart });
+      signal?.addEventListener("abort", cancel);
       this.#worker.postMessage({ call, name, args });
     });
   }
 
-  /** Ends the worker. */
-  end = () => {
-    this.#worker.terminate();
-    this.#fail(new DOMException("the corpus was closed", "AbortError"));
-  };
+  /** Ends the worker. Calls that wait are cancelled. */
+  end() {
+    this.#stop(new Error(sentence("ended")), new DOMException("the corpus was closed", "AbortError"));
+  }
 
-  #fail(error) {
-    for (const { reject } of this.#calls.values()) reject(error);
-    this.#calls.clear();
+  /** Ends the worker, which answers no more for a reason. Calls that wait get that, or another. */
+  #stop(reason, forWaiting = reason) {
+    this.#end ??= reason;
+    this.#worker.terminate();
+    for (const { reject } of [...this.#calls.values()]) reject(forWaiting);
   }
 }
 

@@ -105,6 +105,7 @@ const ENGLISH = {
   noPoses: "{name} has no motion to play: {reason}",
   noClipAddress: "`{address}` is no clip of a corpus. It ends in corpus.json#, the clip's id and, if you like, @ and seconds, as in @1.5-4.",
   noWorker: "The reader of corpora could not start. Check the connection, and load the page again. {reason}",
+  ended: "This corpus is no longer open. Open it again.",
   trapped: "The reader of corpora has stopped: {reason}. This is an error in Segue, not in your corpus. Open the corpus again.",
 };
 
@@ -212,6 +213,7 @@ const CHINESE = {
   noPoses: "{name} 沒有可播放的動作：{reason}",
   noClipAddress: "`{address}` 不是動作集裡的片段。網址結尾是 corpus.json#、片段的代號，也可以再加上 @ 與秒數，例如 @1.5-4。",
   noWorker: "無法啟動動作集的讀取程式。請檢查連線，再重新載入頁面。{reason}",
+  ended: "這個動作集已經關閉。請再開啟一次。",
   trapped: "動作集的讀取程式已停止：{reason}。這是 Segue 的錯誤，不是你的動作集有問題。請再開啟一次動作集。",
 };
 
