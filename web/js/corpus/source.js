@@ -79,8 +79,9 @@ export class WebSource {
     restart();
     try {
       const headers = range ? { Range: `bytes=${range[0]}-${range[0] + range[1] - 1}` } : {};
-      // The browser's cache would answer one request of a file after the other.
-      const cache = range ? "no-store" : "default";
+      // The browser's cache would answer one request of a range after the other, and could have whole
+      // files of a corpus that has been written again since.
+      const cache = range ? "no-store" : "no-cache";
       const response = await fetch(address, { credentials: "omit", cache, headers, signal: controller.signal });
       restart();
       const isWhole = range !== undefined && response.status === 200;
@@ -115,7 +116,7 @@ export class FolderSource {
     this.#files = files;
   }
 
-  whole(name) {
+  async whole(name) {
     return this.#read(name, this.#file(name));
   }
 
