@@ -50,15 +50,22 @@ export function button({ icon: sign, text, name, title, ...properties }) {
   ]);
 }
 
-/** Sizes a canvas for its place, in device pixels, and returns its context in CSS pixels. */
-export function contextOf(canvas) {
-  const { clientWidth, clientHeight } = canvas;
+const sizeOf = ({ clientWidth, clientHeight }) => ({ width: clientWidth, height: clientHeight });
+
+/** Sizes a canvas for its place, in device pixels, and returns its context, in CSS pixels. */
+export function sized(canvas, { width, height } = sizeOf(canvas)) {
   const ratio = window.devicePixelRatio || 1;
-  const [width, height] = [Math.round(clientWidth * ratio), Math.round(clientHeight * ratio)];
-  if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
+  const pixels = { width: Math.round(width * ratio), height: Math.round(height * ratio) };
+  if (canvas.width !== pixels.width || canvas.height !== pixels.height) Object.assign(canvas, pixels);
   const context = canvas.getContext("2d");
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
-  context.clearRect(0, 0, clientWidth, clientHeight);
+  return context;
+}
+
+/** Returns the context of a canvas that is sized for its place, and empty. */
+export function contextOf(canvas, size = sizeOf(canvas)) {
+  const context = sized(canvas, size);
+  context.clearRect(0, 0, size.width, size.height);
   return context;
 }
 

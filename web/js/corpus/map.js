@@ -1,6 +1,7 @@
 // The map: all clips as points, similar motions near each other.
 
-import { button, color, contextOf, element } from "./elements.js";
+import { button, color, element, sized } from "./elements.js";
+import { Ink } from "./ink.js";
 import { sentence } from "./words.js";
 
 /** The greatest magnification. */
@@ -11,8 +12,8 @@ const NEAR = 14;
 const CLICK = 5;
 /** The part of the canvas that all points take. */
 const FILL = 0.94;
-/** The share of the ink that a point has, of those that fit the filters and of the others. */
-const INK = { bright: 0.85, faint: 0.22 };
+/** The time for which the points are drawn before other work has its turn, milliseconds. */
+const TURN_MS = 12;
 
 export class ClipMap {
   root;
@@ -23,6 +24,15 @@ export class ClipMap {
   /** How it is worked, until it is. */
   #hint = element("p", { class: "hint", textContent: sentence("mapHelp") });
   #bright;
+  #ink = new Ink();
+  /** The points as they were drawn, and what tells that from other views. */
+  #picture;
+  #drawn;
+  #isDrawing = false;
+  /** Whether there is another view since the drawing began. */
+  #isLate = false;
+  /** How many times other rows were shown. */
+  #version = 0;
   #current;
   #hits = [];
   #centre = [0, 0];
@@ -62,6 +72,7 @@ export class ClipMap {
   setRows(rows) {
     this.#bright.fill(0);
     for (const row of rows) this.#bright[row] = 1;
+    this.#version++;
     this.draw();
   }
 
@@ -92,11 +103,44 @@ export class ClipMap {
     return [clientWidth / 2 + (x - this.#centre[0]) * across, clientHeight / 2 - (y - this.#centre[1]) * up];
   }
 
-  #draw() {
+  /** Draws the points, unless they are there already, and the rings around some. */
+  async #draw() {
     const canvas = this.#canvas;
+    if (this.#isDrawing) return void (this.#isLate = true);
     if (!canvas.isConnected || !canvas.clientWidth || !canvas.clientHeight) return;
-    const context = contextOf(canvas);
-    this.#drawPoints(context);
+    const context = sized(canvas);
+    const view = this.#view();
+    if (this.#drawn !== view.text) {
+      const picture = context.createImageData(canvas.width, canvas.height);
+      this.#isDrawing = true;
+      try {
+        await inTurns(this.#ink.draw(new Uint32Array(picture.data.buffer), view));
+      } finally {
+        this.#isDrawing = false;
+      }
+      [this.#picture, this.#drawn] = [picture, view.text];
+      if (this.#isLate) this.draw();
+      this.#isLate = false;
+    }
+    context.putImageData(this.#picture, 0, 0);
+    this.#drawRings(context);
+  }
+
+  /** Returns what the picture of the points depends on. */
+  #view() {
+    const ratio = window.devicePixelRatio || 1;
+    const { width, height } = this.#canvas;
+    const count = this.#bright.length;
+    // Few points, and those that are looked at closely, are drawn larger.
+    const radius = ratio * Math.min(Math.max(900 / Math.max(count, 1), 1.1) ** 0.5 * this.#zoom ** 0.3 * 1.1, 4.5);
+    const scale = this.#scale.map((side) => side * ratio);
+    const origin = [width / 2 - this.#centre[0] * scale[0], height / 2 + this.#centre[1] * scale[1]];
+    const colors = ["point", "muted"].map((name) => rgb(color(name, this.#canvas)));
+    const text = [width, height, radius, scale, origin, colors, this.#version].join();
+    return { text, width, points: this.#points, isBright: this.#bright, scale, origin, radius, colors };
+  }
+
+  #drawRings(context) {
     const ring = (row, radius, paint) => {
       const place = row === undefined ? undefined : this.#place(row);
       if (!place) return;
@@ -106,45 +150,10 @@ export class ClipMap {
       context.strokeStyle = paint;
       context.stroke();
     };
-    const [accent, a, text] = ["accent-ink", "a-ink", "text"].map((name) => color(name, canvas));
+    const [accent, a, text] = ["accent-ink", "a-ink", "text"].map((name) => color(name, this.#canvas));
     for (const row of this.#hits) ring(row, 4.5, accent);
     ring(this.#hovered, 6, text);
     ring(this.#current, 7, a);
-  }
-
-  /** Draws all points as ink that adds up where they are dense. */
-  #drawPoints(context) {
-    const ratio = window.devicePixelRatio || 1;
-    const { width, height } = this.#canvas;
-    const [bright, faint] = [new Float32Array(width * height), new Float32Array(width * height)];
-    const count = this.#points.length / 2;
-    // Few points, and those that are looked at closely, are drawn larger.
-    const radius = ratio * Math.min(Math.max(900 / Math.max(count, 1), 1.1) ** 0.5 * this.#zoom ** 0.3 * 1.1, 4.5);
-    const dot = dotOf(radius);
-    const [across, up] = this.#scale.map((scale) => scale * ratio);
-    const [left, top] = [width / 2 - this.#centre[0] * across, height / 2 + this.#centre[1] * up];
-    for (let row = 0; row < count; row++) {
-      const x = Math.round(left + this.#points[2 * row] * across);
-      const y = Math.round(top - this.#points[2 * row + 1] * up);
-      // Not a number fails the comparison.
-      if (!(x > -radius && y > -radius && x < width + radius && y < height + radius)) continue;
-      const ink = this.#bright[row] ? bright : faint;
-      for (const [dx, dy, weight] of dot) {
-        const [px, py] = [x + dx, y + dy];
-        if (px >= 0 && py >= 0 && px < width && py < height) ink[py * width + px] += weight;
-      }
-    }
-    const image = context.createImageData(width, height);
-    const [on, off] = [rgb(color("point", this.#canvas)), rgb(color("muted", this.#canvas))];
-    for (let at = 0; at < bright.length; at++) {
-      if (bright[at] === 0 && faint[at] === 0) continue;
-      const above = 1 - Math.exp(-bright[at] * INK.bright * 1.6);
-      const below = (1 - Math.exp(-faint[at] * INK.faint * 1.6)) * 0.6 * (1 - above);
-      const alpha = above + below;
-      for (let part = 0; part < 3; part++) image.data[4 * at + part] = (on[part] * above + off[part] * below) / alpha;
-      image.data[4 * at + 3] = 255 * alpha;
-    }
-    context.putImageData(image, 0, 0);
   }
 
   #at(event) {
@@ -266,17 +275,15 @@ export class ClipMap {
   }
 }
 
-/** Returns the pixels of a round dot: their offsets and how much of each it covers. */
-function dotOf(radius) {
-  const dot = [];
-  const reach = Math.ceil(radius);
-  for (let dy = -reach; dy <= reach; dy++) {
-    for (let dx = -reach; dx <= reach; dx++) {
-      const weight = Math.min(Math.max(radius + 0.5 - Math.hypot(dx, dy), 0), 1);
-      if (weight > 0) dot.push([dx, dy, weight]);
-    }
+/** Takes the steps of a generator. When they last, other work comes between. */
+async function inTurns(steps) {
+  let start = performance.now();
+  for (;;) {
+    if (steps.next().done) return;
+    if (performance.now() - start < TURN_MS) continue;
+    await new Promise((resolve) => setTimeout(resolve));
+    start = performance.now();
   }
-  return dot;
 }
 
 /** Returns the parts of a colour that is written as `#rrggbb`. */
