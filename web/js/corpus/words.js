@@ -2,14 +2,12 @@
 
 const ENGLISH = {
   corpus: "Corpus",
-  close: "Close",
   closeCorpus: "Close the corpus",
   resize: "Width of the corpus",
   table: "Table",
   map: "Map",
   view: "View",
   search: "Search names and labels",
-  clearSearch: "Clear the search",
   filters: "Filters",
   clearFilters: "Clear all",
   remove: "Remove the filter {name}",
@@ -23,11 +21,9 @@ const ENGLISH = {
   lengthMinutes: "{minutes} min",
   noClips: "No clip fits. Take back a filter, or search for less.",
   clips: "Clips",
-  clip: "Clip",
   thumbnail: "Poses",
   putInto: "Use",
   name: "Name",
-  path: "Path",
   seconds: "Length",
   frames: "Frames",
   fps: "Frame rate",
@@ -44,7 +40,6 @@ const ENGLISH = {
   mirrored: "mirrored copy",
   from: "{name} from",
   to: "{name} to",
-  toB: "to B",
   putA: "Use {name} as A",
   putB: "Use {name} as B",
   dropA: "Drop here for A",
@@ -111,14 +106,12 @@ const ENGLISH = {
 
 const CHINESE = {
   corpus: "動作集",
-  close: "關閉",
   closeCorpus: "關閉動作集",
   resize: "動作集的寬度",
   table: "表格",
   map: "地圖",
   view: "檢視",
   search: "搜尋名稱與標籤",
-  clearSearch: "清除搜尋",
   filters: "篩選",
   clearFilters: "全部清除",
   remove: "移除篩選：{name}",
@@ -132,11 +125,9 @@ const CHINESE = {
   lengthMinutes: "{minutes} 分鐘",
   noClips: "沒有符合的片段。請取消一項篩選，或縮短搜尋文字。",
   clips: "片段",
-  clip: "片段",
   thumbnail: "姿勢",
   putInto: "使用",
   name: "名稱",
-  path: "路徑",
   seconds: "長度",
   frames: "影格數",
   fps: "影格率",
@@ -153,7 +144,6 @@ const CHINESE = {
   mirrored: "鏡像重複",
   from: "{name}：從",
   to: "{name}：到",
-  toB: "到 B",
   putA: "把 {name} 放到 A",
   putB: "把 {name} 放到 B",
   dropA: "放在這裡當作 A",
@@ -218,7 +208,7 @@ const CHINESE = {
 };
 
 /** Returns whether the page is in Chinese, which the app may have changed. */
-export const isChinese = () => document.documentElement.lang === "zh-Hant";
+const isChinese = () => document.documentElement.lang === "zh-Hant";
 
 /** Returns a text with its values. `{count, plural, …}` becomes the form for the number. */
 export function sentence(key, values = {}) {
