@@ -1,7 +1,7 @@
 // The filters: a histogram with a range for each number, and chips for choices.
 
 import { button, color, contextOf, element } from "./elements.js";
-import { columnName, number, sentence, translated } from "./words.js";
+import { columnName, number, sentence, translated, valueText } from "./words.js";
 import { written } from "./table.js";
 
 export const BINS = 48;
@@ -102,8 +102,7 @@ class Choice {
     [this.column, this.#filter, this.#changed] = [column, filter, changed];
     const values = column.values.map((value, at) => ({ value, at })).filter(({ value }) => value !== "");
     this.#chips = values.slice(0, MAX_CHIPS).map(({ value, at }) => {
-      const text = column.name === "format" ? value.toUpperCase() : column.name === "status" ? sentence(value) : value;
-      const chip = element("button", { type: "button", class: "chip", onclick: () => this.#toggle(value) }, [element("span", { textContent: text }), element("small")]);
+      const chip = element("button", { type: "button", class: "chip", onclick: () => this.#toggle(value) }, [element("span", { textContent: valueText(column, value) }), element("small")]);
       return { value, at, chip };
     });
     this.root = element("div", { class: "choice" }, [

@@ -9,7 +9,7 @@ import { chooseFolder, filesOfEntry } from "./folder.js";
 import { ClipMap } from "./map.js";
 import { Player } from "./player.js";
 import { ClipTable, written } from "./table.js";
-import { columnName, loadCatalogue, number, sentence } from "./words.js";
+import { columnName, loadCatalogue, number, sentence, valueText } from "./words.js";
 
 const WIDTHS = { least: 380, usual: 540, most: 1100 };
 /** The least width of the stage beside the panel, pixels. */
@@ -397,7 +397,7 @@ export class Panel {
       const ends = from === null ? `≤ ${written(to, column)}` : to === null ? `≥ ${written(from, column)}` : `${written(from, column)} – ${written(to, column)}`;
       return { text: `${columnName(column)} ${ends}`, clear: () => delete ranges[name] };
     });
-    for (const [name, values] of Object.entries(choices)) active.push({ text: values.join(", "), clear: () => delete choices[name] });
+    for (const [name, values] of Object.entries(choices)) active.push({ text: values.map((value) => valueText(columnOf(name), value)).join(", "), clear: () => delete choices[name] });
     if (copies !== "all") active.push({ text: `${sentence("copies")}: ${sentence(copies === "hide" ? "copiesHide" : "copiesOnly")}`, clear: () => { this.#filter.copies = "all"; } });
     return active;
   }

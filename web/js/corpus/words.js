@@ -240,6 +240,12 @@ export async function loadCatalogue() {
 /** Returns a text of the corpus, such as the name of a metric, in the language of the page. */
 export const translated = (text) => (isChinese() && catalogue?.[text]) || text;
 
+/** Returns a value of a column of choices as it is shown. */
+export function valueText({ name }, value) {
+  if (name === "format") return value.toUpperCase();
+  return name === "status" ? sentence(value) : value;
+}
+
 /** Returns the name of a column. */
 export function columnName({ name, label }) {
   return Object.hasOwn(ENGLISH, name) ? sentence(name) : translated(label);
