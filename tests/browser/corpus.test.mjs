@@ -270,7 +270,7 @@ onOneBackend("hosts without ranges and damaged files are told in a sentence", as
   };
   await told({ cors: false }, /does not let other pages read its files \(CORS\)/);
   await told({ change: (name, bytes) => (name === "corpus.json" ? null : bytes) }, /There is no corpus\.json at this address/);
-  await told({ change: (name, bytes) => (name === "corpus.json" ? Buffer.from("{") : bytes) }, /is no JSON/);
+  await told({ change: (name, bytes) => (name === "corpus.json" ? Buffer.from("{") : bytes) }, /does not describe a corpus: it is not JSON/);
   await told({ change: (name, bytes) => (name === "corpus.json" ? Buffer.from("{}") : bytes) }, /older version of Segue/);
   await told({ change: (name, bytes) => (name === "columns.bin" ? bytes.subarray(0, bytes.length / 2) : bytes) }, /The corpus is damaged: columns\.bin/);
   await told({ change: (name, bytes) => (name === "columns.bin" ? Buffer.alloc(bytes.length, 7) : bytes) }, /columns\.bin/);
@@ -299,7 +299,7 @@ onOneBackend("hosts without ranges and damaged files are told in a sentence", as
     assert.match(text, /There is no clip 00000000-0 in this corpus/);
   });
   await segue("set", { corpus: "ftp://example.org/takes" });
-  assert.match(await message(page), /This is no address of a corpus/);
+  assert.match(await message(page), /This is not the address of a corpus/);
 });
 
 // Fails when the panel covers a phone's stage for good, or its targets are too small.
