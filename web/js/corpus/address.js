@@ -39,8 +39,10 @@ export function clipAddress(corpus, id, range) {
   return `${corpus}#${id}${range ? `@${seconds(range[0])}-${seconds(range[1])}` : ""}`;
 }
 
-/** Returns a number of seconds as addresses have it. */
-export const seconds = (value) => String(Number(value.toFixed(2)));
+/** Returns seconds as addresses have them: hundredths. */
+export const rounded = (value) => Number(value.toFixed(2));
+
+const seconds = (value) => String(rounded(value));
 
 /** Returns the corpus, the id and the range, if any, of a clip's address; null if it is none. */
 export function clipOf(address) {

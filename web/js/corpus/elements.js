@@ -72,11 +72,12 @@ export function contextOf(canvas, size = sizeOf(canvas)) {
 /** Returns a colour of panel.css by its name. */
 export const color = (name, of) => getComputedStyle(of).getPropertyValue(`--${name}`).trim();
 
-/** Returns a function that calls `act` once after the last of several calls. */
+/** Returns a function that calls `act` once after the last of several calls, unless `cancel` is called before. */
 export function delayed(act, ms) {
   let timer;
-  return (...args) => {
+  const later = (...args) => {
     clearTimeout(timer);
     timer = setTimeout(act, ms, ...args);
   };
+  return Object.assign(later, { cancel: () => clearTimeout(timer) });
 }
