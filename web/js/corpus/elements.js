@@ -50,7 +50,22 @@ export function button({ icon: sign, text, name, title, ...properties }) {
   ]);
 }
 
-const sizeOf = ({ clientWidth, clientHeight }) => ({ width: clientWidth, height: clientHeight });
+/** Makes a row of which one is chosen. */
+export function segments(name, choices) {
+  const move = (event) => {
+    const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
+    if (!step) return;
+    event.preventDefault();
+    const at = choices.findIndex(({ isChosen }) => isChosen);
+    choices.at((at + step) % choices.length).choose();
+  };
+  return element("div", { class: "segments", role: "radiogroup", "aria-label": name, onkeydown: move }, choices.map(({ text, isChosen, choose }) => element("button", {
+    type: "button", role: "radio", "aria-checked": String(isChosen), tabIndex: isChosen ? 0 : -1, textContent: text, onclick: choose,
+  })));
+}
+
+/** Returns the size of an element, in CSS pixels. */
+export const sizeOf = ({ clientWidth, clientHeight }) => ({ width: clientWidth, height: clientHeight });
 
 /** Sizes a canvas for its place, in device pixels, and returns its context, in CSS pixels. */
 export function sized(canvas, { width, height } = sizeOf(canvas)) {

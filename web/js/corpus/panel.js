@@ -3,9 +3,10 @@
 import { corpusAddress, corpusName, clipAddress } from "./address.js";
 import { clipsRead, corpusAt, corpusOf } from "./client.js";
 import { Dock, lengthText } from "./dock.js";
-import { button, delayed, element, icon } from "./elements.js";
-import { BINS, Filters, LAST, segments } from "./filters.js";
+import { button, delayed, element, icon, segments } from "./elements.js";
+import { Filters, LAST } from "./filters.js";
 import { chooseFolder, filesOfEntry } from "./folder.js";
+import { BINS } from "./histogram.js";
 import { ClipMap } from "./map.js";
 import { Player } from "./player.js";
 import { ClipTable, written } from "./table.js";
@@ -649,7 +650,7 @@ export class Panel {
     if (this.#root.dataset.theme === word) return;
     for (const part of [this.#root, this.#back, this.#targets]) part.dataset.theme = word;
     this.#map?.draw();
-    this.#parts.filters?.update();
+    this.#parts.filters?.draw();
   }
 
   /** On a phone, shows the panel or the stage behind it. */
