@@ -12,7 +12,6 @@ export const LAST = ["frames", "fps", "height_m"];
 
 export class Filters {
   root;
-  #columns;
   #filter;
   #changed;
   #histograms;
@@ -27,7 +26,7 @@ export class Filters {
    * @param changed called after each change
    */
   constructor(columns, filter, changed) {
-    [this.#columns, this.#filter, this.#changed] = [columns, filter, changed];
+    [this.#filter, this.#changed] = [filter, changed];
     const numbers = columns.filter(({ kind, min, max }) => kind === "number" && min < max);
     const isLast = ({ name }) => Number(LAST.includes(name));
     this.#histograms = numbers.sort((one, other) => isLast(one) - isLast(other)).map((column) => new Histogram(column, filter, () => {

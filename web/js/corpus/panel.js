@@ -255,6 +255,7 @@ export class Panel {
       cells: (rows) => this.#client.call("cells", { rows }),
       thumbnails: (rows, signal, onPart) => this.#client.call("thumbnails", { rows }, { signal, onPart }),
       drag: (row) => this.#drag(row),
+      say: (reason) => this.#say(reason),
     });
     parts.body = element("div", { class: "view" }, [parts.table.root]);
     parts.dock = new Dock({
@@ -432,10 +433,9 @@ export class Panel {
     filters.root.hidden = !this.#filtersOpen;
     this.#root.classList.toggle("filtering", this.#filtersOpen);
     filtersButton.setAttribute("aria-expanded", String(this.#filtersOpen));
-    if (this.#filtersOpen) {
-      if (this.#list) this.#list = undefined;
-      this.#refresh();
-    }
+    if (!this.#filtersOpen) return;
+    this.#list = undefined;
+    this.#refresh();
   }
 
   #leaveList() {

@@ -32,9 +32,12 @@ export class ClipTable {
   #batches = new Set();
   #frame = 0;
   #rested = delayed(() => this.#readThumbnails(), REST_MS);
+  #resized = new ResizeObserver(() => this.#later());
+  #hasEnded = false;
 
   /**
-   * @param hooks play(row), put(row, slot), sort(column), cells(rows), thumbnails(rows, signal, onPart), drag(row or undefined)
+   * @param hooks play(row), put(row, slot), sort(column), cells(rows), thumbnails(rows, signal, onPart), drag(row or undefined),
+   *   say(reason)
    */
   constructor(hooks) {
     this.#hooks = hooks;
@@ -44,15 +47,17 @@ export class ClipTable {
       class: "grid", role: "grid", tabIndex: 0, "aria-label": sentence("clips"), onkeydown: (event) => this.#key(event), onscroll: () => this.#later(),
     }, [this.#head, this.#body]);
     this.root = this.#scroller;
-    new ResizeObserver(() => this.#later()).observe(this.#scroller);
+    this.#resized.observe(this.#scroller);
   }
 
   /** Shows these rows, with the moments that a search has found in them. */
   setRows(rows, hits = new Map()) {
     const before = this.#rows[this.#active];
+    const areSame = rows.length === this.#rows.length && hits.size === 0 && this.#hits.size === 0 && rows.every((row, at) => row === this.#rows[at]);
+    this.#scroller.setAttribute("aria-rowcount", rows.length + 1);
+    if (areSame) return;
     [this.#rows, this.#hits] = [rows, hits];
     this.#active = Math.max(rows.indexOf(before), 0);
-    this.#scroller.setAttribute("aria-rowcount", rows.length + 1);
     this.#scroller.scrollTop = 0;
     this.#clear();
     this.#later();
@@ -100,10 +105,14 @@ export class ClipTable {
     this.#scroller.focus({ preventScroll: true });
   }
 
-  /** Ends what is under way. */
+  /** Ends what is under way, and releases what is kept. */
   end() {
+    this.#hasEnded = true;
+    this.#rested.cancel();
+    this.#resized.disconnect();
     for (const { controller } of this.#batches) controller.abort();
     for (const url of this.#thumbnails.values()) if (url) URL.revokeObjectURL(url);
+    this.#thumbnails.clear();
     cancelAnimationFrame(this.#frame);
   }
 
@@ -114,6 +123,7 @@ export class ClipTable {
   }
 
   #later() {
+    if (this.#hasEnded) return;
     cancelAnimationFrame(this.#frame);
     this.#frame = requestAnimationFrame(() => this.#show());
   }
@@ -141,7 +151,6 @@ export class ClipTable {
     const first = Math.max(Math.floor(top / row) - BEYOND, 0);
     const last = Math.min(Math.ceil((top + heights.view) / row) + BEYOND, this.#rows.length);
     for (const [index, { root }] of this.#elements) {
-      // The active row has an element as long as the list has the keyboard: it is named by its id.
       if (index >= first && index < last) continue;
       root.remove();
       this.#elements.delete(index);
@@ -177,6 +186,8 @@ export class ClipTable {
     for (const row of wanted) this.#asked.add(row);
     try {
       for (const cell of await this.#hooks.cells(wanted)) this.#cells.set(cell.row, cell);
+    } catch (reason) {
+      return this.#hooks.say(reason);
     } finally {
       for (const row of wanted) this.#asked.delete(row);
     }
@@ -210,6 +221,7 @@ export class ClipTable {
   }
 
   #keep(row, png) {
+    if (this.#hasEnded) return;
     this.#thumbnails.set(row, png && URL.createObjectURL(new Blob([png], { type: "image/png" })));
     for (const [oldest, url] of this.#thumbnails) {
       if (this.#thumbnails.size <= MAX_THUMBNAILS) break;
@@ -329,7 +341,7 @@ export class ClipTable {
 
 /** Writes a value with as many decimals as its column needs. */
 export function written(value, { max, name }) {
-  if (["frames"].includes(name)) return number(Math.round(value));
+  if (name === "frames") return number(Math.round(value));
   const most = Math.abs(max ?? 1);
   const decimals = name === "seconds" || name === "distance" ? 2 : most >= 100 ? 0 : most >= 10 ? 1 : 2;
   return value.toFixed(decimals).replace(/^-(0(\.0*)?)$/, "$1");
