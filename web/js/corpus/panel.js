@@ -506,8 +506,8 @@ export class Panel {
         return [`${name.replaceAll("/", " ")}.npz`, bytes];
       };
       const clip = place.address ? { corpus: place.address, id: cell.id, range } : { read };
-      const isLast = await this.#player.put(clip, { slot, seconds });
-      if (!isLast || this.#client !== client) return;
+      await this.#player.put(clip, { slot, seconds });
+      if (this.#client !== client) return;
       const params = this.#api.params();
       if (!slot) await this.#setCurrent({ row, id: cell.id, name, seconds: cell.seconds, range, clipId: params.a });
     } catch (reason) {

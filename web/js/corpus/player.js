@@ -16,8 +16,11 @@ export class Player {
   #discard;
   /** Clips that were only looked at: id in the library by address or by a key of its own. */
   #lookedAt = new Map();
+  /** Addresses whose clips the app was asked for, and that failed or gave way to a newer click. */
+  #dropped = new Set();
   #queue = Promise.resolve();
-  #latest = 0;
+  /** Drops the clip that is being put on the stage to be looked at. */
+  #drop = new AbortController();
 
   /**
    * @param api the page's API
@@ -32,26 +35,33 @@ export class Player {
    * @param clip { corpus, id, range }; `read` instead of `corpus` returns its name and bytes
    * @param options.slot "A" or "B" of the open lab; without it, the clip plays alone
    * @param options.seconds where it begins to play
-   * @returns whether it was the latest that was asked for: of several at once only the last is put
+   *
+   * Of several that are asked for, those that would play alone give way to the last one: they end
+   * with an `AbortError`, also while they are read.
    */
   put(clip, options = {}) {
-    const number = ++this.#latest;
-    const done = this.#queue.then(() => (number === this.#latest || options.slot ? this.#put(clip, options) : false));
+    this.#drop.abort(new DOMException("another clip was asked for", "AbortError"));
+    this.#drop = new AbortController();
+    const signal = options.slot ? undefined : this.#drop.signal;
+    const done = this.#queue.then(() => this.#put(clip, options, signal));
     this.#queue = done.catch(() => {});
     return done;
   }
 
-  async #put({ corpus, id, range, read }, { slot, seconds }) {
+  async #put({ corpus, id, range, read }, { slot, seconds }, signal) {
+    signal?.throwIfAborted();
     const params = this.#api.params();
     const address = corpus && clipAddress(corpus, id, range);
-    const clipId = address ? await this.#fetch(address, params) : await this.#load(await read());
+    const clipId = address ? await this.#fetch(address, params, signal) : await this.#load(await unlessDropped(read(), signal));
     const lab = !slot ? "view" : slot === "B" && WITHOUT_B.has(params.lab) ? "blend" : params.lab;
     const values = { lab, [slot === "B" ? "b" : "a"]: clipId };
     const wanted = { ...this.#api.params(), ...values };
-    const dropped = this.#unused(wanted, clipId);
-    values.src = addresses(wanted).filter((other) => !dropped.has(other)).join(" ");
+    this.#lookAtDropped(address);
+    const unused = this.#unused(wanted, clipId);
+    values.src = this.#sources(wanted).filter((other) => !unused.has(other)).join(" ");
     await this.#api.set(values);
-    for (const [key, old] of dropped) {
+    this.#dropped.clear();
+    for (const [key, old] of unused) {
       this.#lookedAt.delete(key);
       // It may be gone by the user's hand.
       try { this.#discard(old); } catch { /* nothing to discard */ }
@@ -59,33 +69,54 @@ export class Player {
     const key = address ?? clipId;
     if (slot) this.#lookedAt.delete(key);
     else if (!this.#lookedAt.has(key)) this.#lookedAt.set(key, clipId);
-    if (slot) return true;
+    if (slot || signal.aborted) return;
     this.#api.seek(seconds ?? 0);
     if (!window.matchMedia("(prefers-reduced-motion: reduce)").matches) this.#api.play();
-    return true;
   }
 
   /** Has the app load an address. Returns the id of the clip in the library. */
-  async #fetch(address, params) {
+  async #fetch(address, params, signal) {
     const sources = addresses(params);
-    if (!sources.includes(address) || this.#idOf(address) === undefined) {
-      let failure;
-      const stop = this.#api.on("error", ({ message }) => { failure ??= message; });
-      try {
-        // An address that is there already is fetched again only when it comes anew.
-        if (sources.includes(address)) await this.#api.set({ src: sources.filter((other) => other !== address).join(" ") });
-        const others = sources.filter((other) => other !== address).slice(-(MAX_SOURCES - 1));
-        // Both slots are named, so that the clip that comes takes neither by itself.
-        const here = new Set(this.#api.clips().map(({ id }) => id));
-        const slots = Object.fromEntries(["a", "b"].filter((key) => here.has(params[key])).map((key) => [key, params[key]]));
-        await this.#api.set({ src: [...others, address].join(" "), ...slots });
-        await this.#api.loaded();
-      } finally {
-        stop();
-      }
-      if (this.#idOf(address) === undefined) throw new Error(failure ?? address);
+    if (sources.includes(address) && this.#idOf(address) !== undefined) return this.#idOf(address);
+    let failure;
+    const stop = this.#api.on("error", ({ message }) => { failure ??= message; });
+    try {
+      await unlessDropped(this.#request(address, params, signal), signal);
+      const id = this.#idOf(address);
+      if (id === undefined) throw new Error(failure ?? address);
+      return id;
+    } catch (reason) {
+      this.#dropped.add(address);
+      throw reason;
+    } finally {
+      stop();
     }
-    return this.#idOf(address);
+  }
+
+  async #request(address, params, signal) {
+    const others = this.#sources(params).filter((other) => other !== address).slice(-(MAX_SOURCES - 1));
+    // An address that is there already is fetched again only when it comes anew.
+    if (addresses(params).includes(address)) await this.#api.set({ src: others.join(" ") });
+    signal?.throwIfAborted();
+    this.#dropped.delete(address);
+    // Both slots are named, so that the clip that comes takes neither by itself.
+    const here = new Set(this.#api.clips().map(({ id }) => id));
+    const slots = Object.fromEntries(["a", "b"].filter((key) => here.has(params[key])).map((key) => [key, params[key]]));
+    await this.#api.set({ src: [...others, address].join(" "), ...slots });
+    await this.#api.loaded();
+  }
+
+  /** Returns the addresses in the link, without those that were dropped: the app stops to read these. */
+  #sources(params) {
+    return addresses(params).filter((address) => !this.#dropped.has(address));
+  }
+
+  /** Takes clips that came though they were dropped for such that were looked at. */
+  #lookAtDropped(exceptAddress) {
+    for (const address of this.#dropped) {
+      const id = this.#idOf(address);
+      if (id !== undefined && address !== exceptAddress) this.#lookedAt.set(address, id);
+    }
   }
 
   async #load([name, bytes]) {
@@ -125,6 +156,15 @@ export class Player {
     }
     return undefined;
   }
+}
+
+/** Waits for a promise, unless the signal comes before. */
+function unlessDropped(promise, signal) {
+  if (!signal) return promise;
+  return new Promise((resolve, reject) => {
+    signal.addEventListener("abort", () => reject(signal.reason), { once: true });
+    promise.then(resolve, reject);
+  });
 }
 
 /** Returns the addresses of files in the link. */
