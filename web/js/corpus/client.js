@@ -12,6 +12,12 @@ const open = new Map();
 /** What is known of clips that were read, by their addresses: row, name and SHA-256 of the file. */
 export const clipsRead = new Map();
 
+/** The addresses of clips that are being read. */
+const reading = new Set();
+
+/** Returns whether a clip at an address was read, or is being read. */
+export const isRead = (address) => clipsRead.has(address) || reading.has(address);
+
 /** Returns the corpus at the address of its corpus.json. It may be still opening. */
 export function corpusAt(address) {
   let client = open.get(address);
@@ -42,9 +48,16 @@ export async function readClip(address, signal) {
   const clip = clipOf(address);
   if (!clip) throw new Error(sentence("noClipAddress", { address }));
   const client = corpusAt(clip.corpus);
-  await client.opened;
-  const { row, name, sha256, bytes } = await client.call("clip", clip, { signal });
-  clipsRead.set(address, { row, name, sha256 });
+  reading.add(address);
+  let bytes, name;
+  try {
+    await client.opened;
+    const read = await client.call("clip", clip, { signal });
+    ({ bytes, name } = read);
+    clipsRead.set(address, { row: read.row, name, sha256: read.sha256 });
+  } finally {
+    reading.delete(address);
+  }
   return [`${name.replaceAll("/", " ")}.npz`, bytes];
 }
 

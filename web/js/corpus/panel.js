@@ -1,14 +1,14 @@
 // The panel of a corpus, beside the stage; on a phone, over it. panel.css has its looks.
 
-import { corpusAddress, corpusName, clipAddress } from "./address.js";
-import { clipsRead, corpusAt, corpusOf } from "./client.js";
+import { clipAddress, clipOf, corpusAddress, corpusName } from "./address.js";
+import { clipsRead, corpusAt, corpusOf, isRead, readClip } from "./client.js";
 import { Dock, lengthText } from "./dock.js";
 import { button, delayed, element, icon, segments } from "./elements.js";
 import { Filters, LAST } from "./filters.js";
 import { chooseFolder, filesOfEntry } from "./folder.js";
 import { BINS } from "./histogram.js";
 import { ClipMap } from "./map.js";
-import { Player } from "./player.js";
+import { Player, addresses } from "./player.js";
 import { ClipTable, written } from "./table.js";
 import { columnName, loadCatalogue, number, sentence, valueText } from "./words.js";
 
@@ -564,15 +564,18 @@ export class Panel {
     await this.#showCurrent();
   }
 
-  /** Learns the names of the link's clips that came from the browser's storage. */
+  /**
+   * Learns the SHA-256 of the link's clips that came from the browser's storage: a name alone may be
+   * that of another clip. They are read for that, once.
+   */
   async #learn() {
-    for (const address of String(this.#api.params().src).split(" ")) {
-      const [corpus, clip] = address.split("#");
-      if (corpus !== this.#place.address || !clip || clipsRead.has(address)) continue;
-      const row = await this.#client.call("find", { id: clip.split("@")[0] });
+    for (const source of addresses(this.#api.params())) {
+      const clip = clipOf(source);
+      if (clip?.corpus !== this.#place.address || isRead(source)) continue;
+      const row = await this.#client.call("find", { id: clip.id });
       if (row === undefined) continue;
       const [{ name }] = await this.#client.call("cells", { rows: [row] });
-      if (!clipsRead.has(address)) clipsRead.set(address, { row, name });
+      if (this.#player.hasNamed(name) && !isRead(source)) await readClip(source).catch((reason) => console.info(reason));
     }
   }
 

@@ -128,10 +128,15 @@ export class Player {
   #idOf(address) {
     const read = clipsRead.get(address);
     if (!read) return undefined;
-    // Without a SHA-256, on an insecure address or of a file from the browser's storage, the name
-    // must do. Built-in clips have none.
+    // A page at an insecure address has no SHA-256 of its own, so that the name must do. Built-in
+    // clips have none.
     const isIt = ({ id, sha256 }) => (read.sha256 ? sha256 === read.sha256 : sha256 && stemOf(id) === read.name);
     return this.#api.clips().find(isIt)?.id;
+  }
+
+  /** Returns whether the library has a clip with the name of a clip of a corpus. */
+  hasNamed(name) {
+    return this.#api.clips().some(({ id, sha256 }) => sha256 && stemOf(id) === name);
   }
 
   /** Returns clips that were only looked at, and that nothing uses any more: their ids by their keys. */
@@ -168,7 +173,7 @@ function unlessDropped(promise, signal) {
 }
 
 /** Returns the addresses of files in the link. */
-const addresses = ({ src }) => String(src ?? "").split(/\s+/).filter(Boolean);
+export const addresses = ({ src }) => String(src ?? "").split(/\s+/).filter(Boolean);
 
 /** Returns the name of a clip's file without its ending, given the clip's id. */
 const stemOf = (id) => id.split("~")[0];
