@@ -41,6 +41,7 @@ export class ClipMap {
   #moved = 0;
   #hovered;
   #frame = 0;
+  #resized = new ResizeObserver(() => this.draw());
 
   /**
    * @param points x and y of each row, −1 to 1; not numbers where a clip has no place
@@ -65,7 +66,7 @@ export class ClipMap {
         button({ icon: "all", name: sentence("showAll"), onclick: () => this.#reset() }),
       ]),
     ]);
-    new ResizeObserver(() => this.draw()).observe(this.#canvas);
+    this.#resized.observe(this.#canvas);
   }
 
   /** Shows which rows fit the filters. */
@@ -80,6 +81,12 @@ export class ClipMap {
   setMarks(current, hits) {
     [this.#current, this.#hits] = [current, hits];
     this.draw();
+  }
+
+  /** Ends what is under way. */
+  end() {
+    cancelAnimationFrame(this.#frame);
+    this.#resized.disconnect();
   }
 
   /** Draws in the next frame. */

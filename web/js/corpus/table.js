@@ -36,7 +36,7 @@ export class ClipTable {
   #hasEnded = false;
 
   /**
-   * @param hooks play(row), put(row, slot), sort(column), cells(rows), thumbnails(rows, signal, onPart), drag(row or undefined),
+   * @param hooks play(row), put(row, slot), sort(column), cells(rows), thumbnails(rows, signal, onPart), drag(row),
    *   say(reason)
    */
   constructor(hooks) {
@@ -145,6 +145,8 @@ export class ClipTable {
   }
 
   #show() {
+    // A table that is hidden would go to its top.
+    if (!this.#scroller.clientHeight) return;
     const heights = this.#heights();
     const [row, top] = [this.#rowHeight, this.#top(heights)];
     this.#body.style.height = `${heights.height}px`;
@@ -260,7 +262,6 @@ export class ClipTable {
         event.dataTransfer.effectAllowed = "copy";
         this.#hooks.drag(row);
       },
-      ondragend: () => this.#hooks.drag(undefined),
     }, [
       element("div", { role: "gridcell", class: "strip" }, [image]),
       element("div", { role: "rowheader", class: "name" }, [title, more]),
