@@ -8,8 +8,8 @@ const WIDTHS = { least: 380, usual: 540, most: 1100 };
 /** The least width of the stage beside the panel, pixels. */
 const MIN_STAGE = 420;
 const WIDTH_KEY = "segue corpus width";
-/** The page is narrower than this on a phone. */
-const PHONE = window.matchMedia("(max-width: 700px)");
+/** A page on which panel and stage have no room beside each other, as in panel.css. */
+const PHONE = window.matchMedia("(max-width: 800px), (max-height: 480px)");
 
 export class Layout {
   #root;
