@@ -190,7 +190,7 @@ export class OpenCorpus {
     else if (this.#filtersOpen) {
       this.#toggleFilters();
       this.#parts.toggle.focus();
-    } else return false;
+    } else if (document.activeElement !== this.#parts.search) return false; // Escape there clears the search
     return true;
   }
 
