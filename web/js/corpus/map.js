@@ -22,7 +22,7 @@ export class ClipMap {
   #canvas;
   #tip;
   /** How it is worked, until it is. */
-  #hint = element("p", { class: "hint", textContent: sentence("mapHelp") });
+  #hint = element("p", { class: "hint", id: "corpus-map-help", textContent: sentence("mapHelp") });
   #bright;
   #ink = new Ink();
   /** The points as they were drawn, and what tells that from other views. */
@@ -51,19 +51,20 @@ export class ClipMap {
     [this.#points, this.#hooks] = [points, hooks];
     this.#bright = new Uint8Array(points.length / 2);
     this.#canvas = element("canvas", {
-      role: "application", tabIndex: 0, "aria-label": `${sentence("map")}. ${sentence("mapHelp")} ${sentence("mapKeys")}`,
+      role: "application", tabIndex: 0, "aria-label": sentence("map"), "aria-describedby": "corpus-map-help corpus-map-keys", "aria-keyshortcuts": "Enter",
       onpointerdown: (event) => this.#press(event), onpointermove: (event) => this.#move(event), onpointerup: (event) => this.#release(event),
-      onpointercancel: (event) => this.#pointers.delete(event.pointerId), onpointerleave: () => this.#hover(undefined), onkeydown: (event) => this.#key(event),
+      onpointercancel: (event) => this.#pointers.delete(event.pointerId), onpointerleave: () => this.#hover(undefined),
     });
     this.#canvas.addEventListener("wheel", (event) => this.#wheel(event), { passive: false });
     this.#tip = element("div", { class: "tip", hidden: true });
-    this.root = element("div", { class: "map" }, [
+    this.root = element("div", { class: "map", onkeydown: (event) => this.#key(event) }, [
       this.#canvas, this.#tip,
       this.#hint,
+      element("p", { class: "hint keys", id: "corpus-map-keys", textContent: sentence("mapKeys") }),
       element("div", { class: "zoom" }, [
-        button({ icon: "plus", name: sentence("zoomIn"), onclick: () => this.#zoomBy(1.6) }),
-        button({ icon: "minus", name: sentence("zoomOut"), onclick: () => this.#zoomBy(1 / 1.6) }),
-        button({ icon: "all", name: sentence("showAll"), onclick: () => this.#reset() }),
+        button({ icon: "plus", name: sentence("zoomIn"), title: `${sentence("zoomIn")} (+)`, "aria-keyshortcuts": "Plus", onclick: () => this.#zoomBy(1.6) }),
+        button({ icon: "minus", name: sentence("zoomOut"), title: `${sentence("zoomOut")} (-)`, "aria-keyshortcuts": "-", onclick: () => this.#zoomBy(1 / 1.6) }),
+        button({ icon: "all", name: sentence("showAll"), title: `${sentence("showAll")} (0)`, "aria-keyshortcuts": "0", onclick: () => this.#reset() }),
       ]),
     ]);
     this.#resized.observe(this.#canvas);
@@ -252,13 +253,14 @@ export class ClipMap {
   }
 
   #key(event) {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
     const step = 40;
     const moves = { ArrowLeft: [step, 0], ArrowRight: [-step, 0], ArrowUp: [0, step], ArrowDown: [0, -step] };
     if (event.key in moves) this.#pan(...moves[event.key]);
     else if (event.key === "+" || event.key === "=") this.#zoomBy(1.4);
     else if (event.key === "-") this.#zoomBy(1 / 1.4);
     else if (event.key === "0") this.#reset();
-    else if (event.key === "Enter") {
+    else if (event.key === "Enter" && event.target === this.#canvas) {
       const row = this.#find([this.#canvas.clientWidth / 2, this.#canvas.clientHeight / 2], Infinity);
       if (row !== undefined) this.#hooks.play(row);
     } else return;

@@ -177,7 +177,7 @@ export class Panel {
         ]),
         open ? open.buildViews() : null,
         button({ text: sentence("stage"), class: "to-stage", onclick: () => this.#layout.showPanel(false) }),
-        button({ icon: "close", name: sentence("closeCorpus"), class: "quiet close", onclick: () => this.#close() }),
+        button({ icon: "close", name: sentence("closeCorpus"), class: "quiet close", "aria-keyshortcuts": "Escape", onclick: () => this.#close() }),
       ]),
       ...parts,
       this.#layout.build(),

@@ -44,7 +44,7 @@ export class ClipTable {
     this.#head = element("div", { class: "head", role: "row" });
     this.#body = element("div", { class: "body", role: "rowgroup" });
     this.#scroller = element("div", {
-      class: "grid", role: "grid", tabIndex: 0, "aria-label": sentence("clips"), onkeydown: (event) => this.#key(event), onscroll: () => this.#later(),
+      class: "grid", role: "grid", tabIndex: 0, "aria-label": sentence("clips"), "aria-keyshortcuts": "Enter A B", onkeydown: (event) => this.#key(event), onscroll: () => this.#later(),
     }, [this.#head, this.#body]);
     this.root = this.#scroller;
     this.#resized.observe(this.#scroller);
