@@ -52,7 +52,7 @@ export class ClipMap {
     this.#bright = new Uint8Array(points.length / 2);
     this.#canvas = element("canvas", {
       role: "application", tabIndex: 0, "aria-label": sentence("map"), "aria-describedby": "corpus-map-help corpus-map-keys", "aria-keyshortcuts": "Enter",
-      onpointerdown: (event) => this.#press(event), onpointermove: (event) => this.#move(event), onpointerup: (event) => this.#release(event),
+      onpointerdown: (event) => this.#press(event), onpointermove: (event) => this.#point(event), onpointerup: (event) => this.#release(event),
       onpointercancel: (event) => this.#pointers.delete(event.pointerId), onpointerleave: () => this.#hover(undefined),
     });
     this.#canvas.addEventListener("wheel", (event) => this.#wheel(event), { passive: false });
@@ -189,12 +189,13 @@ export class ClipMap {
   #press(event) {
     if (event.button !== 0) return;
     this.#hint.hidden = true;
+    this.#hover(undefined);
     this.#canvas.setPointerCapture(event.pointerId);
     this.#pointers.set(event.pointerId, this.#at(event));
     this.#moved = this.#pointers.size > 1 ? Infinity : 0;
   }
 
-  #move(event) {
+  #point(event) {
     const at = this.#at(event);
     const before = this.#pointers.get(event.pointerId);
     if (!before) {
@@ -228,9 +229,7 @@ export class ClipMap {
 
   #pan(dx, dy) {
     const [across, up] = this.#scale;
-    this.#centre[0] = Math.min(Math.max(this.#centre[0] - dx / across, -1), 1);
-    this.#centre[1] = Math.min(Math.max(this.#centre[1] + dy / up, -1), 1);
-    this.draw();
+    this.#move([this.#centre[0] - dx / across, this.#centre[1] + dy / up]);
   }
 
   /** Zooms about a place, which stays where it is; without one, about the middle. */
@@ -241,14 +240,19 @@ export class ClipMap {
     this.#zoom = Math.min(Math.max(this.#zoom * factor, 1), MAX_ZOOM);
     const [fromLeft, fromTop] = [x - clientWidth / 2, y - clientHeight / 2];
     const after = this.#scale;
-    this.#centre[0] += fromLeft / before[0] - fromLeft / after[0];
-    this.#centre[1] -= fromTop / before[1] - fromTop / after[1];
-    if (this.#zoom === 1) this.#centre = [0, 0];
-    this.draw();
+    const [right, up] = [fromLeft / before[0] - fromLeft / after[0], fromTop / before[1] - fromTop / after[1]];
+    this.#move(this.#zoom === 1 ? [0, 0] : [this.#centre[0] + right, this.#centre[1] - up]);
   }
 
   #reset() {
-    [this.#zoom, this.#centre] = [1, [0, 0]];
+    this.#zoom = 1;
+    this.#move([0, 0]);
+  }
+
+  /** Shows another place of the map in the middle. The hint was at a point that has moved. */
+  #move(centre) {
+    this.#centre = centre.map((value) => Math.min(Math.max(value, -1), 1));
+    this.#hover(undefined);
     this.draw();
   }
 
