@@ -197,7 +197,7 @@ onOneBackend("more like this finds moments in the corpus, from its clips and fro
     const map = page.getByRole("application", { name: /^Map/ });
     await until("the map is drawn", () => map.evaluate((canvas) => new Uint32Array(canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data.buffer).some(Boolean)));
     assert.deepEqual(await faults(page), [], "map");
-    const before = (await segue("params")).a;
+    await segue("set", { a: "walk" });
     await map.focus();
     await page.keyboard.press("ArrowRight");
     await page.keyboard.press("ArrowRight");
@@ -205,7 +205,7 @@ onOneBackend("more like this finds moments in the corpus, from its clips and fro
     await page.keyboard.press("Enter");
     await until("the point in the middle plays", async () => {
       const { a } = await segue("params");
-      return a !== before || (await corpusClips(segue)).some(({ id }) => id === a);
+      return (await corpusClips(segue)).some(({ id }) => id === a);
     });
   });
 });
@@ -273,7 +273,7 @@ onOneBackend("hosts without ranges and damaged files are told in a sentence", as
   await told({ change: (name, bytes) => (name === "corpus.json" ? Buffer.from("{") : bytes) }, /does not describe a corpus: it is not JSON/);
   await told({ change: (name, bytes) => (name === "corpus.json" ? Buffer.from("{}") : bytes) }, /older version of Segue/);
   await told({ change: (name, bytes) => (name === "columns.bin" ? bytes.subarray(0, bytes.length / 2) : bytes) }, /The corpus is damaged: columns\.bin/);
-  await told({ change: (name, bytes) => (name === "columns.bin" ? Buffer.alloc(bytes.length, 7) : bytes) }, /columns\.bin/);
+  await told({ change: (name, bytes) => (name === "columns.bin" ? Buffer.alloc(bytes.length, 7) : bytes) }, /The corpus is damaged/);
   await told({ ranges: false, stated: (name) => (name.startsWith("poses") ? 64 << 20 : undefined) }, /sends whole files instead of the parts/, play);
   await told({ change: (name, bytes) => (name.startsWith("poses") ? bytes.subarray(0, 100) : bytes) }, /is shorter than corpus\.json says/, play);
   await told({ change: (name, bytes) => (name.startsWith("poses") ? Buffer.alloc(bytes.length, 0xff) : bytes) }, /could not be played/, play);
