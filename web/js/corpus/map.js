@@ -70,6 +70,10 @@ export class ClipMap {
     this.#resized.observe(this.#canvas);
   }
 
+  focus() {
+    this.#canvas.focus({ preventScroll: true });
+  }
+
   /** Shows which rows fit the filters. */
   setRows(rows) {
     this.#bright.fill(0);

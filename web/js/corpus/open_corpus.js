@@ -1,15 +1,12 @@
-// A corpus that is open: its clips in a table and on a map, with a search and filters. What is on the
-// stage beside it has playback.js.
+// A corpus that is open: its clips, with a search and filters. views.js shows them, and playback.js has
+// what is on the stage beside it.
 
-import { shownColumns } from "./columns.js";
-import { button, delayed, element, icon, segments } from "./elements.js";
+import { button, delayed, element, icon } from "./elements.js";
 import { Filters } from "./filters.js";
 import { BINS } from "./histogram.js";
-import { ClipMap } from "./map.js";
 import { Playback } from "./playback.js";
 import { SetFilters } from "./set_filters.js";
-import { ClipTable } from "./table.js";
-import { hintOf } from "./thumbnail.js";
+import { Views } from "./views.js";
 import { number, sentence } from "./words.js";
 
 export class OpenCorpus {
@@ -23,10 +20,9 @@ export class OpenCorpus {
   #rows = new Uint32Array();
   /** A search or copies instead of all clips: { word, values } of its title, and `hits` or `near`. */
   #list;
-  #view = "table";
+  /** Of its views: what stays in another language. */
+  #viewState = { view: "table" };
   #filtersOpen = false;
-  #map;
-  #points;
   /** The elements, in the language of the page. */
   #parts = {};
   #refreshes = 0;
@@ -82,7 +78,7 @@ export class OpenCorpus {
     await this.refresh();
     this.ask("prepare").catch((reason) => console.info(reason));
     await this.follow();
-    this.#parts.table.reveal(this.#playback.row);
+    this.#parts.views.reveal(this.#playback.row);
   }
 
   /** Closes it. */
@@ -98,10 +94,8 @@ export class OpenCorpus {
   }
 
   #endParts() {
-    this.#parts.table?.end();
+    this.#parts.views?.end();
     this.#parts.filters?.end();
-    this.#map?.end();
-    this.#map = undefined;
     this.#hooks.targets.hide();
   }
 
@@ -123,43 +117,37 @@ export class OpenCorpus {
       filters.update();
       changed();
     });
-    const table = new ClipTable({
+    const views = new Views(this, this.#viewState, {
       play: (row) => this.#play(row),
       put: (row, slot) => this.#playback.put(row, slot),
       sort: (column) => this.#sort(column),
-      cells: (rows) => this.ask("cells", { rows }),
-      thumbnails: (rows, signal, onPart) => this.ask("thumbnails", { rows }, { signal, onPart }),
       drag: (row) => this.#hooks.targets.show((slot) => this.#playback.put(row, slot)),
-      say: (reason) => this.say(reason),
     });
     this.#parts = {
-      search, toggle, filters, set, table,
+      search, toggle, filters, set, views,
       count: element("p", { class: "count", role: "status" }),
       problem: element("p", { class: "problem", role: "alert" }),
-      body: element("div", { class: "view" }, [table.root]),
     };
-    const { count, problem, body } = this.#parts;
+    const { count, problem } = this.#parts;
     return [
       element("div", { class: "tools" }, [element("div", { class: "field" }, [icon("search"), search]), toggle]),
       filters.root, set.root,
       element("div", { class: "status" }, [count]),
-      problem, body, this.#playback.build(),
+      problem, views.root, this.#playback.build(),
     ];
   }
 
-  /** Makes the choice between table and map. */
-  buildViews() {
-    const choices = ["table", "map"].map((view) => ({ text: sentence(view), isChosen: this.#view === view, choose: () => this.#choose(view) }));
-    this.#parts.views = segments(sentence("view"), choices);
-    return this.#parts.views;
+  /** The choice between table and map. */
+  get viewChoice() {
+    return this.#parts.views.choice;
   }
 
   /** Shows its clips in elements that were built again. */
   async rebuilt() {
     this.#showRows();
-    await Promise.all([this.#showView(), this.#count()]).catch((reason) => this.say(reason));
     this.#playback.show();
-    this.#parts.table.reveal(this.#playback.row);
+    this.#parts.views.reveal(this.#playback.row);
+    await this.#count().catch((reason) => this.say(reason));
   }
 
   /** Shows what went wrong, or nothing any more. */
@@ -171,16 +159,13 @@ export class OpenCorpus {
 
   /** Shows as many columns as there is room for: those first that are looked at. */
   layOut() {
-    const { table, body } = this.#parts;
-    if (!table) return;
-    const hasHits = this.#list?.hits !== undefined;
-    const place = { width: body.clientWidth, isPhone: this.#hooks.layout.isPhone, hasHits };
-    table.setColumns(shownColumns(this.#facts.columns, this.#filter, place), hasHits ? {} : this.#filter.sort);
+    const place = { isPhone: this.#hooks.layout.isPhone, hasHits: this.#list?.hits !== undefined };
+    this.#parts.views?.layOut(this.#facts.columns, this.#filter, place);
   }
 
   /** Draws again what has colours of the theme. */
   draw() {
-    this.#map?.draw();
+    this.#parts.views.draw();
     this.#parts.filters.draw();
   }
 
@@ -202,12 +187,12 @@ export class OpenCorpus {
   }
 
   #searchKey(event) {
-    const { search, table } = this.#parts;
+    const { search, views } = this.#parts;
     if (event.key === "Escape" && search.value) {
       event.stopPropagation();
       search.value = "";
       this.#searchFor("");
-    } else if (event.key === "ArrowDown" || event.key === "Enter") table.focus();
+    } else if (event.key === "ArrowDown" || event.key === "Enter") views.focus();
     else return;
     event.preventDefault();
   }
@@ -249,11 +234,10 @@ export class OpenCorpus {
   }
 
   #showRows() {
-    const { table, count, set, toggle, search } = this.#parts;
+    const { views, count, set, toggle, search } = this.#parts;
     const [list, all] = [this.#list, this.#facts.rows];
     this.layOut();
-    table.setRows(this.#rows, new Map(list?.hits?.map((hit) => [hit.row, hit])));
-    this.#map?.setRows(this.#rows);
+    views.setRows(this.#rows, list?.hits);
     this.mark(this.#playback.row);
     const texts = { count: number(this.#rows.length), all: number(all) };
     const counted = this.#rows.length === 0 ? sentence("noClips") : this.#rows.length === all ? sentence("allClips", { count: texts.all }) : sentence("someClips", texts);
@@ -266,8 +250,7 @@ export class OpenCorpus {
 
   /** Marks the row that is on the stage. */
   mark(row) {
-    this.#parts.table.setCurrent(row);
-    this.#map?.setMarks(row, this.#list?.hits ? [...this.#rows] : []);
+    this.#parts.views.mark(row);
   }
 
   #sort(by) {
@@ -281,11 +264,11 @@ export class OpenCorpus {
 
   #toggleFilters() {
     this.#filtersOpen = !this.#filtersOpen;
-    const { filters, toggle, body } = this.#parts;
+    const { filters, toggle, views } = this.#parts;
     filters.root.hidden = !this.#filtersOpen;
-    body.parentElement.classList.toggle("filtering", this.#filtersOpen);
+    views.root.parentElement.classList.toggle("filtering", this.#filtersOpen);
     toggle.setAttribute("aria-expanded", String(this.#filtersOpen));
-    if (this.#list) {
+    if (this.#list && this.#filtersOpen) {
       this.#list = undefined;
       this.refresh();
     } else {
@@ -307,41 +290,13 @@ export class OpenCorpus {
   async #showList(list) {
     this.#list = list;
     await this.refresh();
-    if (this.#view === "table") this.#parts.table.focus();
+    this.#parts.views.focus();
   }
 
   #leaveList() {
     this.#list = undefined;
     this.refresh();
-    this.#parts.table.focus();
-  }
-
-  // The views.
-
-  async #choose(view) {
-    this.#view = view;
-    const { views } = this.#parts;
-    const hadFocus = views.contains(document.activeElement);
-    views.replaceWith(this.buildViews());
-    if (hadFocus) this.#parts.views.querySelector("[aria-checked='true']").focus({ preventScroll: true });
-    await this.#showView().catch((reason) => this.say(reason));
-  }
-
-  async #showView() {
-    const { table, body } = this.#parts;
-    if (this.#view === "map") {
-      this.#points ??= await this.ask("map");
-      if (body !== this.#parts.body) return;
-      if (!this.#map) {
-        this.#map = new ClipMap(this.#points, { play: (row) => this.#play(row), describe: (row) => hintOf(this, row) });
-        body.append(this.#map.root);
-      }
-      this.#map.setRows(this.#rows);
-      this.mark(this.#playback.row);
-    }
-    table.root.hidden = this.#view !== "table";
-    if (this.#map) this.#map.root.hidden = this.#view !== "map";
-    this.layOut();
+    this.#parts.views.focus();
   }
 
   // The stage.

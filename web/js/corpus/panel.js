@@ -175,7 +175,7 @@ export class Panel {
         element("div", { class: "who", title: place?.address ?? (place?.files ? sentence("localLink") : "") }, [
           element("h1", { textContent: place?.name ?? sentence("corpus") }), element("small", { textContent: about }),
         ]),
-        open ? open.buildViews() : null,
+        open ? open.viewChoice : null,
         button({ text: sentence("stage"), class: "to-stage", onclick: () => this.#layout.showPanel(false) }),
         button({ icon: "close", name: sentence("closeCorpus"), class: "quiet close", "aria-keyshortcuts": "Escape", onclick: () => this.#close() }),
       ]),

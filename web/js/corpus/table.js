@@ -105,6 +105,11 @@ export class ClipTable {
     this.#scroller.focus({ preventScroll: true });
   }
 
+  /** Shows the rows in sight, after the table was hidden. */
+  update() {
+    this.#later();
+  }
+
   /** Ends what is under way, and releases what is kept. */
   end() {
     this.#hasEnded = true;
