@@ -59,6 +59,8 @@ onOneBackend("corpus opens as a table that is searched, sorted and filtered", as
     assert.ok(found.names.every((name) => name.includes(first.names[0].split(" ")[0])), found.names.join());
     await search.press("Escape");
     await rowsAre(page, "the search is cleared", ({ count }) => count === first.count);
+    await search.press("Escape");
+    assert.equal(await page.locator("#corpus").count(), 1, "Escape in an empty search closes nothing");
 
     const length = page.getByRole("columnheader", { name: "Length" });
     await length.getByRole("button").click();
@@ -78,6 +80,7 @@ onOneBackend("corpus opens as a table that is searched, sorted and filtered", as
     assert.match(fewer.status, new RegExp(`^${fewer.count} of ${first.count} clips`));
     await page.locator("#corpus .set-filters button").first().click();
     await rowsAre(page, "the range is gone", ({ count }) => count === first.count);
+    await until("the focus stays in the panel", () => page.getByRole("button", { name: "Filters" }).evaluate((button) => button === document.activeElement));
     const slider = histogram.getByRole("slider").first();
     await slider.focus();
     for (let press = 0; press < 24; press++) await page.keyboard.press("ArrowRight");
@@ -149,6 +152,22 @@ onOneBackend("click plays a clip, and the link shows the same to others", async 
     });
     await again.page.getByRole("button", { name: "Close the corpus" }).click();
     await until("it is closed", async () => (await again.segue("params")).corpus === "" && (await again.page.locator("#corpus").count()) === 0);
+  });
+});
+
+// Fails when a click waits for an older one whose clip is still read, or leaves that clip behind.
+onOneBackend("newer click in a corpus replaces one that is still read", async ({ open }) => {
+  await corpusServer(FOLDER, { after: 500 }, async (address) => {
+    const { page, segue } = await open(link(address), DESK);
+    const { playable: names } = await opened(page);
+    const row = (name) => page.locator("#corpus .row").filter({ has: page.locator(`b:text-is("${name}")`) });
+    await row(names[0]).click();
+    await row(names[1]).click();
+    await until("the newer one plays, alone", async () => {
+      const [{ a, src }, clips] = [await segue("params"), await corpusClips(segue)];
+      return clips.length === 1 && clips[0].id === a && clips[0].name === names[1] && src.split(" ").length === 1;
+    });
+    assert.equal(await page.locator("#corpus .problem").textContent(), "");
   });
 });
 
@@ -319,5 +338,13 @@ onOneBackend("on a phone the stage is behind the panel, a tap away", async ({ op
     await until("it is Chinese", () => page.getByPlaceholder("搜尋名稱與標籤").isVisible());
     await opened(page);
     assert.deepEqual(await faults(page), [], "phone");
+    // A phone on its side, and the narrowest panel beside a stage.
+    for (const [width, height, panel] of [[844, 390, 844], [810, 800, 390]]) {
+      await page.setViewportSize({ width, height });
+      await until(`names have room at ${width} × ${height}`, () => page.evaluate((panel) => {
+        const [corpus, name] = ["#corpus", "#corpus .row .name"].map((path) => document.querySelector(path)?.getBoundingClientRect().width ?? 0);
+        return Math.abs(corpus - panel) < 2 && name > 100;
+      }, panel));
+    }
   });
 });
