@@ -123,7 +123,9 @@ export class ClipMap {
     const context = sized(canvas);
     const view = this.#view();
     if (this.#drawn !== view.text) {
-      const picture = context.createImageData(canvas.width, canvas.height);
+      const { width, height } = canvas;
+      const hasSize = this.#picture?.width === width && this.#picture.height === height;
+      const picture = hasSize ? this.#picture : context.createImageData(width, height);
       this.#isDrawing = true;
       try {
         await inTurns(this.#ink.draw(new Uint32Array(picture.data.buffer), view));
