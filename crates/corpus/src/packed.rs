@@ -1,7 +1,7 @@
 //! Compressed columns: raw deflate (RFC 1951) with the lengths before and after it.
 //!
-//! `miniz_oxide` is used directly: which encoder `flate2` uses depends on the program around it, and
-//! so would the bytes of a corpus.
+//! `miniz_oxide` is used directly: which encoder `flate2` uses depends on the program around it,
+//! and so would the bytes of a corpus.
 
 use crate::CorpusError;
 use crate::bytes::{Reader, push_u32};

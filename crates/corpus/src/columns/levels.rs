@@ -22,8 +22,8 @@ pub(crate) struct Levels {
 
 impl Levels {
     /// Returns levels that span some values. 0 is one of them. `step` is their distance in the
-    /// scale of the inverse hyperbolic sine: beyond the scale, the relative error is at most half of
-    /// it.
+    /// scale of the inverse hyperbolic sine: beyond the scale, the relative error is at most half
+    /// of it.
     pub(crate) fn spanning(values: impl Iterator<Item = f64>, step: f64) -> Self {
         let limited = |value: f64| value.clamp(-LIMITS[1], LIMITS[1]);
         let finite = values.filter(|value| value.is_finite());

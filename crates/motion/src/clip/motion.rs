@@ -59,9 +59,9 @@ impl PartialEq for Motion {
     }
 }
 
-/// Returns roles with the body plan of a clip: that of the rest pose, or, where that does not stand,
-/// that of the frames ([`Roles::with_plan_of`]). It belongs to a file: a part of its clip, or a
-/// result, has the plan of its roles.
+/// Returns roles with the body plan of a clip: that of the rest pose, or, where that does not
+/// stand, that of the frames ([`Roles::with_plan_of`]). It belongs to a file: a part of its clip,
+/// or a result, has the plan of its roles.
 #[must_use]
 pub fn with_body_plan_of(clip: &Clip, roles: Roles) -> Roles {
     let step = clip.frames().div_ceil(MAX_PLAN_SAMPLES).max(1);
@@ -196,8 +196,8 @@ impl Motion {
         }
     }
 
-    /// Returns the same motion with corrected roles, and the body plan that goes with them. Roles of
-    /// joints that the skeleton does not have, as they may be stored for another version of the
+    /// Returns the same motion with corrected roles, and the body plan that goes with them. Roles
+    /// of joints that the skeleton does not have, as they may be stored for another version of the
     /// clip, are ignored.
     #[must_use]
     pub fn with_corrected_roles(self, roles: &Roles) -> Self {

@@ -37,8 +37,8 @@ struct RoleJoint {
 /// At most one joint per [`Role`], and the [`BodyPlan`].
 ///
 /// It is stored (serde) as a map from role to joint index; that of a quadruped has its plan, too.
-/// The indices belong to one skeleton. Since roles may come from outside, every user of them treats an
-/// index that the skeleton does not have as a missing role.
+/// The indices belong to one skeleton. Since roles may come from outside, every user of them treats
+/// an index that the skeleton does not have as a missing role.
 ///
 /// ```
 /// use segue_motion::skeleton::{Joint, Role, Roles, Skeleton};
