@@ -1,6 +1,7 @@
 //! The curves of a binary file, found without reading the scene: their keys in the few bytes that
 //! they have in the file.
 
+use crate::OpenError;
 use crate::records::{Array, FIRST, Form, Record, write_array};
 use flate2::{Decompress, FlushDecompress, Status};
 use std::collections::HashMap;
@@ -38,6 +39,8 @@ pub(crate) struct CurveFile<'a> {
     /// The objects that are written in another way, in the order of the file.
     pub(crate) pieces: Vec<Piece>,
     pub(crate) curves: Vec<Curve<'a>>,
+    /// The memory that the curves take, bytes.
+    pub(crate) memory: usize,
 }
 
 /// An object that is written in another way.
@@ -133,7 +136,22 @@ impl<'a> CurveFile<'a> {
     /// Finds the curves of a file that has more than `most` keys; `None` for other files than
     /// binary ones from version 7.0, for those that are broken, and where too many curves cannot be
     /// taken apart.
-    pub(crate) fn of(bytes: &'a [u8], most: usize) -> Option<Self> {
+    ///
+    /// # Errors
+    /// [`OpenError::Keys`] if the curves take more than `max_memory` bytes: packed keys may unfold
+    /// to a thousand times their size.
+    pub(crate) fn of(
+        bytes: &'a [u8],
+        most: usize,
+        max_memory: usize,
+    ) -> Result<Option<Self>, OpenError> {
+        let mut unpacker = Unpacker::new(max_memory);
+        let found = Self::find(bytes, most, &mut unpacker);
+        if unpacker.is_full { Err(OpenError::Keys) } else { Ok(found) }
+    }
+
+    /// Finds the curves as [`CurveFile::of`] does; `None` also if the unpacker is full.
+    fn find(bytes: &'a [u8], most: usize, unpacker: &mut Unpacker<'a>) -> Option<Self> {
         let form = Form::of(bytes)?;
         let (mut end, mut objects) = (FIRST, None);
         while let Some(record) = form.record(bytes, end)? {
@@ -154,13 +172,17 @@ impl<'a> CurveFile<'a> {
         if keys <= most {
             return None;
         }
-        let (mut pieces, mut curves) = (Vec::new(), Vec::new());
-        let mut unpacker = Unpacker::default();
+        let count = records.iter().filter(is_curve).count();
+        unpacker.keep(count.saturating_mul(size_of::<Curve<'_>>()))?;
+        let (mut pieces, mut curves) = (Vec::new(), Vec::with_capacity(count));
         for record in records {
             let place = record.at..record.end;
             match record.name {
                 CURVE => {
-                    let read = Keys::read(bytes, form, &record, &mut unpacker);
+                    let read = Keys::read(bytes, form, &record, unpacker);
+                    if unpacker.is_full {
+                        return None;
+                    }
                     if read.is_some() {
                         pieces.push(Piece::Curve(place, curves.len()));
                     }
@@ -175,7 +197,8 @@ impl<'a> CurveFile<'a> {
         // The others are in each part.
         let taken_apart: usize = curves.iter().map(Curve::len).sum();
         let is_worth_it = keys.saturating_sub(taken_apart) <= most / 4;
-        is_worth_it.then_some(Self { bytes, form, objects, end, pieces, curves })
+        let memory = unpacker.kept;
+        is_worth_it.then_some(Self { bytes, form, objects, end, pieces, curves, memory })
     }
 }
 
@@ -283,11 +306,17 @@ impl<'a> Keys<'a> {
         let (flags, tangents) = (array(FLAGS, b"i")?, array(TANGENTS, b"fi")?);
         let runs = array(RUNS, b"i")?;
         let count = times.count;
-        let is_even =
-            values.count == count && flags.count == runs.count && tangents.count == 4 * runs.count;
+        let is_even = values.count == count
+            && runs.count <= count
+            && flags.count == runs.count
+            && tangents.count == 4 * runs.count;
         if !is_even {
             return None;
         }
+        // These three are unpacked together, and again when a part is written.
+        let together = [&runs, &flags, &tangents].map(|array| unpacked_bytes(array, 4));
+        let together = together.into_iter().try_fold(0, |sum: usize, own| sum.checked_add(own?))?;
+        unpacker.check(together)?;
         let mut left = count;
         for run in integers(&unpacked(&runs, size_of::<i32>())?) {
             left = left.saturating_sub(usize::try_from(run).ok().filter(|run| *run > 0)?);
@@ -297,7 +326,7 @@ impl<'a> Keys<'a> {
         let mut keys = Self {
             count,
             times: unpacker.times(&times)?,
-            values: Unpacker::numbers(&values, value_bytes)?,
+            values: unpacker.numbers(&values, value_bytes)?,
             value_bytes,
             flags,
             tangents,
@@ -329,6 +358,7 @@ impl<'a> Keys<'a> {
             let one = keys.values.get(..value_bytes.min(keys.values.len()))?;
             keys.values = Numbers::Own(one.into());
         }
+        unpacker.keep_own(&keys.values)?;
         Some(keys)
     }
 
@@ -455,44 +485,87 @@ fn integers(bytes: &[u8]) -> impl Iterator<Item = i32> {
     bytes.as_chunks::<4>().0.iter().map(|value| i32::from_le_bytes(*value))
 }
 
-/// Returns the bytes of an array of numbers of `size` bytes.
-fn unpacked<'a>(array: &Array<'a>, size: usize) -> Option<Numbers<'a>> {
-    Unpacker::numbers(array, size)
+/// Returns the memory for an array of numbers of `size` bytes, bytes: none if it is not packed;
+/// `None` if it cannot have that many numbers.
+fn unpacked_bytes(array: &Array<'_>, size: usize) -> Option<usize> {
+    /// The most that zlib packs into one byte, bytes.
+    const MAX_RATIO: usize = 1032;
+    let length = array.count.checked_mul(size)?;
+    if array.is_packed {
+        (length <= array.bytes.len().saturating_mul(MAX_RATIO)).then_some(length)
+    } else {
+        (length == array.bytes.len()).then_some(0)
+    }
 }
 
-/// Unpacks arrays.
-#[derive(Default)]
+/// Returns the numbers of an array, of `size` bytes each. There has to be memory for them
+/// ([`Unpacker::check`]).
+fn unpacked<'a>(array: &Array<'a>, size: usize) -> Option<Numbers<'a>> {
+    let length = unpacked_bytes(array, size)?;
+    if !array.is_packed {
+        return Some(Numbers::File(array.bytes));
+    }
+    let mut bytes: Arc<[u8]> = std::iter::repeat_n(0, length).collect();
+    let own = Arc::get_mut(&mut bytes)?;
+    let mut stream = Decompress::new(true);
+    let status = stream.decompress(array.bytes, own, FlushDecompress::Finish).ok()?;
+    let is_whole = status == Status::StreamEnd && stream.total_out() == length as u64;
+    is_whole.then_some(Numbers::Own(bytes))
+}
+
+/// Unpacks arrays, and counts the memory for them before it is allocated.
 struct Unpacker<'a> {
     /// The times so far by their packed bytes: most curves share theirs.
     times: HashMap<&'a [u8], Arc<[u8]>>,
+    /// The greatest memory, bytes.
+    most: usize,
+    /// The memory that is taken, bytes.
+    kept: usize,
+    /// Whether more was asked for.
+    is_full: bool,
 }
 
 impl<'a> Unpacker<'a> {
+    fn new(most: usize) -> Self {
+        Self { times: HashMap::new(), most, kept: 0, is_full: false }
+    }
+
+    /// Returns whether there are so many bytes for a while.
+    fn check(&mut self, bytes: usize) -> Option<()> {
+        self.is_full |= bytes > self.most.saturating_sub(self.kept);
+        (!self.is_full).then_some(())
+    }
+
+    /// Takes so many bytes for good.
+    fn keep(&mut self, bytes: usize) -> Option<()> {
+        self.check(bytes)?;
+        self.kept = self.kept.saturating_add(bytes);
+        Some(())
+    }
+
+    /// Takes the memory of numbers that are not those in the file.
+    fn keep_own(&mut self, numbers: &Numbers<'_>) -> Option<()> {
+        match numbers {
+            Numbers::File(_) => Some(()),
+            Numbers::Own(own) => self.keep(own.len()),
+        }
+    }
+
     fn times(&mut self, array: &Array<'a>) -> Option<Numbers<'a>> {
         if let Some(times) = self.times.get(array.bytes).filter(|_| array.is_packed) {
             return (times.len() == 8 * array.count).then(|| Numbers::Own(Arc::clone(times)));
         }
-        let times = Self::numbers(array, 8)?;
+        let times = self.numbers(array, size_of::<i64>())?;
         if let Numbers::Own(own) = &times {
+            self.keep(own.len())?;
             self.times.insert(array.bytes, Arc::clone(own));
         }
         Some(times)
     }
 
-    fn numbers(array: &Array<'a>, size: usize) -> Option<Numbers<'a>> {
-        /// The most that zlib packs into one byte, bytes.
-        const MAX_RATIO: usize = 1032;
-        let length = array.count.checked_mul(size)?;
-        if !array.is_packed {
-            return (array.bytes.len() == length).then_some(Numbers::File(array.bytes));
-        }
-        if length > array.bytes.len().saturating_mul(MAX_RATIO) {
-            return None;
-        }
-        let mut bytes = vec![0; length];
-        let mut stream = Decompress::new(true);
-        let status = stream.decompress(array.bytes, &mut bytes, FlushDecompress::Finish).ok()?;
-        let is_whole = status == Status::StreamEnd && stream.total_out() == length as u64;
-        is_whole.then(|| Numbers::Own(bytes.into()))
+    /// Returns the numbers of an array, of `size` bytes each. Their memory is not taken yet.
+    fn numbers(&mut self, array: &Array<'a>, size: usize) -> Option<Numbers<'a>> {
+        self.check(unpacked_bytes(array, size)?)?;
+        unpacked(array, size)
     }
 }

@@ -19,8 +19,11 @@ pub enum OpenError {
     Version,
     /// Its content needs more memory than [`max_memory`](crate::OpenOptions::max_memory), or than
     /// there is.
-    #[error("more content than fits into memory")]
+    #[error("more content than fits into memory: export fewer takes at once, or without meshes")]
     Memory,
+    /// The keys of its animations, unpacked, need more memory than that.
+    #[error("more keys than fit into memory: export fewer takes at once, or fewer keys")]
+    Keys,
     /// Nodes lie deeper below each other than the limit.
     #[error("nodes nested too deep")]
     Depth,

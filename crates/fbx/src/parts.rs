@@ -49,7 +49,8 @@ impl<'a> Parts<'a> {
         options: OpenOptions,
         progress: &mut dyn FnMut(usize) -> bool,
     ) -> Result<Option<(SceneRoot, Self)>, OpenError> {
-        let Some(file) = CurveFile::of(bytes, options.max_key_memory / KEY_BYTES) else {
+        let most = options.max_key_memory / KEY_BYTES;
+        let Some(file) = CurveFile::of(bytes, most, options.max_memory)? else {
             return Ok(None);
         };
         let mut parts = Self {
@@ -110,7 +111,11 @@ impl<'a> Parts<'a> {
         progress: &mut dyn FnMut(usize) -> bool,
     ) -> Result<SceneRoot, OpenError> {
         let cut = Cut::new(&self.file, pick, has_looks, self.ticks_per_sec);
-        let options = OpenOptions { meshes: has_looks, ..self.options };
+        let options = OpenOptions {
+            meshes: has_looks,
+            max_memory: self.options.max_memory.saturating_sub(self.file.memory),
+            ..self.options
+        };
         load(Source::Cut(cut), options, progress)
     }
 

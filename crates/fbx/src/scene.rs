@@ -24,7 +24,8 @@ const MIN_FORGOTTEN_BYTES: usize = 8 << 20;
 /// Limits of opening a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OpenOptions {
-    /// The greatest memory for the file's content, bytes.
+    /// The greatest memory for the file's content, bytes. While a file is read, it may take the
+    /// same again.
     pub max_memory: usize,
     /// Whether meshes are read.
     pub meshes: bool,
@@ -131,8 +132,10 @@ impl<'a> Scene<'a> {
                 let takes = parts.takes(&root);
                 return Ok(Self::new(bytes, options, root, takes, Some(parts)));
             }
-            Err(OpenError::Stopped) => return Err(OpenError::Stopped),
-            // Something is not as expected, and may be read nevertheless.
+            // Keys that are too many in parts are too many at once.
+            Err(error @ (OpenError::Stopped | OpenError::Keys)) => return Err(error),
+            // Something is not as expected, and may be read nevertheless, or refused for a better
+            // reason: a part has no length by which a cut-off array would be noticed.
             Ok(None) | Err(_) => {}
         }
         let root = load(Source::Bytes(bytes), options, progress)?;
@@ -333,7 +336,8 @@ pub(crate) fn load(
     progress: &mut dyn FnMut(usize) -> bool,
 ) -> Result<SceneRoot, OpenError> {
     let memory = || AllocatorOpts {
-        memory_limit: options.max_memory,
+        // Zero would stand for no limit.
+        memory_limit: options.max_memory.max(1),
         huge_threshold: CHUNK_BYTES / 16,
         max_chunk_size: CHUNK_BYTES,
         ..AllocatorOpts::default()

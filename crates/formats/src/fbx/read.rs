@@ -170,6 +170,11 @@ fn refusal(name: &str, error: &OpenError) -> ImportError {
             "a smaller scene",
             "export fewer takes at once, or without meshes",
         ),
+        OpenError::Keys => (
+            "more motion than fits into the memory that a file may take".into(),
+            "a shorter or a sparser animation",
+            "export a part of the animation, or at a lower frame rate",
+        ),
         OpenError::Depth => {
             ("nodes nested too deep".into(), "a skeleton", "export the skeleton alone")
         }

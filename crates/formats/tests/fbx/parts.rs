@@ -2,8 +2,10 @@
 
 use crate::document::{Element, Form, binary_in};
 use crate::examples;
+use crate::rig::{File, Track};
 use proptest::prelude::*;
-use segue_fbx::{OpenOptions, Scene};
+use segue_fbx::{OpenError, OpenOptions, Scene};
+use segue_formats::{ImportOptions, fbx};
 
 /// The memory of a part that holds a few dozen times of keys.
 const PART: usize = 64 << 10;
@@ -100,6 +102,41 @@ fn curves_that_go_on_behind_their_keys_are_read_whole() {
             assert_eq!(at(&whole), at(&parts));
         }
     }
+}
+
+/// Returns a file of 16 joints whose keys pack to a hundredth: of each curve, the first key alone
+/// has another value, and the times are a few ticks apart.
+fn dense(frames: usize) -> Vec<u8> {
+    let values = (0..frames).map(|frame| [f64::from(u8::from(frame == 0)); 3]);
+    let values: Vec<[f64; 3]> = values.collect();
+    let track =
+        |node| Track { node, property: "Lcl Rotation", values: values.clone(), is_mixed: false };
+    let mut file = File { fps: 1e12, ..examples::several_takes() };
+    file.takes.truncate(1);
+    file.takes[0].layers = vec![(0..file.nodes.len()).map(track).collect()];
+    binary_in(Form { version: 7400, is_packed: true }, &file.document())
+}
+
+#[test]
+fn keys_that_unpack_to_more_than_the_memory_are_refused() {
+    let (frames, joints) = (20_000, 16);
+    let bytes = dense(frames);
+    // The values of all curves, and times that they share.
+    let unpacked = frames * (4 * 3 * joints + 8);
+    assert!(bytes.len() < unpacked / 10, "{} bytes of {unpacked}", bytes.len());
+    let open = |max_memory: usize| {
+        let options = OpenOptions { max_memory, meshes: true, max_key_memory: PART };
+        Scene::open(&bytes, options, &mut |_| true)
+    };
+    for max_memory in [0, 1, 1 << 16, unpacked / 2, unpacked - 1] {
+        assert_eq!(open(max_memory).err(), Some(OpenError::Keys), "{max_memory} bytes");
+    }
+    assert!(open(2 * unpacked).is_ok_and(|scene| scene.is_in_parts()));
+    // The sentence says what to do.
+    let options = ImportOptions { max_bytes: bytes.len(), ..ImportOptions::default() };
+    let error = fbx::read("dense.fbx", &bytes, &options).unwrap_err();
+    assert!(error.to_string().contains("more motion than fits"), "{error}");
+    assert!(error.hint.is_some());
 }
 
 proptest! {
