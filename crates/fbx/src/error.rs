@@ -32,6 +32,13 @@ pub enum OpenError {
     Broken(String),
 }
 
+impl OpenError {
+    /// Returns the error for a file that is not the same when it is read again.
+    pub(crate) fn differs() -> Self {
+        Self::Broken("a file that differs from itself".into())
+    }
+}
+
 impl From<ufbx::Error> for OpenError {
     fn from(error: ufbx::Error) -> Self {
         match error.type_ {

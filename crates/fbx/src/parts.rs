@@ -5,7 +5,7 @@
 use crate::OpenError;
 use crate::curves::{Curve, CurveFile, KEY_BYTES, Pick, Shape};
 use crate::cut::Cut;
-use crate::scene::{Node, OpenOptions, Source, load, nodes};
+use crate::scene::{Node, OpenOptions, Source, are_same, load, nodes};
 use crate::take::{self, Curves, Take, WholeCurves};
 use std::ops::Range;
 use ufbx::{AnimCurve, SceneRoot};
@@ -64,10 +64,14 @@ impl<'a> Parts<'a> {
         let root = parts.load(&|_| Pick::Ends, options.meshes, progress)?;
         parts.ticks_per_sec = root.metadata.ktime_second as f64;
         parts.nodes = nodes(&root);
-        let bare = parts.load(&|_| Pick::Ends, false, progress)?;
-        if !parts.has_curves_of_file(&root) || !parts.is_like(&root) || !parts.is_like(&bare) {
+        if !parts.has_curves_of_file(&root) || !parts.is_like(&root) {
             return Ok(None);
         }
+        let bare = parts.load(&|_| Pick::Ends, false, progress)?;
+        if !parts.is_like(&bare) {
+            return Ok(None);
+        }
+        drop(bare);
         parts.of_takes = root.anim_stacks.into_iter().map(|take| parts.curves_of(take)).collect();
         parts.is_constant = parts.constant_curves(&root, progress)?;
         Ok(Some((root, parts)))
@@ -99,7 +103,7 @@ impl<'a> Parts<'a> {
         };
         let root = self.load(&pick, false, &mut |_| true)?;
         if !self.is_like(&root) {
-            return Err(OpenError::Broken("a file that differs from itself".into()));
+            return Err(OpenError::differs());
         }
         Ok(Window { take: index, span, root })
     }
@@ -121,13 +125,7 @@ impl<'a> Parts<'a> {
 
     /// Returns whether a scene has the nodes of the others, and as many curves as the file.
     fn is_like(&self, root: &SceneRoot) -> bool {
-        let nodes = nodes(root);
-        let is_same = |(one, other): (&Node, &Node)| {
-            one.name == other.name && one.parent == other.parent && one.local == other.local
-        };
-        root.anim_curves.len() == self.file.curves.len()
-            && nodes.len() == self.nodes.len()
-            && nodes.iter().zip(&self.nodes).all(is_same)
+        root.anim_curves.len() == self.file.curves.len() && are_same(&nodes(root), &self.nodes)
     }
 
     /// Returns whether a scene with the least of the keys has the curves in the order of the file.

@@ -85,6 +85,12 @@ pub fn read_with_progress(
         }
         Err(error) => return Err(refusal(name, &error)),
     };
+    // Returns whether to go on.
+    let mut drop_meshes = |scene: &mut Scene<'_>| match scene.drop_meshes(progress) {
+        Ok(()) => Ok(true),
+        Err(OpenError::Stopped) => Ok(false),
+        Err(error) => Err(refusal(name, &error)),
+    };
     let mut tally = Tally::default();
     let (meshes, left_out) = scene.meshes(MAX_VERTICES as usize);
     for _ in 0..left_out {
@@ -92,14 +98,16 @@ pub fn read_with_progress(
         tally.add(WarningKind::BrokenMesh { why }, None);
     }
     let mut materials = meshes.iter().flat_map(|mesh| &mesh.materials);
-    if materials.all(|material| material.texture.is_none()) {
-        scene.forget_looks().map_err(|error| refusal(name, &error))?;
+    if materials.all(|material| material.texture.is_none()) && !drop_meshes(&mut scene)? {
+        return Ok(None);
     }
     let mut textures = Textures::new(name, &scene, resolve, options.max_bytes);
     let meshes: Vec<PaintedMesh> = meshes.into_iter().map(|mesh| textures.painted(mesh)).collect();
     drop(textures);
     // Images are not needed any more.
-    scene.forget_looks().map_err(|error| refusal(name, &error))?;
+    if !drop_meshes(&mut scene)? {
+        return Ok(None);
+    }
     for _ in 0..scene.constraints() {
         tally.add(WarningKind::Constraints, None);
     }

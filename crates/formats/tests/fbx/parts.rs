@@ -22,7 +22,7 @@ fn is_same(bytes: &[u8], step: usize) {
     assert_eq!(whole.nodes(), parts.nodes());
     assert_eq!(whole.takes(), parts.takes());
     assert_eq!(whole.meshes(usize::MAX), parts.meshes(usize::MAX));
-    parts.forget_looks().expect("there is nothing to read");
+    parts.drop_meshes(&mut |_| panic!("read again")).expect("there is nothing to read");
     let (mut all, mut some) = (whole.poses(), parts.poses());
     for (take, found) in whole.takes().iter().enumerate() {
         let keys = &found.key_secs;
@@ -115,6 +115,41 @@ fn dense(frames: usize) -> Vec<u8> {
     file.takes.truncate(1);
     file.takes[0].layers = vec![(0..file.nodes.len()).map(track).collect()];
     binary_in(Form { version: 7400, is_packed: true }, &file.document())
+}
+
+#[test]
+fn meshes_are_dropped_by_one_more_reading_at_most() {
+    // So many keys that they take much memory without the meshes, too.
+    let mut file = examples::long();
+    for track in file.takes.iter_mut().flat_map(|take| &mut take.layers).flatten() {
+        track.values = track.values.repeat(10);
+    }
+    let bytes = binary_in(Form { version: 7400, is_packed: true }, &file.document());
+    let mut scene = open(&bytes, usize::MAX);
+    let before = scene.poses().transform(0, 3, 1.0).unwrap();
+    let mut readings = || {
+        // Within a reading, a report may be a few bytes behind the one before.
+        let half = bytes.len() / 2;
+        let (mut readings, mut last) = (0, usize::MAX);
+        let dropped = scene.drop_meshes(&mut |done| {
+            readings += usize::from(last >= half && done < half);
+            last = done;
+            true
+        });
+        dropped.map(|()| readings)
+    };
+    assert_eq!([readings(), readings(), readings()], [Ok(1), Ok(0), Ok(0)]);
+    assert_eq!(scene.poses().transform(0, 3, 1.0).unwrap(), before);
+}
+
+#[test]
+fn node_without_a_valid_place_is_read_again_as_it_was() {
+    let mut file = examples::long();
+    file.nodes[6].place = [f64::NAN, 0.0, 0.0];
+    let bytes = binary_in(Form { version: 7400, is_packed: true }, &file.document());
+    let scene = open(&bytes, PART);
+    assert!(scene.nodes().iter().any(|node| node.local.translation[0].is_nan()));
+    assert!(scene.is_in_parts());
 }
 
 #[test]
