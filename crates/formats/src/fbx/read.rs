@@ -70,13 +70,7 @@ pub fn read_with_progress(
     progress: &mut dyn FnMut(usize) -> bool,
 ) -> Result<Option<ImportedFile>, ImportError> {
     check_size(name, bytes, options)?;
-    let most = bytes.len().saturating_mul(MEMORY_RATIO).max(MIN_MEMORY);
-    let limits = OpenOptions {
-        max_memory: most.min(options.max_bytes.saturating_mul(4)),
-        meshes: true,
-        max_key_memory: (bytes.len() / KEY_MEMORY_SHARE).max(MIN_KEY_MEMORY),
-    };
-    let mut scene = match Scene::open(bytes, limits, progress) {
+    let mut scene = match Scene::open(bytes, limits(bytes.len(), options), progress) {
         Ok(scene) => scene,
         Err(OpenError::Stopped) => return Ok(None),
         // Too short for the head of a file, so that it seems cut off.
@@ -144,7 +138,7 @@ pub fn read_with_progress(
         upright,
         up: options.up.unwrap_or(stated_up),
         several: characters.len() > 1,
-        left: options.max_bytes.min(most),
+        left: options.max_bytes.min(max_memory(bytes.len())),
         tally,
         clips: Vec::new(),
     };
@@ -156,6 +150,20 @@ pub fn read_with_progress(
     }
     let warnings = reader.tally.into_warnings(b"");
     Ok(Some(ImportedFile { clips: reader.clips, warnings }))
+}
+
+/// Returns the memory that the content of a file may take, bytes.
+fn max_memory(size: usize) -> usize {
+    size.saturating_mul(MEMORY_RATIO).max(MIN_MEMORY)
+}
+
+/// Returns the limits of opening a file of a size in bytes.
+fn limits(size: usize, options: &ImportOptions) -> OpenOptions {
+    OpenOptions {
+        max_memory: max_memory(size).min(options.max_bytes.saturating_mul(4)),
+        meshes: true,
+        max_key_memory: (size / KEY_MEMORY_SHARE).max(MIN_KEY_MEMORY),
+    }
 }
 
 /// Returns the sentence about a file that cannot be opened.
@@ -380,4 +388,33 @@ impl Reader<'_> {
 fn take_name(name: &str) -> String {
     let mut parts = name.rsplit('|').filter(|part| !part.is_empty() && *part != "BaseLayer");
     parts.next().unwrap_or(name).to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fbx::{FbxOptions, write_fbx};
+    use segue_motion::clip::fixtures::wander_by;
+    use segue_motion::skeleton::fixtures::mixamo;
+
+    /// The memory of a key while it is read, bytes.
+    const KEY_BYTES: usize = 40;
+
+    #[test]
+    fn files_of_all_sizes_are_in_parts_if_their_keys_take_much() {
+        let rig = mixamo();
+        let mut in_parts = Vec::new();
+        for frames in [1, 30, 300, 1000, 3000, 10_000] {
+            let clip = wander_by(&rig, frames, 3, 0.5);
+            let bytes = write_fbx(&[&clip], &FbxOptions::default()).unwrap();
+            let limits = limits(bytes.len(), &ImportOptions::default());
+            // All joints turn about all axes; the root also moves.
+            let keys = frames * 3 * rig.len();
+            let scene = Scene::open(&bytes, limits, &mut |_| true).unwrap();
+            let takes_much = KEY_BYTES * keys > limits.max_key_memory;
+            assert_eq!(scene.is_in_parts(), takes_much, "{frames} frames, {} bytes", bytes.len());
+            in_parts.push(takes_much);
+        }
+        assert!(in_parts.is_sorted() && in_parts.contains(&false) && in_parts.contains(&true));
+    }
 }
