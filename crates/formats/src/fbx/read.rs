@@ -203,6 +203,14 @@ fn refusal(name: &str, error: &OpenError) -> ImportError {
     ImportError::whole_file(name, found, expected).with_hint(hint)
 }
 
+/// A motion with its size, in the unit and the axes of the file.
+struct MeasuredMotion {
+    raw: RawMotion,
+    t_pose_first_row: bool,
+    t_pose_dropped: bool,
+    measure: Measure,
+}
+
 struct Reader<'a> {
     name: &'a str,
     scene: &'a Scene<'a>,
@@ -259,22 +267,24 @@ impl Reader<'_> {
                 return Ok(None);
             };
             let name = if is_only { stem(self.name).to_owned() } else { take_name(&found.name) };
+            let motion = self.measured(raw);
             let unit = match unit {
                 Some(unit) => unit,
-                None => *unit.insert(self.unit(&raw)),
+                None => *unit.insert(self.unit(&motion.measure)),
             };
             if let Some(found) = mesh.take() {
                 skin = Some(Arc::new(self.fitted(found, &rest, unit)));
             }
-            let clip = self.clip(raw, name, rate.fps, unit)?;
+            let clip = self.clip(motion, name, rate.fps, unit)?;
             self.clips.push(clip.with_mesh(skin.as_ref()));
         }
         if takes.is_empty() {
             self.tally.add(WarningKind::NoFrames, None);
-            let unit = self.unit(&rest);
-            let skin = mesh.take().map(|found| Arc::new(self.fitted(found, &rest, unit)));
+            let motion = self.measured(rest);
+            let unit = self.unit(&motion.measure);
+            let skin = mesh.take().map(|found| Arc::new(self.fitted(found, &motion.raw, unit)));
             let fps = given_fps.unwrap_or(self.scene.fps());
-            let clip = self.clip(rest, stem(self.name).to_owned(), fps, unit)?;
+            let clip = self.clip(motion, stem(self.name).to_owned(), fps, unit)?;
             self.clips.push(clip.with_mesh(skin.as_ref()));
         }
         Ok(Some(()))
@@ -314,10 +324,24 @@ impl Reader<'_> {
         Ok(())
     }
 
+    /// Drops the first row where it is a T-pose that is not wanted, and measures the motion: once,
+    /// because that takes its world positions in many frames.
+    fn measured(&mut self, mut raw: RawMotion) -> MeasuredMotion {
+        let t_pose_first_row = raw.frames() > 1 && first_frame_is_t_pose(&raw);
+        let t_pose_dropped = t_pose_first_row && self.options.drop_t_pose;
+        if t_pose_first_row {
+            self.tally.add(WarningKind::TPose { dropped: t_pose_dropped }, None);
+        }
+        if t_pose_dropped {
+            raw.drop_first_frame();
+        }
+        let measure = measure(&raw, self.options.metres_per_unit, Some(self.up));
+        MeasuredMotion { raw, t_pose_first_row, t_pose_dropped, measure }
+    }
+
     /// Returns the metres per unit: as given, as the file states it, or, where that makes the body
     /// smaller than a mouse or taller than a house, by the height.
-    fn unit(&mut self, raw: &RawMotion) -> f64 {
-        let found = measure(raw, self.options.metres_per_unit, Some(self.up));
+    fn unit(&mut self, found: &Measure) -> f64 {
         let inferred = found.provenance.metres_per_unit;
         if !found.unit_detected {
             return inferred;
@@ -342,26 +366,18 @@ impl Reader<'_> {
 
     fn clip(
         &mut self,
-        mut raw: RawMotion,
+        motion: MeasuredMotion,
         name: String,
         fps: f64,
         metres_per_unit: f64,
     ) -> Result<ImportedClip, ImportError> {
-        let t_pose_first_row = raw.frames() > 1 && first_frame_is_t_pose(&raw);
-        let t_pose_dropped = t_pose_first_row && self.options.drop_t_pose;
-        if t_pose_first_row {
-            self.tally.add(WarningKind::TPose { dropped: t_pose_dropped }, None);
-        }
-        if t_pose_dropped {
-            raw.drop_first_frame();
-        }
+        let MeasuredMotion { mut raw, t_pose_first_row, t_pose_dropped, measure } = motion;
         let is_given = self.options.metres_per_unit.is_some();
-        let found = measure(&raw, self.options.metres_per_unit, Some(self.up));
         let measure = Measure {
             provenance: Provenance { metres_per_unit, up: self.up },
             unit_detected: !is_given,
             unit_unknown: false,
-            ..found
+            ..measure
         };
         let mendable = raw.warn_of_unlikely(&measure, self.options, &mut self.tally);
         let name = match raw.joints.first() {
