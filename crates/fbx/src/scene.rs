@@ -364,7 +364,8 @@ pub(crate) fn load(
         ignore_geometry: !options.meshes,
         ignore_embedded: !options.meshes,
         skip_mesh_parts: true,
-        clean_skin_weights: true,
+        // `mesh::influences` reads the weights of clusters, in less memory.
+        skip_skin_vertices: true,
         node_depth_limit: MAX_DEPTH,
         progress_cb: ProgressCb::Mut(&mut report),
         progress_interval_hint: PROGRESS_BYTES,
