@@ -25,6 +25,12 @@ const TANGENTS: &[u8] = b"KeyAttrDataFloat";
 const RUNS: &[u8] = b"KeyAttrRefCount";
 /// The records with the curve before its first key and behind its last one.
 const EXTRAPOLATIONS: [&[u8]; 2] = [b"Pre-Extrapolation", b"Post-Extrapolation"];
+/// The size of all arrays of curves as a multiple of the file's beyond which it is refused: few
+/// of them may be kept, but unpacking them would take hours. Those of recordings are about ten
+/// times as large as their files, and a thousand times is what zlib packs.
+const MAX_UNPACKED_RATIO: usize = 64;
+/// The size of all arrays of curves that is never refused for that, bytes.
+const MIN_UNPACKED: usize = 64 << 20;
 /// The size of the tangents of a run of keys, bytes.
 const TANGENT_BYTES: usize = 16;
 
@@ -138,14 +144,18 @@ impl<'a> CurveFile<'a> {
     /// taken apart.
     ///
     /// # Errors
-    /// [`OpenError::Keys`] if the curves take more than `max_memory` bytes: packed keys may unfold
-    /// to a thousand times their size.
+    /// [`OpenError::Keys`] if the curves take more than `max_memory` bytes, or unpack to many times
+    /// the size of the file.
     pub(crate) fn of(
         bytes: &'a [u8],
         most: usize,
         max_memory: usize,
     ) -> Result<Option<Self>, OpenError> {
-        let mut unpacker = Unpacker::new(max_memory);
+        let mut unpacker = Unpacker {
+            most: max_memory,
+            most_unpacked: bytes.len().saturating_mul(MAX_UNPACKED_RATIO).max(MIN_UNPACKED),
+            ..Unpacker::default()
+        };
         let found = Self::find(bytes, most, &mut unpacker);
         if unpacker.is_full { Err(OpenError::Keys) } else { Ok(found) }
     }
@@ -313,15 +323,19 @@ impl<'a> Keys<'a> {
         if !is_even {
             return None;
         }
+        let value_bytes = if values.kind == b'f' { 4 } else { 8 };
         // These three are unpacked together, and again when a part is written.
-        let together = [&runs, &flags, &tangents].map(|array| unpacked_bytes(array, 4));
-        let together = together.into_iter().try_fold(0, |sum: usize, own| sum.checked_add(own?))?;
+        let sizes = [&runs, &flags, &tangents].map(|array| unpacked_bytes(array, 4));
+        let [runs_size, flags_size, tangents_size] = sizes;
+        let together = runs_size?.saturating_add(flags_size?).saturating_add(tangents_size?);
         unpacker.check(together)?;
+        let [times_size, values_size] =
+            [unpacked_bytes(&times, size_of::<i64>())?, unpacked_bytes(&values, value_bytes)?];
+        unpacker.unpack(together.saturating_add(times_size).saturating_add(values_size))?;
         let mut left = count;
         for run in integers(&unpacked(&runs, size_of::<i32>())?) {
             left = left.saturating_sub(usize::try_from(run).ok().filter(|run| *run > 0)?);
         }
-        let value_bytes = if values.kind == b'f' { 4 } else { 8 };
         let is_cubic = integers(&unpacked(&flags, size_of::<i32>())?).any(|f| f & IS_CUBIC != 0);
         let mut keys = Self {
             count,
@@ -514,6 +528,7 @@ fn unpacked<'a>(array: &Array<'a>, size: usize) -> Option<Numbers<'a>> {
 }
 
 /// Unpacks arrays, and counts the memory for them before it is allocated.
+#[derive(Default)]
 struct Unpacker<'a> {
     /// The times so far by their packed bytes: most curves share theirs.
     times: HashMap<&'a [u8], Arc<[u8]>>,
@@ -521,13 +536,20 @@ struct Unpacker<'a> {
     most: usize,
     /// The memory that is taken, bytes.
     kept: usize,
+    /// The greatest size of all arrays, bytes, whether they are kept or not.
+    most_unpacked: usize,
+    /// Their size so far, bytes.
+    unpacked: usize,
     /// Whether more was asked for.
     is_full: bool,
 }
 
 impl<'a> Unpacker<'a> {
-    fn new(most: usize) -> Self {
-        Self { times: HashMap::new(), most, kept: 0, is_full: false }
+    /// Counts arrays of so many bytes.
+    fn unpack(&mut self, bytes: usize) -> Option<()> {
+        self.unpacked = self.unpacked.saturating_add(bytes);
+        self.is_full |= self.unpacked > self.most_unpacked;
+        (!self.is_full).then_some(())
     }
 
     /// Returns whether there are so many bytes for a while.

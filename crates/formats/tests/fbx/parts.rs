@@ -104,14 +104,14 @@ fn curves_that_go_on_behind_their_keys_are_read_whole() {
     }
 }
 
-/// Returns a file of 16 joints whose keys pack to a hundredth: of each curve, the first key alone
-/// has another value, and the times are a few ticks apart.
-fn dense(frames: usize) -> Vec<u8> {
-    let values = (0..frames).map(|frame| [f64::from(u8::from(frame == 0)); 3]);
+/// Returns a file of 16 joints whose keys pack to less than a hundredth: all of a take have one
+/// time, and all of a curve one value, or the first key another one.
+fn dense(frames: usize, is_level: bool) -> Vec<u8> {
+    let values = (0..frames).map(|frame| [f64::from(u8::from(frame == 0 && !is_level)); 3]);
     let values: Vec<[f64; 3]> = values.collect();
     let track =
         |node| Track { node, property: "Lcl Rotation", values: values.clone(), is_mixed: false };
-    let mut file = File { fps: 1e12, ..examples::several_takes() };
+    let mut file = File { fps: 1e20, ..examples::several_takes() };
     file.takes.truncate(1);
     file.takes[0].layers = vec![(0..file.nodes.len()).map(track).collect()];
     binary_in(Form { version: 7400, is_packed: true }, &file.document())
@@ -155,10 +155,10 @@ fn node_without_a_valid_place_is_read_again_as_it_was() {
 #[test]
 fn keys_that_unpack_to_more_than_the_memory_are_refused() {
     let (frames, joints) = (20_000, 16);
-    let bytes = dense(frames);
+    let bytes = dense(frames, false);
     // The values of all curves, and times that they share.
     let unpacked = frames * (4 * 3 * joints + 8);
-    assert!(bytes.len() < unpacked / 10, "{} bytes of {unpacked}", bytes.len());
+    assert!(bytes.len() < unpacked / 40, "{} bytes of {unpacked}", bytes.len());
     let open = |max_memory: usize| {
         let options = OpenOptions { max_memory, meshes: true, max_key_memory: PART };
         Scene::open(&bytes, options, &mut |_| true)
@@ -172,6 +172,17 @@ fn keys_that_unpack_to_more_than_the_memory_are_refused() {
     let error = fbx::read("dense.fbx", &bytes, &options).unwrap_err();
     assert!(error.to_string().contains("more motion than fits"), "{error}");
     assert!(error.hint.is_some());
+}
+
+#[test]
+fn keys_that_unpack_to_many_times_the_file_are_refused() {
+    // All keys of a level curve are kept as one, so that memory does not bound their number.
+    let (few, many) = (dense(20_000, true), dense(120_000, true));
+    let open = |bytes: &[u8]| {
+        let options = OpenOptions { max_memory: 1 << 30, meshes: true, max_key_memory: PART };
+        Scene::open(bytes, options, &mut |_| true).map(|scene| scene.is_in_parts())
+    };
+    assert_eq!((open(&few), open(&many)), (Ok(true), Err(OpenError::Keys)));
 }
 
 proptest! {
