@@ -131,7 +131,7 @@ impl<'a> Scene<'a> {
     ) -> Result<Self, OpenError> {
         match Parts::open(bytes, options, progress) {
             Ok(Some((root, parts))) => {
-                let takes = parts.takes(&root);
+                let takes = parts.takes(&root)?;
                 return Ok(Self::new(bytes, options, root, takes, Some(parts)));
             }
             // Keys that are too many in parts are too many at once.
@@ -141,8 +141,7 @@ impl<'a> Scene<'a> {
             Ok(None) | Err(_) => {}
         }
         let root = load(Source::Bytes(bytes), options, progress)?;
-        let stacks = root.anim_stacks.into_iter();
-        let takes = stacks.map(|stack| take::take(&root, stack, &WholeCurves)).collect();
+        let takes = take::takes(&root, &WholeCurves, options.max_memory)?;
         Ok(Self::new(bytes, options, root, takes, None))
     }
 
