@@ -17,6 +17,8 @@ const IS_CUBIC: i32 = 8;
 const NEIGHBOURS: usize = 3;
 /// The record of a curve.
 const CURVE: &[u8] = b"AnimationCurve";
+/// The records of meshes, materials and images.
+const LOOKS: [&[u8]; 6] = [b"Geometry", b"Video", b"Texture", b"Material", b"Deformer", b"Pose"];
 /// The records with the keys of a curve.
 const TIMES: &[u8] = b"KeyTime";
 const VALUES: &[u8] = b"KeyValueFloat";
@@ -171,37 +173,39 @@ impl<'a> CurveFile<'a> {
             end = record.end;
         }
         let objects = objects?;
-        let records = form.children(bytes, &objects)?;
-        let is_curve = |record: &&Record<'_>| record.name == CURVE;
-        let counts = records.iter().filter(is_curve).map(|curve| {
-            let children = form.children(bytes, curve)?;
-            let times = children.iter().find(|child| child.name == TIMES)?;
-            Some(Array::of(times)?.count)
-        });
-        let keys = counts.flatten().fold(0, usize::saturating_add);
+        let (mut keys, mut curve_count, mut piece_count) = (0_usize, 0_usize, 0_usize);
+        for record in form.iter_children(bytes, &objects) {
+            let record = record?;
+            if record.name == CURVE {
+                curve_count += 1;
+                let mut children = form.iter_children(bytes, &record).flatten();
+                let times = children.find(|child| child.name == TIMES);
+                let times = times.as_ref().and_then(Array::of);
+                keys = keys.saturating_add(times.map_or(0, |times| times.count));
+            }
+            piece_count += usize::from(record.name == CURVE || LOOKS.contains(&record.name));
+        }
         if keys <= most {
             return None;
         }
-        let count = records.iter().filter(is_curve).count();
-        unpacker.keep(count.saturating_mul(size_of::<Curve<'_>>()))?;
-        let (mut pieces, mut curves) = (Vec::new(), Vec::with_capacity(count));
-        for record in records {
+        unpacker.keep(curve_count.saturating_mul(size_of::<Curve<'_>>()))?;
+        unpacker.keep(piece_count.saturating_mul(size_of::<Piece>()))?;
+        let mut pieces = Vec::with_capacity(piece_count);
+        let mut curves = Vec::with_capacity(curve_count);
+        for record in form.iter_children(bytes, &objects) {
+            let record = record?;
             let place = record.at..record.end;
-            match record.name {
-                CURVE => {
-                    let read = Keys::read(bytes, form, &record, unpacker);
-                    if unpacker.is_full {
-                        return None;
-                    }
-                    if read.is_some() {
-                        pieces.push(Piece::Curve(place, curves.len()));
-                    }
-                    curves.push(Curve { record, keys: read });
+            if record.name == CURVE {
+                let read = Keys::read(bytes, form, &record, unpacker);
+                if unpacker.is_full {
+                    return None;
                 }
-                b"Geometry" | b"Video" | b"Texture" | b"Material" | b"Deformer" | b"Pose" => {
-                    pieces.push(Piece::Looks(place));
+                if read.is_some() {
+                    pieces.push(Piece::Curve(place, curves.len()));
                 }
-                _ => {}
+                curves.push(Curve { record, keys: read });
+            } else if LOOKS.contains(&record.name) {
+                pieces.push(Piece::Looks(place));
             }
         }
         // The others are in each part.
