@@ -18,7 +18,8 @@ const NEIGHBOURS: usize = 3;
 /// The record of a curve.
 const CURVE: &[u8] = b"AnimationCurve";
 /// The records of meshes, materials and images.
-const LOOKS: [&[u8]; 6] = [b"Geometry", b"Video", b"Texture", b"Material", b"Deformer", b"Pose"];
+const MESH_DATA: [&[u8]; 6] =
+    [b"Geometry", b"Video", b"Texture", b"Material", b"Deformer", b"Pose"];
 /// The records with the keys of a curve.
 const TIMES: &[u8] = b"KeyTime";
 const VALUES: &[u8] = b"KeyValueFloat";
@@ -57,13 +58,13 @@ pub(crate) enum Piece {
     /// A curve, by its index.
     Curve(Range<usize>, usize),
     /// A part of a mesh, a material or an image, which no transform depends on.
-    Looks(Range<usize>),
+    MeshData(Range<usize>),
 }
 
 impl Piece {
     pub(crate) fn place(&self) -> &Range<usize> {
         match self {
-            Self::Curve(place, _) | Self::Looks(place) => place,
+            Self::Curve(place, _) | Self::MeshData(place) => place,
         }
     }
 }
@@ -183,7 +184,7 @@ impl<'a> CurveFile<'a> {
                 let times = times.as_ref().and_then(Array::of);
                 keys = keys.saturating_add(times.map_or(0, |times| times.count));
             }
-            piece_count += usize::from(record.name == CURVE || LOOKS.contains(&record.name));
+            piece_count += usize::from(record.name == CURVE || MESH_DATA.contains(&record.name));
         }
         if keys <= most {
             return None;
@@ -204,8 +205,8 @@ impl<'a> CurveFile<'a> {
                     pieces.push(Piece::Curve(place, curves.len()));
                 }
                 curves.push(Curve { record, keys: read });
-            } else if LOOKS.contains(&record.name) {
-                pieces.push(Piece::Looks(place));
+            } else if MESH_DATA.contains(&record.name) {
+                pieces.push(Piece::MeshData(place));
             }
         }
         // The others are in each part.

@@ -137,12 +137,12 @@ impl<'a> Parts<'a> {
     fn load(
         &self,
         pick: &dyn Fn(usize) -> Pick,
-        has_looks: bool,
+        has_meshes: bool,
         progress: &mut dyn FnMut(usize) -> bool,
     ) -> Result<SceneRoot, OpenError> {
-        let cut = Cut::new(&self.file, pick, has_looks, self.ticks_per_sec);
+        let cut = Cut::new(&self.file, pick, has_meshes, self.ticks_per_sec);
         let options = OpenOptions {
-            meshes: has_looks,
+            meshes: has_meshes,
             max_memory: self.options.max_memory.saturating_sub(self.file.memory),
             ..self.options
         };

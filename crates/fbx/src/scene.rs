@@ -385,8 +385,8 @@ pub(crate) fn load(
     })
 }
 
-/// Returns whether the nodes of two readings of a file are the same, to the last bit: a file may
-/// have numbers that are none.
+/// Returns whether the nodes of two readings of a file are the same to the last bit, because a NaN
+/// in a file does not equal itself.
 pub(crate) fn are_same(nodes: &[Node], others: &[Node]) -> bool {
     let bits = |transform: &Transform| {
         let Transform { translation, rotation, scale } = transform;
