@@ -1,6 +1,7 @@
 //! The curves of a binary file, found without reading the scene: their keys in the few bytes that
 //! they have in the file.
 
+use crate::OpenError;
 use crate::records::{Array, FIRST, Form, Record, write_array};
 use flate2::{Decompress, FlushDecompress, Status};
 use std::collections::HashMap;
@@ -16,6 +17,9 @@ const IS_CUBIC: i32 = 8;
 const NEIGHBOURS: usize = 3;
 /// The record of a curve.
 const CURVE: &[u8] = b"AnimationCurve";
+/// The records of meshes, materials and images.
+const MESH_DATA: [&[u8]; 6] =
+    [b"Geometry", b"Video", b"Texture", b"Material", b"Deformer", b"Pose"];
 /// The records with the keys of a curve.
 const TIMES: &[u8] = b"KeyTime";
 const VALUES: &[u8] = b"KeyValueFloat";
@@ -24,6 +28,12 @@ const TANGENTS: &[u8] = b"KeyAttrDataFloat";
 const RUNS: &[u8] = b"KeyAttrRefCount";
 /// The records with the curve before its first key and behind its last one.
 const EXTRAPOLATIONS: [&[u8]; 2] = [b"Pre-Extrapolation", b"Post-Extrapolation"];
+/// The size of all arrays of curves as a multiple of the file's beyond which it is refused: few
+/// of them may be kept, but unpacking them would take hours. Those of recordings are about ten
+/// times as large as their files, and a thousand times is what zlib packs.
+const MAX_UNPACKED_RATIO: usize = 64;
+/// The size of all arrays of curves that is never refused for that, bytes.
+const MIN_UNPACKED: usize = 64 << 20;
 /// The size of the tangents of a run of keys, bytes.
 const TANGENT_BYTES: usize = 16;
 
@@ -38,6 +48,8 @@ pub(crate) struct CurveFile<'a> {
     /// The objects that are written in another way, in the order of the file.
     pub(crate) pieces: Vec<Piece>,
     pub(crate) curves: Vec<Curve<'a>>,
+    /// The memory that the curves take, bytes.
+    pub(crate) memory: usize,
 }
 
 /// An object that is written in another way.
@@ -46,13 +58,13 @@ pub(crate) enum Piece {
     /// A curve, by its index.
     Curve(Range<usize>, usize),
     /// A part of a mesh, a material or an image, which no transform depends on.
-    Looks(Range<usize>),
+    MeshData(Range<usize>),
 }
 
 impl Piece {
     pub(crate) fn place(&self) -> &Range<usize> {
         match self {
-            Self::Curve(place, _) | Self::Looks(place) => place,
+            Self::Curve(place, _) | Self::MeshData(place) => place,
         }
     }
 }
@@ -133,7 +145,26 @@ impl<'a> CurveFile<'a> {
     /// Finds the curves of a file that has more than `most` keys; `None` for other files than
     /// binary ones from version 7.0, for those that are broken, and where too many curves cannot be
     /// taken apart.
-    pub(crate) fn of(bytes: &'a [u8], most: usize) -> Option<Self> {
+    ///
+    /// # Errors
+    /// [`OpenError::Keys`] if the curves take more than `max_memory` bytes, or unpack to many times
+    /// the size of the file.
+    pub(crate) fn of(
+        bytes: &'a [u8],
+        most: usize,
+        max_memory: usize,
+    ) -> Result<Option<Self>, OpenError> {
+        let mut unpacker = Unpacker {
+            most: max_memory,
+            most_unpacked: bytes.len().saturating_mul(MAX_UNPACKED_RATIO).max(MIN_UNPACKED),
+            ..Unpacker::default()
+        };
+        let found = Self::find(bytes, most, &mut unpacker);
+        if unpacker.is_full { Err(OpenError::Keys) } else { Ok(found) }
+    }
+
+    /// Finds the curves as [`CurveFile::of`] does; `None` also if the unpacker is full.
+    fn find(bytes: &'a [u8], most: usize, unpacker: &mut Unpacker<'a>) -> Option<Self> {
         let form = Form::of(bytes)?;
         let (mut end, mut objects) = (FIRST, None);
         while let Some(record) = form.record(bytes, end)? {
@@ -143,39 +174,46 @@ impl<'a> CurveFile<'a> {
             end = record.end;
         }
         let objects = objects?;
-        let records = form.children(bytes, &objects)?;
-        let is_curve = |record: &&Record<'_>| record.name == CURVE;
-        let counts = records.iter().filter(is_curve).map(|curve| {
-            let children = form.children(bytes, curve)?;
-            let times = children.iter().find(|child| child.name == TIMES)?;
-            Some(Array::of(times)?.count)
-        });
-        let keys = counts.flatten().fold(0, usize::saturating_add);
+        let (mut keys, mut curve_count, mut piece_count) = (0_usize, 0_usize, 0_usize);
+        for record in form.iter_children(bytes, &objects) {
+            let record = record?;
+            if record.name == CURVE {
+                curve_count += 1;
+                let mut children = form.iter_children(bytes, &record).flatten();
+                let times = children.find(|child| child.name == TIMES);
+                let times = times.as_ref().and_then(Array::of);
+                keys = keys.saturating_add(times.map_or(0, |times| times.count));
+            }
+            piece_count += usize::from(record.name == CURVE || MESH_DATA.contains(&record.name));
+        }
         if keys <= most {
             return None;
         }
-        let (mut pieces, mut curves) = (Vec::new(), Vec::new());
-        let mut unpacker = Unpacker::default();
-        for record in records {
+        unpacker.keep(curve_count.saturating_mul(size_of::<Curve<'_>>()))?;
+        unpacker.keep(piece_count.saturating_mul(size_of::<Piece>()))?;
+        let mut pieces = Vec::with_capacity(piece_count);
+        let mut curves = Vec::with_capacity(curve_count);
+        for record in form.iter_children(bytes, &objects) {
+            let record = record?;
             let place = record.at..record.end;
-            match record.name {
-                CURVE => {
-                    let read = Keys::read(bytes, form, &record, &mut unpacker);
-                    if read.is_some() {
-                        pieces.push(Piece::Curve(place, curves.len()));
-                    }
-                    curves.push(Curve { record, keys: read });
+            if record.name == CURVE {
+                let read = Keys::read(bytes, form, &record, unpacker);
+                if unpacker.is_full {
+                    return None;
                 }
-                b"Geometry" | b"Video" | b"Texture" | b"Material" | b"Deformer" | b"Pose" => {
-                    pieces.push(Piece::Looks(place));
+                if read.is_some() {
+                    pieces.push(Piece::Curve(place, curves.len()));
                 }
-                _ => {}
+                curves.push(Curve { record, keys: read });
+            } else if MESH_DATA.contains(&record.name) {
+                pieces.push(Piece::MeshData(place));
             }
         }
         // The others are in each part.
         let taken_apart: usize = curves.iter().map(Curve::len).sum();
         let is_worth_it = keys.saturating_sub(taken_apart) <= most / 4;
-        is_worth_it.then_some(Self { bytes, form, objects, end, pieces, curves })
+        let memory = unpacker.kept;
+        is_worth_it.then_some(Self { bytes, form, objects, end, pieces, curves, memory })
     }
 }
 
@@ -283,21 +321,31 @@ impl<'a> Keys<'a> {
         let (flags, tangents) = (array(FLAGS, b"i")?, array(TANGENTS, b"fi")?);
         let runs = array(RUNS, b"i")?;
         let count = times.count;
-        let is_even =
-            values.count == count && flags.count == runs.count && tangents.count == 4 * runs.count;
+        let is_even = values.count == count
+            && runs.count <= count
+            && flags.count == runs.count
+            && tangents.count == 4 * runs.count;
         if !is_even {
             return None;
         }
+        let value_bytes = if values.kind == b'f' { 4 } else { 8 };
+        // These three are unpacked together, and again when a part is written.
+        let sizes = [&runs, &flags, &tangents].map(|array| unpacked_bytes(array, 4));
+        let [runs_size, flags_size, tangents_size] = sizes;
+        let together = runs_size?.saturating_add(flags_size?).saturating_add(tangents_size?);
+        unpacker.check(together)?;
+        let [times_size, values_size] =
+            [unpacked_bytes(&times, size_of::<i64>())?, unpacked_bytes(&values, value_bytes)?];
+        unpacker.unpack(together.saturating_add(times_size).saturating_add(values_size))?;
         let mut left = count;
         for run in integers(&unpacked(&runs, size_of::<i32>())?) {
             left = left.saturating_sub(usize::try_from(run).ok().filter(|run| *run > 0)?);
         }
-        let value_bytes = if values.kind == b'f' { 4 } else { 8 };
         let is_cubic = integers(&unpacked(&flags, size_of::<i32>())?).any(|f| f & IS_CUBIC != 0);
         let mut keys = Self {
             count,
             times: unpacker.times(&times)?,
-            values: Unpacker::numbers(&values, value_bytes)?,
+            values: unpacker.numbers(&values, value_bytes)?,
             value_bytes,
             flags,
             tangents,
@@ -329,6 +377,7 @@ impl<'a> Keys<'a> {
             let one = keys.values.get(..value_bytes.min(keys.values.len()))?;
             keys.values = Numbers::Own(one.into());
         }
+        unpacker.keep_own(&keys.values)?;
         Some(keys)
     }
 
@@ -455,44 +504,95 @@ fn integers(bytes: &[u8]) -> impl Iterator<Item = i32> {
     bytes.as_chunks::<4>().0.iter().map(|value| i32::from_le_bytes(*value))
 }
 
-/// Returns the bytes of an array of numbers of `size` bytes.
-fn unpacked<'a>(array: &Array<'a>, size: usize) -> Option<Numbers<'a>> {
-    Unpacker::numbers(array, size)
+/// Returns the memory for an array of numbers of `size` bytes, bytes: none if it is not packed;
+/// `None` if it cannot have that many numbers.
+fn unpacked_bytes(array: &Array<'_>, size: usize) -> Option<usize> {
+    /// The most that zlib packs into one byte, bytes.
+    const MAX_RATIO: usize = 1032;
+    let length = array.count.checked_mul(size)?;
+    if array.is_packed {
+        (length <= array.bytes.len().saturating_mul(MAX_RATIO)).then_some(length)
+    } else {
+        (length == array.bytes.len()).then_some(0)
+    }
 }
 
-/// Unpacks arrays.
+/// Returns the numbers of an array, of `size` bytes each. There has to be memory for them
+/// ([`Unpacker::check`]).
+fn unpacked<'a>(array: &Array<'a>, size: usize) -> Option<Numbers<'a>> {
+    let length = unpacked_bytes(array, size)?;
+    if !array.is_packed {
+        return Some(Numbers::File(array.bytes));
+    }
+    let mut bytes: Arc<[u8]> = std::iter::repeat_n(0, length).collect();
+    let own = Arc::get_mut(&mut bytes)?;
+    let mut stream = Decompress::new(true);
+    let status = stream.decompress(array.bytes, own, FlushDecompress::Finish).ok()?;
+    let is_whole = status == Status::StreamEnd && stream.total_out() == length as u64;
+    is_whole.then_some(Numbers::Own(bytes))
+}
+
+/// Unpacks arrays, and counts the memory for them before it is allocated.
 #[derive(Default)]
 struct Unpacker<'a> {
     /// The times so far by their packed bytes: most curves share theirs.
     times: HashMap<&'a [u8], Arc<[u8]>>,
+    /// The greatest memory, bytes.
+    most: usize,
+    /// The memory that is taken, bytes.
+    kept: usize,
+    /// The greatest size of all arrays, bytes, whether they are kept or not.
+    most_unpacked: usize,
+    /// Their size so far, bytes.
+    unpacked: usize,
+    /// Whether more was asked for.
+    is_full: bool,
 }
 
 impl<'a> Unpacker<'a> {
+    /// Counts arrays of so many bytes.
+    fn unpack(&mut self, bytes: usize) -> Option<()> {
+        self.unpacked = self.unpacked.saturating_add(bytes);
+        self.is_full |= self.unpacked > self.most_unpacked;
+        (!self.is_full).then_some(())
+    }
+
+    /// Returns whether there are so many bytes for a while.
+    fn check(&mut self, bytes: usize) -> Option<()> {
+        self.is_full |= bytes > self.most.saturating_sub(self.kept);
+        (!self.is_full).then_some(())
+    }
+
+    /// Takes so many bytes for good.
+    fn keep(&mut self, bytes: usize) -> Option<()> {
+        self.check(bytes)?;
+        self.kept = self.kept.saturating_add(bytes);
+        Some(())
+    }
+
+    /// Takes the memory of numbers that are not those in the file.
+    fn keep_own(&mut self, numbers: &Numbers<'_>) -> Option<()> {
+        match numbers {
+            Numbers::File(_) => Some(()),
+            Numbers::Own(own) => self.keep(own.len()),
+        }
+    }
+
     fn times(&mut self, array: &Array<'a>) -> Option<Numbers<'a>> {
         if let Some(times) = self.times.get(array.bytes).filter(|_| array.is_packed) {
             return (times.len() == 8 * array.count).then(|| Numbers::Own(Arc::clone(times)));
         }
-        let times = Self::numbers(array, 8)?;
+        let times = self.numbers(array, size_of::<i64>())?;
         if let Numbers::Own(own) = &times {
+            self.keep(own.len())?;
             self.times.insert(array.bytes, Arc::clone(own));
         }
         Some(times)
     }
 
-    fn numbers(array: &Array<'a>, size: usize) -> Option<Numbers<'a>> {
-        /// The most that zlib packs into one byte, bytes.
-        const MAX_RATIO: usize = 1032;
-        let length = array.count.checked_mul(size)?;
-        if !array.is_packed {
-            return (array.bytes.len() == length).then_some(Numbers::File(array.bytes));
-        }
-        if length > array.bytes.len().saturating_mul(MAX_RATIO) {
-            return None;
-        }
-        let mut bytes = vec![0; length];
-        let mut stream = Decompress::new(true);
-        let status = stream.decompress(array.bytes, &mut bytes, FlushDecompress::Finish).ok()?;
-        let is_whole = status == Status::StreamEnd && stream.total_out() == length as u64;
-        is_whole.then(|| Numbers::Own(bytes.into()))
+    /// Returns the numbers of an array, of `size` bytes each. Their memory is not taken yet.
+    fn numbers(&mut self, array: &Array<'a>, size: usize) -> Option<Numbers<'a>> {
+        self.check(unpacked_bytes(array, size)?)?;
+        unpacked(array, size)
     }
 }

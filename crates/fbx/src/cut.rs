@@ -9,7 +9,7 @@ pub(crate) struct Cut<'a> {
     /// The keys of a curve, by its index.
     pick: &'a dyn Fn(usize) -> Pick,
     /// Whether meshes, materials and images are written.
-    has_looks: bool,
+    has_meshes: bool,
     ticks_per_sec: f64,
     /// The place in the file of what is written next.
     at: usize,
@@ -31,14 +31,14 @@ impl<'a> Cut<'a> {
     pub(crate) fn new(
         file: &'a CurveFile<'a>,
         pick: &'a dyn Fn(usize) -> Pick,
-        has_looks: bool,
+        has_meshes: bool,
         ticks_per_sec: f64,
     ) -> Self {
         let start = crate::records::FIRST;
         Self {
             file,
             pick,
-            has_looks,
+            has_meshes,
             ticks_per_sec,
             at: start,
             written: 0,
@@ -67,11 +67,11 @@ impl<'a> Cut<'a> {
                     self.at = place.end;
                     return Some(());
                 }
-                Piece::Looks(place) if !self.has_looks => {
+                Piece::MeshData(place) if !self.has_meshes => {
                     self.at = place.end;
                     return Some(());
                 }
-                Piece::Looks(_) => {}
+                Piece::MeshData(_) => {}
             }
         }
         if self.at == file.end {

@@ -19,14 +19,24 @@ pub enum OpenError {
     Version,
     /// Its content needs more memory than [`max_memory`](crate::OpenOptions::max_memory), or than
     /// there is.
-    #[error("more content than fits into memory")]
+    #[error("more content than fits into memory: export fewer takes at once, or without meshes")]
     Memory,
+    /// The keys of its animations, unpacked, need more memory than that.
+    #[error("more keys than fit into memory: export fewer takes at once, or fewer keys")]
+    Keys,
     /// Nodes lie deeper below each other than the limit.
     #[error("nodes nested too deep")]
     Depth,
     /// Anything else, as ufbx describes it.
     #[error("{0}")]
     Broken(String),
+}
+
+impl OpenError {
+    /// Returns the error for a file that is not the same when it is read again.
+    pub(crate) fn differs() -> Self {
+        Self::Broken("a file that differs from itself".into())
+    }
 }
 
 impl From<ufbx::Error> for OpenError {

@@ -37,7 +37,10 @@ pub struct Mesh {
     /// The place of each position in the texture of its material: (0, 0) is the upper left corner
     /// of the image, (1, 1) its lower right one. Empty if no material has a texture.
     pub coordinates: Vec<[f32; 2]>,
-    /// Of each position, the heaviest first; those without weight are zero.
+    /// The control point of the file that each position is, an index of
+    /// [`influences`](Self::influences).
+    pub point_of: Vec<u32>,
+    /// Of each control point, the heaviest first; those without weight are zero.
     pub influences: Vec<[Influence; MAX_INFLUENCES]>,
     /// Three indices of positions, anticlockwise from outside.
     pub triangles: Vec<[u32; 3]>,
@@ -58,7 +61,7 @@ pub(crate) fn meshes(root: &SceneRoot, max_vertices: usize) -> (Vec<Mesh>, usize
         let Some(skin) = mesh.skin_deformers.into_iter().next() else {
             continue;
         };
-        if vertices + mesh.num_indices > max_vertices {
+        if vertices + mesh.num_indices.max(mesh.num_vertices) > max_vertices {
             left_out += 1;
             continue;
         }
@@ -99,7 +102,7 @@ impl Mesh {
         read.normals.reserve_exact(if has_normals { count } else { 0 });
         read.coordinates.reserve_exact(if has_texture { count } else { 0 });
         read.material_of.reserve_exact(count);
-        read.influences.reserve_exact(count);
+        read.point_of.reserve_exact(count);
         read.triangles.reserve_exact(mesh.num_triangles);
         let mut copies = Copies::of(mesh.num_vertices);
         let mut corners = Vec::new();
@@ -139,7 +142,7 @@ impl Mesh {
                         read.coordinates.push(place);
                     }
                     read.material_of.push(material);
-                    read.influences.push(influences(skin, &places, vertex as usize));
+                    read.point_of.push(vertex);
                     Some(copies.add(vertex))
                 });
                 if let [Some(a), Some(b), Some(c)] = own {
@@ -147,6 +150,8 @@ impl Mesh {
                 }
             }
         }
+        drop(copies);
+        read.influences = influences(skin, &places, mesh.num_vertices);
         read
     }
 }
@@ -193,25 +198,53 @@ fn is_same<const N: usize>(one: Option<&[f32; N]>, other: &[f32; N]) -> bool {
     one.is_some_and(|one| one.map(f32::to_bits) == other.map(f32::to_bits))
 }
 
-/// Returns the heaviest clusters of a vertex.
+/// Returns the heaviest clusters of each control point. ufbx would list all of them, in 16 bytes
+/// for each and 16 more for a point.
 fn influences(
     skin: &SkinDeformer,
     places: &[Option<u32>],
-    vertex: usize,
-) -> [Influence; MAX_INFLUENCES] {
-    let mut heaviest = [Influence::default(); MAX_INFLUENCES];
-    let Some(vertex) = skin.vertices.as_ref().get(vertex) else {
-        return heaviest;
-    };
-    let (first, count) = (vertex.weight_begin as usize, vertex.num_weights as usize);
-    let weights = skin.weights.as_ref().get(first..first + count).unwrap_or_default();
-    // ufbx sorts them by weight.
-    let found = weights.iter().filter_map(|weight| {
-        let cluster = (*places.get(weight.cluster_index as usize)?)?;
-        Some(Influence { cluster, weight: weight.weight as f32 })
-    });
-    for (place, influence) in heaviest.iter_mut().zip(found) {
-        *place = influence;
+    points: usize,
+) -> Vec<[Influence; MAX_INFLUENCES]> {
+    let mut influences = vec![[Influence::default(); MAX_INFLUENCES]; points];
+    for (own, place) in skin.clusters.into_iter().zip(places) {
+        let Some(cluster) = *place else { continue };
+        for (&point, &weight) in own.vertices.as_ref().iter().zip(own.weights.as_ref()) {
+            if let Some(heaviest) = influences.get_mut(point as usize) {
+                add(heaviest, Influence { cluster, weight: weight as f32 });
+            }
+        }
     }
-    heaviest
+    influences
+}
+
+/// Adds an influence behind those that are at least as heavy, and drops the lightest one. Weights
+/// that are negative, or no numbers, are not added.
+fn add(heaviest: &mut [Influence; MAX_INFLUENCES], found: Influence) {
+    let place = heaviest.iter().position(|other| found.weight > other.weight);
+    if let Some(lighter) = place.and_then(|place| heaviest.get_mut(place..)) {
+        lighter.rotate_right(1);
+        if let Some(first) = lighter.first_mut() {
+            *first = found;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn influences_are_the_heaviest_in_order() {
+        let weights = [0.2, -1.0, 0.1, 0.4, f32::NAN, 0.2, 0.0, 0.3, 0.1, 0.4, f32::INFINITY];
+        for count in 0..=weights.len() {
+            let all = (0..).zip(weights).take(count);
+            let all = all.map(|(cluster, weight)| Influence { cluster, weight });
+            let mut found = [Influence::default(); MAX_INFLUENCES];
+            all.clone().for_each(|influence| add(&mut found, influence));
+            let mut sorted: Vec<Influence> = all.filter(|own| own.weight > 0.0).collect();
+            sorted.sort_by(|one, other| other.weight.total_cmp(&one.weight));
+            sorted.resize(MAX_INFLUENCES, Influence::default());
+            assert_eq!(found, sorted[..], "{count}");
+        }
+    }
 }

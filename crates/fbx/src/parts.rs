@@ -5,7 +5,7 @@
 use crate::OpenError;
 use crate::curves::{Curve, CurveFile, KEY_BYTES, Pick, Shape};
 use crate::cut::Cut;
-use crate::scene::{Node, OpenOptions, Source, load, nodes};
+use crate::scene::{Node, OpenOptions, Source, are_same, load, nodes};
 use crate::take::{self, Curves, Take, WholeCurves};
 use std::ops::Range;
 use ufbx::{AnimCurve, SceneRoot};
@@ -20,10 +20,41 @@ pub(crate) struct Parts<'a> {
     ticks_per_sec: f64,
     /// For each curve, whether it has the same value for all times.
     is_constant: Vec<bool>,
-    /// For each take, which curves it has.
-    of_takes: Vec<Vec<bool>>,
+    /// For each curve, the takes that have it.
+    owners: Vec<Owner>,
     /// The nodes, as each part has them.
     nodes: Vec<Node>,
+}
+
+/// The takes that have a curve. One bit for each pair of them would grow with the square of a file
+/// of many takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Owner {
+    /// No take: it may decide how layers are joined.
+    None,
+    /// The take of this index.
+    One(usize),
+    /// Several takes.
+    Several,
+}
+
+impl Owner {
+    /// Returns the owner with another take.
+    fn with(self, take: usize) -> Self {
+        match self {
+            Self::None => Self::One(take),
+            Self::One(own) if own == take => self,
+            _ => Self::Several,
+        }
+    }
+
+    /// Returns whether the keys of a curve may decide the transforms in a take.
+    fn may_be(self, take: usize) -> bool {
+        match self {
+            Self::One(own) => own == take,
+            Self::None | Self::Several => true,
+        }
+    }
 }
 
 /// A part of a file: a span of time of a take.
@@ -49,7 +80,8 @@ impl<'a> Parts<'a> {
         options: OpenOptions,
         progress: &mut dyn FnMut(usize) -> bool,
     ) -> Result<Option<(SceneRoot, Self)>, OpenError> {
-        let Some(file) = CurveFile::of(bytes, options.max_key_memory / KEY_BYTES) else {
+        let most = options.max_key_memory / KEY_BYTES;
+        let Some(file) = CurveFile::of(bytes, most, options.max_memory)? else {
             return Ok(None);
         };
         let mut parts = Self {
@@ -57,34 +89,33 @@ impl<'a> Parts<'a> {
             options,
             ticks_per_sec: 1.0,
             is_constant: Vec::new(),
-            of_takes: Vec::new(),
+            owners: Vec::new(),
             nodes: Vec::new(),
         };
         let root = parts.load(&|_| Pick::Ends, options.meshes, progress)?;
         parts.ticks_per_sec = root.metadata.ktime_second as f64;
         parts.nodes = nodes(&root);
-        let bare = parts.load(&|_| Pick::Ends, false, progress)?;
-        if !parts.has_curves_of_file(&root) || !parts.is_like(&root) || !parts.is_like(&bare) {
+        if !parts.has_curves_of_file(&root) || !parts.is_like(&root) {
             return Ok(None);
         }
-        parts.of_takes = root.anim_stacks.into_iter().map(|take| parts.curves_of(take)).collect();
+        let bare = parts.load(&|_| Pick::Ends, false, progress)?;
+        if !parts.is_like(&bare) {
+            return Ok(None);
+        }
+        drop(bare);
+        parts.owners = parts.owners_in(&root);
         parts.is_constant = parts.constant_curves(&root, progress)?;
         Ok(Some((root, parts)))
     }
 
     /// Returns the takes.
-    pub(crate) fn takes(&self, root: &SceneRoot) -> Vec<Take> {
-        root.anim_stacks.into_iter().map(|stack| take::take(root, stack, self)).collect()
+    pub(crate) fn takes(&self, root: &SceneRoot) -> Result<Vec<Take>, OpenError> {
+        take::takes(root, self, self.options.max_memory)
     }
 
     /// Reads the part of a take that begins at a time, seconds.
     pub(crate) fn window(&self, index: usize, take: &Take, secs: f64) -> Result<Window, OpenError> {
-        let has = |take: &Vec<bool>, curve: usize| take.get(curve).is_some_and(|own| *own);
-        // A curve that no take has may decide how layers are joined.
-        let is_own = |curve: usize| {
-            self.of_takes.get(index).is_some_and(|own| has(own, curve))
-                || !self.of_takes.iter().any(|take| has(take, curve))
-        };
+        let is_own = |curve: usize| self.owners.get(curve).is_none_or(|own| own.may_be(index));
         let curves = self.file.curves.iter().enumerate();
         let keys = curves.filter(|(curve, _)| is_own(*curve)).map(|(_, curve)| curve.len());
         let bytes = keys.sum::<usize>().saturating_mul(KEY_BYTES).max(1);
@@ -98,7 +129,7 @@ impl<'a> Parts<'a> {
         };
         let root = self.load(&pick, false, &mut |_| true)?;
         if !self.is_like(&root) {
-            return Err(OpenError::Broken("a file that differs from itself".into()));
+            return Err(OpenError::differs());
         }
         Ok(Window { take: index, span, root })
     }
@@ -106,23 +137,21 @@ impl<'a> Parts<'a> {
     fn load(
         &self,
         pick: &dyn Fn(usize) -> Pick,
-        has_looks: bool,
+        has_meshes: bool,
         progress: &mut dyn FnMut(usize) -> bool,
     ) -> Result<SceneRoot, OpenError> {
-        let cut = Cut::new(&self.file, pick, has_looks, self.ticks_per_sec);
-        let options = OpenOptions { meshes: has_looks, ..self.options };
+        let cut = Cut::new(&self.file, pick, has_meshes, self.ticks_per_sec);
+        let options = OpenOptions {
+            meshes: has_meshes,
+            max_memory: self.options.max_memory.saturating_sub(self.file.memory),
+            ..self.options
+        };
         load(Source::Cut(cut), options, progress)
     }
 
     /// Returns whether a scene has the nodes of the others, and as many curves as the file.
     fn is_like(&self, root: &SceneRoot) -> bool {
-        let nodes = nodes(root);
-        let is_same = |(one, other): (&Node, &Node)| {
-            one.name == other.name && one.parent == other.parent && one.local == other.local
-        };
-        root.anim_curves.len() == self.file.curves.len()
-            && nodes.len() == self.nodes.len()
-            && nodes.iter().zip(&self.nodes).all(is_same)
+        root.anim_curves.len() == self.file.curves.len() && are_same(&nodes(root), &self.nodes)
     }
 
     /// Returns whether a scene with the least of the keys has the curves in the order of the file.
@@ -135,18 +164,18 @@ impl<'a> Parts<'a> {
             && self.file.curves.iter().zip(&root.anim_curves).all(begins)
     }
 
-    /// Returns which curves a take has.
-    fn curves_of(&self, take: &ufbx::AnimStack) -> Vec<bool> {
-        let mut is_own = vec![false; self.file.curves.len()];
-        for layer in &take.layers {
-            let values = layer.anim_values.into_iter();
+    /// Returns the owner of each curve.
+    fn owners_in(&self, root: &SceneRoot) -> Vec<Owner> {
+        let mut owners = vec![Owner::None; self.file.curves.len()];
+        for (index, take) in root.anim_stacks.into_iter().enumerate() {
+            let values = take.layers.into_iter().flat_map(|layer| &layer.anim_values);
             for curve in values.flat_map(|value| value.curves.iter().flatten()) {
-                if let Some(own) = is_own.get_mut(curve.element.typed_id as usize) {
-                    *own = true;
+                if let Some(owner) = owners.get_mut(curve.element.typed_id as usize) {
+                    *owner = owner.with(index);
                 }
             }
         }
-        is_own
+        owners
     }
 
     /// Returns for each curve whether it has the same value for all times. Where its tangents
@@ -218,6 +247,21 @@ impl Curves for Parts<'_> {
                 Box::new(own.ticks().map(|ticks| ticks as f64 / self.ticks_per_sec))
             }
             _ => WholeCurves.key_secs(curve),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn owner_is_one_take_or_any() {
+        let one = Owner::None.with(3).with(3);
+        let is_own = |owner: Owner| [2, 3, 4].map(|take| owner.may_be(take));
+        assert_eq!(is_own(one), [false, true, false]);
+        for owner in [Owner::None, one.with(4), one.with(4).with(3)] {
+            assert_eq!(is_own(owner), [true; 3]);
         }
     }
 }

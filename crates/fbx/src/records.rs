@@ -73,23 +73,40 @@ impl Form {
         is_there.then_some(Some(Record { at, name, count, values, inside, end }))
     }
 
-    /// Returns the records in a record; `None` if one of them is broken.
+    /// Returns the records in a record, such as a curve; `None` if one of them is broken, or if
+    /// there are many more than in a curve.
     pub(crate) fn children<'a>(
         self,
         bytes: &'a [u8],
         parent: &Record<'_>,
     ) -> Option<Vec<Record<'a>>> {
-        let mut children = Vec::new();
-        let mut at = parent.inside;
-        while at < parent.end {
-            let Some(child) = self.record(bytes, at)? else { break };
-            if child.end > parent.end {
+        /// A record of 13 bytes would take 64.
+        const MAX_CHILDREN: usize = 64;
+        let children = self.iter_children(bytes, parent).take(MAX_CHILDREN + 1);
+        let children: Vec<Record<'a>> = children.collect::<Option<_>>()?;
+        (children.len() <= MAX_CHILDREN).then_some(children)
+    }
+
+    /// Returns the records in a record one by one, which takes no memory for many of them; the last
+    /// one is `None` if it is broken.
+    pub(crate) fn iter_children<'a>(
+        self,
+        bytes: &'a [u8],
+        parent: &Record<'_>,
+    ) -> impl Iterator<Item = Option<Record<'a>>> {
+        let (mut at, end) = (parent.inside, parent.end);
+        std::iter::from_fn(move || {
+            if at >= end {
                 return None;
             }
-            at = child.end;
-            children.push(child);
-        }
-        Some(children)
+            let child = match self.record(bytes, at) {
+                Some(None) => return None,
+                Some(Some(child)) if child.end <= end => Some(child),
+                _ => None,
+            };
+            at = child.map_or(end, |child| child.end);
+            Some(child)
+        })
     }
 
     /// Writes a record without its values; `end` is the place behind it.
@@ -157,4 +174,47 @@ pub(crate) fn write_array(out: &mut Vec<u8>, kind: u8, count: usize, bytes: &[u8
         out.extend((word as u32).to_le_bytes());
     }
     out.extend(bytes);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns a record with so many records in it.
+    fn record_of(form: Form, children: usize) -> Vec<u8> {
+        let child = form.head() + 1;
+        let mut bytes = Vec::new();
+        let end = form.head() + 1 + children * child;
+        form.write_head(&mut bytes, end as u64, 0, 0, b"p");
+        for index in 1..=children {
+            let end = form.head() + 1 + index * child;
+            form.write_head(&mut bytes, end as u64, 0, 0, b"c");
+        }
+        bytes
+    }
+
+    #[test]
+    fn children_are_few_and_whole_or_none() {
+        for form in [Form { is_wide: false }, Form { is_wide: true }] {
+            let found = |bytes: &[u8]| {
+                let parent = form.record(bytes, 0).flatten().expect("a record");
+                form.children(bytes, &parent).map(|children| children.len())
+            };
+            assert_eq!(
+                [0, 1, 64].map(|count| found(&record_of(form, count))),
+                [0, 1, 64].map(Some)
+            );
+            assert_eq!(found(&record_of(form, 65)), None);
+            // The second one goes on behind its parent.
+            let mut bytes = record_of(form, 2);
+            let second = 2 * (form.head() + 1);
+            let end = bytes.len() + 1;
+            bytes[second] = end as u8;
+            bytes.push(0);
+            assert_eq!(found(&bytes), None);
+            let parent = form.record(&bytes, 0).flatten().expect("a record");
+            let whole = form.iter_children(&bytes, &parent).map(|child| child.is_some());
+            assert_eq!(whole.collect::<Vec<_>>(), [true, false]);
+        }
+    }
 }

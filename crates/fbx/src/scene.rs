@@ -19,12 +19,13 @@ const PROGRESS_BYTES: u64 = 256 << 10;
 /// would stay unused.
 const CHUNK_BYTES: usize = 1 << 20;
 /// The memory of a scene from which on it is read again without its meshes, bytes.
-const MIN_FORGOTTEN_BYTES: usize = 8 << 20;
+const MIN_DROPPED_BYTES: usize = 8 << 20;
 
 /// Limits of opening a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OpenOptions {
-    /// The greatest memory for the file's content, bytes.
+    /// The greatest memory for the file's content, bytes. While a file is read, it may take the
+    /// same again.
     pub max_memory: usize,
     /// Whether meshes are read.
     pub meshes: bool,
@@ -112,6 +113,8 @@ pub struct Scene<'a> {
     up: UpAxis,
     fps: f64,
     constraints: usize,
+    /// Whether there are meshes and images.
+    has_meshes: bool,
 }
 
 impl<'a> Scene<'a> {
@@ -128,16 +131,17 @@ impl<'a> Scene<'a> {
     ) -> Result<Self, OpenError> {
         match Parts::open(bytes, options, progress) {
             Ok(Some((root, parts))) => {
-                let takes = parts.takes(&root);
+                let takes = parts.takes(&root)?;
                 return Ok(Self::new(bytes, options, root, takes, Some(parts)));
             }
-            Err(OpenError::Stopped) => return Err(OpenError::Stopped),
-            // Something is not as expected, and may be read nevertheless.
+            // Keys that are too many in parts are too many at once.
+            Err(error @ (OpenError::Stopped | OpenError::Keys)) => return Err(error),
+            // Something is not as expected, and may be read nevertheless, or refused for a better
+            // reason: a part has no length by which a cut-off array would be noticed.
             Ok(None) | Err(_) => {}
         }
         let root = load(Source::Bytes(bytes), options, progress)?;
-        let stacks = root.anim_stacks.into_iter();
-        let takes = stacks.map(|stack| take::take(&root, stack, &WholeCurves)).collect();
+        let takes = take::takes(&root, &WholeCurves, options.max_memory)?;
         Ok(Self::new(bytes, options, root, takes, None))
     }
 
@@ -165,6 +169,7 @@ impl<'a> Scene<'a> {
             up,
             fps: root.settings.frames_per_second,
             constraints: constraints.count(),
+            has_meshes: options.meshes,
             root: Some(root),
             parts,
         }
@@ -193,13 +198,15 @@ impl<'a> Scene<'a> {
     /// come together, and the number of those left out.
     #[must_use]
     pub fn meshes(&self, max_vertices: usize) -> (Vec<Mesh>, usize) {
-        self.root.as_ref().map(|root| mesh::meshes(root, max_vertices)).unwrap_or_default()
+        let root = self.root.as_ref().filter(|_| self.has_meshes);
+        root.map(|root| mesh::meshes(root, max_vertices)).unwrap_or_default()
     }
 
     /// Returns an image of a texture.
     #[must_use]
     pub fn image(&self, index: usize) -> Option<Image<'_>> {
-        let file = self.root.as_ref()?.texture_files.as_ref().get(index)?;
+        let root = self.root.as_ref().filter(|_| self.has_meshes)?;
+        let file = root.texture_files.as_ref().get(index)?;
         Some(Image {
             relative_path: file.relative_filename.as_ref(),
             absolute_path: file.absolute_filename.as_ref(),
@@ -207,32 +214,36 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// Gives the memory of meshes and images back: there are none from then on. Where they took
-    /// much, the file is read again without them.
+    /// Drops meshes and images. Where they may take much memory, the file is read again without
+    /// them, but only the first time that this is called. `progress` is that of [`Scene::open`].
     ///
     /// # Errors
-    /// [`OpenError`] when it cannot be read again.
-    pub fn forget_looks(&mut self) -> Result<(), OpenError> {
+    /// [`OpenError`] when the file cannot be read again, or `progress` returned `false`. There are
+    /// no transforms in takes from then on.
+    pub fn drop_meshes(
+        &mut self,
+        progress: &mut dyn FnMut(usize) -> bool,
+    ) -> Result<(), OpenError> {
+        // Without them, a scene may still take enough that another reading seemed worth it.
+        if !std::mem::take(&mut self.has_meshes) {
+            return Ok(());
+        }
         if self.parts.is_some() {
             self.root = None;
             return Ok(());
         }
         let used = self.root.as_ref().map_or(0, |root| root.metadata.result_memory_used);
-        if !self.options.meshes || used < self.bytes.len().max(MIN_FORGOTTEN_BYTES) {
+        if used < self.bytes.len().max(MIN_DROPPED_BYTES) {
             return Ok(());
         }
+        // Before the other is read, so that there is memory for one only.
         self.root = None;
         let options = OpenOptions { meshes: false, ..self.options };
-        let bare = load(Source::Bytes(self.bytes), options, &mut |_| true)?;
-        let is_same = nodes(&bare).iter().zip(&self.nodes).all(|(one, other)| {
-            (&one.name, one.parent, one.local) == (&other.name, other.parent, other.local)
-        });
-        self.root = Some(if is_same && bare.nodes.len() == self.nodes.len() + 1 {
-            bare
-        } else {
-            drop(bare);
-            load(Source::Bytes(self.bytes), self.options, &mut |_| true)?
-        });
+        let bare = load(Source::Bytes(self.bytes), options, progress)?;
+        if !are_same(&nodes(&bare), &self.nodes) {
+            return Err(OpenError::differs());
+        }
+        self.root = Some(bare);
         Ok(())
     }
 
@@ -333,7 +344,8 @@ pub(crate) fn load(
     progress: &mut dyn FnMut(usize) -> bool,
 ) -> Result<SceneRoot, OpenError> {
     let memory = || AllocatorOpts {
-        memory_limit: options.max_memory,
+        // Zero would stand for no limit.
+        memory_limit: options.max_memory.max(1),
         huge_threshold: CHUNK_BYTES / 16,
         max_chunk_size: CHUNK_BYTES,
         ..AllocatorOpts::default()
@@ -351,7 +363,8 @@ pub(crate) fn load(
         ignore_geometry: !options.meshes,
         ignore_embedded: !options.meshes,
         skip_mesh_parts: true,
-        clean_skin_weights: true,
+        // `mesh::influences` reads the weights of clusters, in less memory.
+        skip_skin_vertices: true,
         node_depth_limit: MAX_DEPTH,
         progress_cb: ProgressCb::Mut(&mut report),
         progress_interval_hint: PROGRESS_BYTES,
@@ -370,6 +383,21 @@ pub(crate) fn load(
         Source::Bytes(bytes) => ufbx::load_memory(bytes, options)?,
         Source::Cut(cut) => stream::load(cut, options)?,
     })
+}
+
+/// Returns whether the nodes of two readings of a file are the same to the last bit, because a NaN
+/// in a file does not equal itself.
+pub(crate) fn are_same(nodes: &[Node], others: &[Node]) -> bool {
+    let bits = |transform: &Transform| {
+        let Transform { translation, rotation, scale } = transform;
+        (translation.map(f64::to_bits), rotation.map(f64::to_bits), scale.map(f64::to_bits))
+    };
+    let is_same = |(one, other): (&Node, &Node)| {
+        one.name == other.name
+            && one.parent == other.parent
+            && bits(&one.local) == bits(&other.local)
+    };
+    nodes.len() == others.len() && nodes.iter().zip(others).all(is_same)
 }
 
 /// Returns the nodes below the root node of ufbx, which is the first one and stands for the world.

@@ -1,5 +1,6 @@
 //! The takes of a file: which nodes move, and the times of their keys.
 
+use crate::OpenError;
 use std::ops::Range;
 use ufbx::{AnimCurve, AnimStack, SceneRoot};
 
@@ -70,7 +71,25 @@ impl Curves for WholeCurves {
     }
 }
 
-pub(crate) fn take(root: &SceneRoot, stack: &AnimStack, curves: &dyn Curves) -> Take {
+/// Returns the takes of a scene, if they take no more than `max_memory` bytes: many takes may have
+/// the same layers.
+pub(crate) fn takes(
+    root: &SceneRoot,
+    curves: &dyn Curves,
+    max_memory: usize,
+) -> Result<Vec<Take>, OpenError> {
+    let (mut takes, mut left) = (Vec::new(), max_memory);
+    for stack in &root.anim_stacks {
+        let nodes = root.nodes.len() * size_of::<Movement>();
+        left = left.checked_sub(nodes).ok_or(OpenError::Memory)?;
+        let take = take(root, stack, curves);
+        left = left.checked_sub(size_of_val(&*take.key_secs)).ok_or(OpenError::Memory)?;
+        takes.push(take);
+    }
+    Ok(takes)
+}
+
+fn take(root: &SceneRoot, stack: &AnimStack, curves: &dyn Curves) -> Take {
     // Without the root node of ufbx.
     let mut movements = vec![Movement::Still; root.nodes.len().saturating_sub(1)];
     let mut times = Times::default();
@@ -141,8 +160,9 @@ fn follow_scales(root: &SceneRoot, movements: &mut [Movement]) {
 /// The key times of curves; most curves share theirs.
 #[derive(Default)]
 struct Times {
-    /// Ascending, without duplicates.
+    /// Ascending and without duplicates up to `merged`, and behind it as they were added.
     all: Vec<f64>,
+    merged: usize,
     /// The key times of the last curve.
     last: Vec<f64>,
 }
@@ -155,12 +175,40 @@ impl Times {
         self.last.clear();
         self.last.extend(secs());
         self.all.extend(self.last.iter().copied().filter(|time| time.is_finite()));
-        // Merging after each curve keeps the list short.
-        self.all.sort_by(f64::total_cmp);
-        self.all.dedup();
+        // Often enough to keep the list short, and seldom enough for thousands of curves that have
+        // times of their own.
+        if self.all.len() > 2 * self.merged {
+            self.merge();
+        }
     }
 
-    fn merged(self) -> Vec<f64> {
+    fn merge(&mut self) {
+        self.all.sort_by(f64::total_cmp);
+        self.all.dedup();
+        self.merged = self.all.len();
+    }
+
+    fn merged(mut self) -> Vec<f64> {
+        self.merge();
         self.all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn key_times_of_curves_are_all_of_theirs_once() {
+        let (mut times, mut expected) = (Times::default(), Vec::new());
+        for curve in 0..50_u32 {
+            let own = (0..curve % 7 * 10).map(|key| f64::from(key * (curve % 3) + curve / 20));
+            let own: Vec<f64> = own.chain([f64::NAN]).collect();
+            times.add(|| Box::new(own.iter().copied()));
+            expected.extend(own.into_iter().filter(|time| time.is_finite()));
+        }
+        expected.sort_by(f64::total_cmp);
+        expected.dedup();
+        assert_eq!(times.merged(), expected);
     }
 }

@@ -21,7 +21,7 @@ static ALLOCATOR: PeakAlloc = PeakAlloc;
 const BYTES: usize = if cfg!(debug_assertions) { 12_000_000 } else { 50_000_000 };
 
 /// The most memory for a vertex of a mesh, bytes.
-const MAX_VERTEX_BYTES: f64 = 400.0;
+const MAX_VERTEX_BYTES: f64 = 300.0;
 
 /// The number of joints, in a chain.
 const JOINTS: usize = 65;

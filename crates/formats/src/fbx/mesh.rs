@@ -48,13 +48,14 @@ pub(super) fn mesh(
             positions: mesh.positions.into_iter().map(Vec3::from_array).collect(),
             normals: mesh.normals.into_iter().map(Vec3::from_array).collect(),
             triangles: mesh.triangles,
-            joints: Vec::with_capacity(mesh.influences.len()),
-            weights: Vec::with_capacity(mesh.influences.len()),
+            joints: Vec::with_capacity(mesh.point_of.len()),
+            weights: Vec::with_capacity(mesh.point_of.len()),
             ..Part::default()
         };
-        let influences = mesh.influences.iter().map(|influences| {
+        let influences = mesh.point_of.iter().map(|point| {
+            let influences = mesh.influences.get(*point as usize).into_iter().flatten();
             let has_weight =
-                influences.iter().filter(|found| found.weight > 0.0 && found.weight.is_finite());
+                influences.filter(|found| found.weight > 0.0 && found.weight.is_finite());
             has_weight.map(|found| (found.cluster as usize, found.weight)).collect()
         });
         match part.rest(&binding, influences) {

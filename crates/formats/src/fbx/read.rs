@@ -70,13 +70,7 @@ pub fn read_with_progress(
     progress: &mut dyn FnMut(usize) -> bool,
 ) -> Result<Option<ImportedFile>, ImportError> {
     check_size(name, bytes, options)?;
-    let most = bytes.len().saturating_mul(MEMORY_RATIO).max(MIN_MEMORY);
-    let limits = OpenOptions {
-        max_memory: most.min(options.max_bytes.saturating_mul(4)),
-        meshes: true,
-        max_key_memory: (bytes.len() / KEY_MEMORY_SHARE).max(MIN_KEY_MEMORY),
-    };
-    let mut scene = match Scene::open(bytes, limits, progress) {
+    let mut scene = match Scene::open(bytes, limits(bytes.len(), options), progress) {
         Ok(scene) => scene,
         Err(OpenError::Stopped) => return Ok(None),
         // Too short for the head of a file, so that it seems cut off.
@@ -85,6 +79,12 @@ pub fn read_with_progress(
         }
         Err(error) => return Err(refusal(name, &error)),
     };
+    // Returns whether to go on.
+    let mut drop_meshes = |scene: &mut Scene<'_>| match scene.drop_meshes(progress) {
+        Ok(()) => Ok(true),
+        Err(OpenError::Stopped) => Ok(false),
+        Err(error) => Err(refusal(name, &error)),
+    };
     let mut tally = Tally::default();
     let (meshes, left_out) = scene.meshes(MAX_VERTICES as usize);
     for _ in 0..left_out {
@@ -92,14 +92,16 @@ pub fn read_with_progress(
         tally.add(WarningKind::BrokenMesh { why }, None);
     }
     let mut materials = meshes.iter().flat_map(|mesh| &mesh.materials);
-    if materials.all(|material| material.texture.is_none()) {
-        scene.forget_looks().map_err(|error| refusal(name, &error))?;
+    if materials.all(|material| material.texture.is_none()) && !drop_meshes(&mut scene)? {
+        return Ok(None);
     }
     let mut textures = Textures::new(name, &scene, resolve, options.max_bytes);
     let meshes: Vec<PaintedMesh> = meshes.into_iter().map(|mesh| textures.painted(mesh)).collect();
     drop(textures);
     // Images are not needed any more.
-    scene.forget_looks().map_err(|error| refusal(name, &error))?;
+    if !drop_meshes(&mut scene)? {
+        return Ok(None);
+    }
     for _ in 0..scene.constraints() {
         tally.add(WarningKind::Constraints, None);
     }
@@ -136,7 +138,7 @@ pub fn read_with_progress(
         upright,
         up: options.up.unwrap_or(stated_up),
         several: characters.len() > 1,
-        left: options.max_bytes.min(most),
+        left: options.max_bytes.min(max_memory(bytes.len())),
         tally,
         clips: Vec::new(),
     };
@@ -148,6 +150,20 @@ pub fn read_with_progress(
     }
     let warnings = reader.tally.into_warnings(b"");
     Ok(Some(ImportedFile { clips: reader.clips, warnings }))
+}
+
+/// Returns the memory that the content of a file may take, bytes.
+fn max_memory(size: usize) -> usize {
+    size.saturating_mul(MEMORY_RATIO).max(MIN_MEMORY)
+}
+
+/// Returns the limits of opening a file of a size in bytes.
+fn limits(size: usize, options: &ImportOptions) -> OpenOptions {
+    OpenOptions {
+        max_memory: max_memory(size).min(options.max_bytes.saturating_mul(4)),
+        meshes: true,
+        max_key_memory: (size / KEY_MEMORY_SHARE).max(MIN_KEY_MEMORY),
+    }
 }
 
 /// Returns the sentence about a file that cannot be opened.
@@ -170,6 +186,11 @@ fn refusal(name: &str, error: &OpenError) -> ImportError {
             "a smaller scene",
             "export fewer takes at once, or without meshes",
         ),
+        OpenError::Keys => (
+            "more motion than fits into the memory that a file may take".into(),
+            "a shorter or a sparser animation",
+            "export a part of the animation, or at a lower frame rate",
+        ),
         OpenError::Depth => {
             ("nodes nested too deep".into(), "a skeleton", "export the skeleton alone")
         }
@@ -180,6 +201,14 @@ fn refusal(name: &str, error: &OpenError) -> ImportError {
         ),
     };
     ImportError::whole_file(name, found, expected).with_hint(hint)
+}
+
+/// A motion with its size, in the unit and the axes of the file.
+struct MeasuredMotion {
+    raw: RawMotion,
+    t_pose_first_row: bool,
+    t_pose_dropped: bool,
+    measure: Measure,
 }
 
 struct Reader<'a> {
@@ -238,22 +267,24 @@ impl Reader<'_> {
                 return Ok(None);
             };
             let name = if is_only { stem(self.name).to_owned() } else { take_name(&found.name) };
+            let motion = self.measured(raw);
             let unit = match unit {
                 Some(unit) => unit,
-                None => *unit.insert(self.unit(&raw)),
+                None => *unit.insert(self.unit(&motion.measure)),
             };
             if let Some(found) = mesh.take() {
                 skin = Some(Arc::new(self.fitted(found, &rest, unit)));
             }
-            let clip = self.clip(raw, name, rate.fps, unit)?;
+            let clip = self.clip(motion, name, rate.fps, unit)?;
             self.clips.push(clip.with_mesh(skin.as_ref()));
         }
         if takes.is_empty() {
             self.tally.add(WarningKind::NoFrames, None);
-            let unit = self.unit(&rest);
-            let skin = mesh.take().map(|found| Arc::new(self.fitted(found, &rest, unit)));
+            let motion = self.measured(rest);
+            let unit = self.unit(&motion.measure);
+            let skin = mesh.take().map(|found| Arc::new(self.fitted(found, &motion.raw, unit)));
             let fps = given_fps.unwrap_or(self.scene.fps());
-            let clip = self.clip(rest, stem(self.name).to_owned(), fps, unit)?;
+            let clip = self.clip(motion, stem(self.name).to_owned(), fps, unit)?;
             self.clips.push(clip.with_mesh(skin.as_ref()));
         }
         Ok(Some(()))
@@ -293,10 +324,24 @@ impl Reader<'_> {
         Ok(())
     }
 
+    /// Drops the first row where it is a T-pose that is not wanted, and measures the motion: once,
+    /// because that takes its world positions in many frames.
+    fn measured(&mut self, mut raw: RawMotion) -> MeasuredMotion {
+        let t_pose_first_row = raw.frames() > 1 && first_frame_is_t_pose(&raw);
+        let t_pose_dropped = t_pose_first_row && self.options.drop_t_pose;
+        if t_pose_first_row {
+            self.tally.add(WarningKind::TPose { dropped: t_pose_dropped }, None);
+        }
+        if t_pose_dropped {
+            raw.drop_first_frame();
+        }
+        let measure = measure(&raw, self.options.metres_per_unit, Some(self.up));
+        MeasuredMotion { raw, t_pose_first_row, t_pose_dropped, measure }
+    }
+
     /// Returns the metres per unit: as given, as the file states it, or, where that makes the body
     /// smaller than a mouse or taller than a house, by the height.
-    fn unit(&mut self, raw: &RawMotion) -> f64 {
-        let found = measure(raw, self.options.metres_per_unit, Some(self.up));
+    fn unit(&mut self, found: &Measure) -> f64 {
         let inferred = found.provenance.metres_per_unit;
         if !found.unit_detected {
             return inferred;
@@ -321,26 +366,18 @@ impl Reader<'_> {
 
     fn clip(
         &mut self,
-        mut raw: RawMotion,
+        motion: MeasuredMotion,
         name: String,
         fps: f64,
         metres_per_unit: f64,
     ) -> Result<ImportedClip, ImportError> {
-        let t_pose_first_row = raw.frames() > 1 && first_frame_is_t_pose(&raw);
-        let t_pose_dropped = t_pose_first_row && self.options.drop_t_pose;
-        if t_pose_first_row {
-            self.tally.add(WarningKind::TPose { dropped: t_pose_dropped }, None);
-        }
-        if t_pose_dropped {
-            raw.drop_first_frame();
-        }
+        let MeasuredMotion { mut raw, t_pose_first_row, t_pose_dropped, measure } = motion;
         let is_given = self.options.metres_per_unit.is_some();
-        let found = measure(&raw, self.options.metres_per_unit, Some(self.up));
         let measure = Measure {
             provenance: Provenance { metres_per_unit, up: self.up },
             unit_detected: !is_given,
             unit_unknown: false,
-            ..found
+            ..measure
         };
         let mendable = raw.warn_of_unlikely(&measure, self.options, &mut self.tally);
         let name = match raw.joints.first() {
@@ -367,4 +404,33 @@ impl Reader<'_> {
 fn take_name(name: &str) -> String {
     let mut parts = name.rsplit('|').filter(|part| !part.is_empty() && *part != "BaseLayer");
     parts.next().unwrap_or(name).to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fbx::{FbxOptions, write_fbx};
+    use segue_motion::clip::fixtures::wander_by;
+    use segue_motion::skeleton::fixtures::mixamo;
+
+    /// The memory of a key while it is read, bytes.
+    const KEY_BYTES: usize = 40;
+
+    #[test]
+    fn files_of_all_sizes_are_in_parts_if_their_keys_take_much() {
+        let rig = mixamo();
+        let mut in_parts = Vec::new();
+        for frames in [1, 30, 300, 1000, 3000, 10_000] {
+            let clip = wander_by(&rig, frames, 3, 0.5);
+            let bytes = write_fbx(&[&clip], &FbxOptions::default()).unwrap();
+            let limits = limits(bytes.len(), &ImportOptions::default());
+            // All joints turn about all axes; the root also moves.
+            let keys = frames * 3 * rig.len();
+            let scene = Scene::open(&bytes, limits, &mut |_| true).unwrap();
+            let takes_much = KEY_BYTES * keys > limits.max_key_memory;
+            assert_eq!(scene.is_in_parts(), takes_much, "{frames} frames, {} bytes", bytes.len());
+            in_parts.push(takes_much);
+        }
+        assert!(in_parts.is_sorted() && in_parts.contains(&false) && in_parts.contains(&true));
+    }
 }

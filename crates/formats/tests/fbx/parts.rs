@@ -2,8 +2,10 @@
 
 use crate::document::{Element, Form, binary_in};
 use crate::examples;
+use crate::rig::{File, Track};
 use proptest::prelude::*;
-use segue_fbx::{OpenOptions, Scene};
+use segue_fbx::{OpenError, OpenOptions, Scene};
+use segue_formats::{ImportOptions, fbx};
 
 /// The memory of a part that holds a few dozen times of keys.
 const PART: usize = 64 << 10;
@@ -20,7 +22,7 @@ fn is_same(bytes: &[u8], step: usize) {
     assert_eq!(whole.nodes(), parts.nodes());
     assert_eq!(whole.takes(), parts.takes());
     assert_eq!(whole.meshes(usize::MAX), parts.meshes(usize::MAX));
-    parts.forget_looks().expect("there is nothing to read");
+    parts.drop_meshes(&mut |_| panic!("read again")).expect("there is nothing to read");
     let (mut all, mut some) = (whole.poses(), parts.poses());
     for (take, found) in whole.takes().iter().enumerate() {
         let keys = &found.key_secs;
@@ -100,6 +102,87 @@ fn curves_that_go_on_behind_their_keys_are_read_whole() {
             assert_eq!(at(&whole), at(&parts));
         }
     }
+}
+
+/// Returns a file of 16 joints whose keys pack to less than a hundredth: all of a take have one
+/// time, and all of a curve one value, or the first key another one.
+fn dense(frames: usize, is_level: bool) -> Vec<u8> {
+    let values = (0..frames).map(|frame| [f64::from(u8::from(frame == 0 && !is_level)); 3]);
+    let values: Vec<[f64; 3]> = values.collect();
+    let track =
+        |node| Track { node, property: "Lcl Rotation", values: values.clone(), is_mixed: false };
+    let mut file = File { fps: 1e20, ..examples::several_takes() };
+    file.takes.truncate(1);
+    file.takes[0].layers = vec![(0..file.nodes.len()).map(track).collect()];
+    binary_in(Form { version: 7400, is_packed: true }, &file.document())
+}
+
+#[test]
+fn meshes_are_dropped_by_one_more_reading_at_most() {
+    // So many keys that they take much memory without the meshes, too.
+    let mut file = examples::long();
+    for track in file.takes.iter_mut().flat_map(|take| &mut take.layers).flatten() {
+        track.values = track.values.repeat(10);
+    }
+    let bytes = binary_in(Form { version: 7400, is_packed: true }, &file.document());
+    let mut scene = open(&bytes, usize::MAX);
+    let before = scene.poses().transform(0, 3, 1.0).unwrap();
+    let mut readings = || {
+        // Within a reading, a report may be a few bytes behind the one before.
+        let half = bytes.len() / 2;
+        let (mut readings, mut last) = (0, usize::MAX);
+        let dropped = scene.drop_meshes(&mut |done| {
+            readings += usize::from(last >= half && done < half);
+            last = done;
+            true
+        });
+        dropped.map(|()| readings)
+    };
+    assert_eq!([readings(), readings(), readings()], [Ok(1), Ok(0), Ok(0)]);
+    assert_eq!(scene.poses().transform(0, 3, 1.0).unwrap(), before);
+}
+
+#[test]
+fn node_without_a_valid_place_is_read_again_as_it_was() {
+    let mut file = examples::long();
+    file.nodes[6].place = [f64::NAN, 0.0, 0.0];
+    let bytes = binary_in(Form { version: 7400, is_packed: true }, &file.document());
+    let scene = open(&bytes, PART);
+    assert!(scene.nodes().iter().any(|node| node.local.translation[0].is_nan()));
+    assert!(scene.is_in_parts());
+}
+
+#[test]
+fn keys_that_unpack_to_more_than_the_memory_are_refused() {
+    let (frames, joints) = (20_000, 16);
+    let bytes = dense(frames, false);
+    // The values of all curves, and times that they share.
+    let unpacked = frames * (4 * 3 * joints + 8);
+    assert!(bytes.len() < unpacked / 40, "{} bytes of {unpacked}", bytes.len());
+    let open = |max_memory: usize| {
+        let options = OpenOptions { max_memory, meshes: true, max_key_memory: PART };
+        Scene::open(&bytes, options, &mut |_| true)
+    };
+    for max_memory in [0, 1, 1 << 16, unpacked / 2, unpacked - 1] {
+        assert_eq!(open(max_memory).err(), Some(OpenError::Keys), "{max_memory} bytes");
+    }
+    assert!(open(2 * unpacked).is_ok_and(|scene| scene.is_in_parts()));
+    // The sentence says what to do.
+    let options = ImportOptions { max_bytes: bytes.len(), ..ImportOptions::default() };
+    let error = fbx::read("dense.fbx", &bytes, &options).unwrap_err();
+    assert!(error.to_string().contains("more motion than fits"), "{error}");
+    assert!(error.hint.is_some());
+}
+
+#[test]
+fn keys_that_unpack_to_many_times_the_file_are_refused() {
+    // All keys of a level curve are kept as one, so that memory does not bound their number.
+    let (few, many) = (dense(20_000, true), dense(120_000, true));
+    let open = |bytes: &[u8]| {
+        let options = OpenOptions { max_memory: 1 << 30, meshes: true, max_key_memory: PART };
+        Scene::open(bytes, options, &mut |_| true).map(|scene| scene.is_in_parts())
+    };
+    assert_eq!((open(&few), open(&many)), (Ok(true), Err(OpenError::Keys)));
 }
 
 proptest! {

@@ -74,6 +74,55 @@ fn fbx_in_any_unit_and_axes_is_the_same_motion() {
     }
 }
 
+/// Returns a motion turned as a whole, and its rest pose turned as well or left as it is.
+fn turned(clip: &Clip, turn: Quat, with_rest: bool) -> Clip {
+    let skeleton = clip.skeleton();
+    let rest = if with_rest { turn } else { Quat::IDENTITY };
+    let joints = skeleton.joints().iter().map(|joint| Joint {
+        offset: rest * joint.offset,
+        end_site: joint.end_site.map(|end| rest * end),
+        ..joint.clone()
+    });
+    let turned = Arc::new(Skeleton::new(joints.collect()).unwrap());
+    let rotations = (0..clip.frames()).flat_map(|frame| {
+        clip.rotations(frame).iter().enumerate().map(move |(joint, &rotation)| {
+            let before = if joint == 0 { turn } else { rest };
+            before * rotation * rest.inverse()
+        })
+    });
+    let rotations = rotations.collect();
+    let roots = clip.root_translations().iter().map(|&at| turn * at).collect();
+    Clip::new(clip.name(), turned, clip.fps(), rotations, roots).unwrap()
+}
+
+#[test]
+fn fbx_of_a_body_that_stands_or_lies_is_not_turned() {
+    let walk = made(Action::Walk);
+    let on_its_back = Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2);
+    for (turn, with_rest) in [
+        (Quat::IDENTITY, false),
+        (on_its_back, false),
+        (on_its_back, true),
+        (on_its_back.inverse(), true),
+    ] {
+        let clip = turned(&walk, turn, with_rest);
+        for up in [UpAxis::Y, UpAxis::Z] {
+            let options = FbxOptions { up: Some(up), ..FbxOptions::default() };
+            let bytes = write_fbx(&[&clip], &options).unwrap();
+            let back = read_one(&bytes);
+            assert_eq!(back.provenance().up, up);
+            assert!(apart(&clip, &back) < TOLERANCE, "{turn} {up:?}: {} m", apart(&clip, &back));
+            // The other axis is the user's word, for files that state theirs wrongly.
+            let other = if up == UpAxis::Y { UpAxis::Z } else { UpAxis::Y };
+            let given = ImportOptions { up: Some(other), ..ImportOptions::default() };
+            let back = import("own.fbx", &bytes, &given).unwrap().clips.remove(0).clip;
+            let toward = if up == UpAxis::Z { on_its_back.inverse() } else { on_its_back };
+            let expected = turned(&clip, toward, true);
+            assert!(apart(&expected, &back) < TOLERANCE, "{turn} {up:?} as {other:?}");
+        }
+    }
+}
+
 #[test]
 fn fbx_at_another_rate_has_its_frames() {
     let walk = made(Action::Walk);
