@@ -37,7 +37,7 @@ pub fn clang() -> Result<()> {
     if on_path("clang") { Ok(()) } else { apt(&["clang"]) }
 }
 
-/// Finds or installs a software Vulkan driver, which the pictures of the UI need.
+/// Finds or installs a software Vulkan driver, which the pictures of the UI and Chromium need.
 pub fn software_vulkan() -> Result<()> {
     let any = |folder: &str| fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_some());
     if !cfg!(target_os = "linux") || any("/usr/share/vulkan/icd.d") || any("/etc/vulkan/icd.d") {
