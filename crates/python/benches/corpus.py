@@ -81,6 +81,10 @@ def main():
             shutil.rmtree(out, ignore_errors=True)
             alone = report(f"{workers} workers", command(asked.takes, out, f"--workers={workers}"))
         report("nothing new", command(asked.takes, out, f"--workers={workers}"))
+        for path in out.iterdir():
+            if path.name != ".work":
+                shutil.rmtree(path) if path.is_dir() else path.unlink()
+        report("gathering alone", command(asked.takes, out, f"--workers={workers}"))
 
         shutil.rmtree(out, ignore_errors=True)
         times = [alone * part for part in KILLED_AT]

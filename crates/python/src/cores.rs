@@ -1,7 +1,8 @@
-//! Long work without the interpreter's lock, on all cores.
+//! Long work without the interpreter's lock, on all cores or on one.
 
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::cell::RefCell;
 use std::process;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -20,6 +21,28 @@ pub(crate) fn detached<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send)
     py.detach(|| match forked_pool() {
         Some(pool) => pool.install(work),
         None => work(),
+    })
+}
+
+/// Does something without the interpreter's lock, on one core: one of many pieces of work, whose
+/// number is that of the cores that are to be used.
+pub(crate) fn on_one_core<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> T {
+    thread_local! {
+        static POOL: RefCell<Option<(u32, ThreadPool)>> = const { RefCell::new(None) };
+    }
+    py.detach(|| {
+        POOL.with_borrow_mut(|pool| {
+            let own = process::id();
+            // In a process that was forked, the thread of its parent's pool is missing.
+            if pool.as_ref().is_none_or(|(process, _)| *process != own) {
+                let made = ThreadPoolBuilder::new().num_threads(1).build().ok();
+                *pool = made.map(|made| (own, made));
+            }
+            match pool {
+                Some((_, pool)) => pool.install(work),
+                None => work(),
+            }
+        })
     })
 }
 

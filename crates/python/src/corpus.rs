@@ -4,7 +4,7 @@
 //! there are, keeps the records, and writes the files of a corpus.
 
 use crate::clip::Clip;
-use crate::cores::detached;
+use crate::cores::{detached, on_one_core};
 use crate::origin::Origin;
 use numpy::PyReadonlyArray1;
 use pyo3::exceptions::PyValueError;
@@ -59,7 +59,7 @@ pub(crate) fn corpus_record<'py>(
     beside: Beside,
     clean: bool,
 ) -> PyResult<Bound<'py, PyBytes>> {
-    let made = detached(py, || {
+    let made = on_one_core(py, || {
         let process = || process_file(name, data, &skeleton_files(&beside), &Options { clean });
         // A panic on one file must not end the work on the others.
         let record = catch_unwind(AssertUnwindSafe(process))
