@@ -4,7 +4,7 @@ import { LAST } from "./filters.js";
 
 /** The widths of what a row has beside its numbers, and of a number, pixels, as in panel.css. */
 const DESK = { rest: 384, number: 72 };
-const PHONE = { rest: 327, number: 60 };
+const PHONE = { rest: 327, number: 72 };
 
 /**
  * Returns the columns of numbers that a table shows: those first that are looked at.
