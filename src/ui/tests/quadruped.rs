@@ -36,7 +36,7 @@ fn contacts_of_four_feet_are_on_the_timeline() {
     let left = harness.state().session.contact_clips()[0].motion.contacts().clone();
     let fore = segue_motion::skeleton::Foot::ALL[3];
     assert_eq!(left.intervals(fore).len() + 1, found.intervals(fore).len());
-    assert!(harness.state().session.query().contains("-FR"));
+    assert!(harness.state().session.query().contains("-RF"));
 }
 
 #[test]
