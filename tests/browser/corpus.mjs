@@ -54,14 +54,14 @@ await corpusServer(folder, { after: Number(values.after) }, async (address, aske
     ${act};
     while (!(${test})) await new Promise((resolve) => setTimeout(resolve, 2));
     const seconds = (performance.now() - start) / 1e3;
-    // What was made is drawn, and its tasks are noted, a moment later.
+    // The browser lays out and paints after the condition holds, and reports long tasks later.
     await new Promise((resolve) => setTimeout(resolve, 200));
     return seconds;
   })()`);
   const longest = () => page.evaluate(() => Math.round(Math.max(0, ...window.tasks)));
   const bytesOf = (requests) => requests.reduce((sum, { bytes }) => sum + bytes, 0);
 
-  // What a corpus is shown and searched by: each is read once.
+  // The files that the table and a search need; each is requested once.
   const needed = () => asked.filter(({ name }) => !/^(thumbnails|poses)/.test(name));
   const table = await timed(`window.segue.set({ corpus: ${JSON.stringify(address)} })`, `(${filled})()`);
   note("table, modules not loaded yet", table, { bytes: bytesOf(needed().filter(({ name }) => !name.startsWith("index"))), "longest task ms": await longest() });

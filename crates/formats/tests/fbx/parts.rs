@@ -119,7 +119,7 @@ fn dense(frames: usize, is_level: bool) -> Vec<u8> {
 
 #[test]
 fn meshes_are_dropped_by_one_more_reading_at_most() {
-    // So many keys that they take much memory without the meshes, too.
+    // The keys alone take so much memory that a second call could find another reading worth it.
     let mut file = examples::long();
     for track in file.takes.iter_mut().flat_map(|take| &mut take.layers).flatten() {
         track.values = track.values.repeat(10);
