@@ -72,7 +72,8 @@ export function sized(canvas, { width, height } = sizeOf(canvas)) {
   const ratio = window.devicePixelRatio || 1;
   const pixels = { width: Math.round(width * ratio), height: Math.round(height * ratio) };
   if (canvas.width !== pixels.width || canvas.height !== pixels.height) Object.assign(canvas, pixels);
-  const context = canvas.getContext("2d");
+  // Drawn by the processor: making a context on the graphics card takes longer than drawing.
+  const context = canvas.getContext("2d", { willReadFrequently: true });
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
   return context;
 }
