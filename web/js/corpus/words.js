@@ -58,7 +58,7 @@ const ENGLISH = {
   rangeFrom: "Beginning of the range",
   rangeTo: "End of the range",
   whole: "Whole clip",
-  mapHelp: "All clips by what their motions are like: similar ones lie close together. Drag to move, scroll or pinch to zoom, click to play.",
+  mapHelp: "All clips, placed by their motion: similar ones lie close together. Drag to move, scroll or pinch to zoom, click to play.",
   mapKeys: "Arrow keys move, plus and minus zoom, 0 shows all, Enter plays the clip in the middle.",
   zoomIn: "Zoom in",
   zoomOut: "Zoom out",
