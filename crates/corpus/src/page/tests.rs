@@ -100,7 +100,10 @@ fn page_has_the_numbers_of_the_corpus() {
         page.cells(&[7]).unwrap_err().to_string(),
         page.select("nonsense").unwrap_err().to_string(),
     ];
-    assert!(errors[0].contains("row 7 is out of range") && errors[1].contains("filter"), "{errors:?}");
+    assert!(
+        errors[0].contains("row 7 is out of range") && errors[1].contains("filter"),
+        "{errors:?}"
+    );
 }
 
 #[test]
