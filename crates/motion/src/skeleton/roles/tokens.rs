@@ -186,13 +186,17 @@ fn known_words(run: &str) -> Option<Vec<String>> {
     if run.is_empty() || run.len() > 64 || !run.is_ascii() {
         return None;
     }
+    if WORDS.contains(&run) {
+        return Some(vec![run.to_owned()]);
+    }
     // best[i]: the last word of the shortest split of run[..i], and how many words it has.
     let mut best: Vec<Option<(usize, usize)>> = vec![None; run.len() + 1];
     best[0] = Some((0, 0));
     for end in 1..=run.len() {
-        for word in WORDS.iter().filter(|word| run[..end].ends_with(**word)) {
+        for word in WORDS.iter().filter(|word| word.len() <= end) {
             if let Some((_, count)) = best[end - word.len()]
                 && best[end].is_none_or(|(_, c)| count + 1 < c)
+                && run[..end].ends_with(word)
             {
                 best[end] = Some((word.len(), count + 1));
             }
