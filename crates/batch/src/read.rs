@@ -11,8 +11,9 @@ use std::io::{self, Read as _, Seek as _, SeekFrom};
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
-/// Files from this size on are read on all cores, bytes.
-const LARGE_BYTES: u64 = 1 << 20;
+/// Files from this size on are read from disk on all cores, bytes: with smaller ones, one core is
+/// done before the others have begun.
+const LARGE_BYTES: u64 = 1 << 24;
 
 /// The size of the parts in which the cores read a large file from disk, bytes.
 const PART_BYTES: usize = 1 << 18;
