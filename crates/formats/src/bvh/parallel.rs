@@ -16,7 +16,7 @@ const MIN_PART_BYTES: usize = 1 << 16;
 /// The greatest size of a part, bytes: between rounds, progress is reported and reading stopped.
 const MAX_PART_BYTES: usize = 1 << 20;
 /// The number of parts for each core: one that is disturbed leaves a part to the others.
-const PARTS_PER_CORE: usize = 2;
+const PARTS_PER_CORE: usize = 4;
 
 /// The plain rows of a round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,7 +64,8 @@ impl Rounds {
         }
         let most = rayon::current_num_threads();
         let parts = if most > 1 { parts(text, start, PARTS_PER_CORE * most) } else { Vec::new() };
-        self.read_parts(parts, text, start, row, sink)
+        // Within one call of the pool, because each call wakes its threads.
+        rayon::scope(|_| self.read_parts(parts, text, start, row, sink))
     }
 
     fn read_parts<S: RowSink>(

@@ -3,7 +3,7 @@
 use crate::error::Fault;
 
 /// A receiver of complete rows.
-pub(super) trait RowSink {
+pub(super) trait RowSink: Send {
     /// A receiver of the rows of a part, on any core.
     #[cfg(feature = "parallel")]
     type Part<'p>: PartSink
