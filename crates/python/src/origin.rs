@@ -1,8 +1,12 @@
 //! Origins of clips: what links need to name them.
 
+use rayon::Yield;
 use segue_session::file_id;
-use segue_session::reading::{ReadFile, sha256_hex};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use segue_session::reading::{PiecewiseSha256, ReadFile, sha256_hex};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
+
+/// The number of bytes whose SHA-256 is computed before looking whether there is other work.
+const PIECE_BYTES: usize = 1 << 16;
 
 /// The origin of a clip: what a session needs to have it.
 #[derive(Clone, Debug, Default)]
@@ -36,13 +40,35 @@ impl Source {
     }
 }
 
+/// Goes on with the SHA-256 of a file on a core that has nothing else to do, as long as somebody
+/// has the file.
+fn hash_later(file: Weak<SourceFile>, mut sha256: PiecewiseSha256, done: usize) {
+    rayon::spawn(move || {
+        let Some(own) = file.upgrade() else { return };
+        let Some(bytes) = own.bytes() else { return };
+        let left = bytes.get(done..).unwrap_or_default();
+        let piece = left.get(..PIECE_BYTES).unwrap_or(left);
+        sha256.update(piece);
+        if piece.len() == left.len() {
+            own.set_sha256(sha256.hex());
+            return;
+        }
+        let done = done + piece.len();
+        drop((own, bytes));
+        while rayon::yield_now() == Some(Yield::Executed) {}
+        hash_later(file, sha256, done);
+    });
+}
+
 /// A file that was read. Its SHA-256, which only links need, may be computed later.
+// Nothing is locked while it is computed: a process that is forked meanwhile has none of the
+// threads that would go on, and would wait for them for ever.
 #[derive(Debug)]
 pub(crate) struct SourceFile {
     /// The file, perhaps without its SHA-256.
     read: Arc<ReadFile>,
     /// Its bytes, until the SHA-256 is known.
-    bytes: Mutex<Option<Vec<u8>>>,
+    bytes: Mutex<Option<Arc<Vec<u8>>>>,
     hashed: OnceLock<Arc<ReadFile>>,
 }
 
@@ -53,15 +79,15 @@ impl SourceFile {
         Self { hashed: Arc::clone(&read).into(), read, bytes: Mutex::new(None) }
     }
 
-    /// Returns a file whose SHA-256 is that of some bytes. It is computed on a core that has
-    /// nothing else to do, or by the first caller that asks for it, and the bytes are dropped.
+    /// Returns a file whose SHA-256 is that of some bytes. It is computed while nothing else is, or
+    /// by the first caller that asks for it before that is done.
     pub(crate) fn of_bytes(read: ReadFile, bytes: Vec<u8>) -> Arc<Self> {
-        let (read, bytes) = (Arc::new(read), Mutex::new(Some(bytes)));
-        let own = Arc::new(Self { read, bytes, hashed: OnceLock::new() });
-        let later = Arc::clone(&own);
-        rayon::spawn(move || {
-            later.file();
+        let own = Arc::new(Self {
+            read: Arc::new(read),
+            bytes: Mutex::new(Some(Arc::new(bytes))),
+            hashed: OnceLock::new(),
         });
+        hash_later(Arc::downgrade(&own), PiecewiseSha256::default(), 0);
         own
     }
 
@@ -72,10 +98,24 @@ impl SourceFile {
 
     /// Returns the file with its SHA-256.
     fn file(&self) -> &Arc<ReadFile> {
-        self.hashed.get_or_init(|| {
-            let bytes = self.bytes.lock().unwrap_or_else(PoisonError::into_inner).take();
-            let sha256 = sha256_hex(&bytes.unwrap_or_default());
-            Arc::new(ReadFile { sha256, ..ReadFile::clone(&self.read) })
-        })
+        if self.hashed.get().is_none()
+            && let Some(bytes) = self.bytes()
+        {
+            self.set_sha256(sha256_hex(&bytes));
+        }
+        // Without bytes, it is set.
+        self.hashed.get_or_init(|| Arc::clone(&self.read))
+    }
+
+    /// Returns the bytes, unless the SHA-256 is known.
+    fn bytes(&self) -> Option<Arc<Vec<u8>>> {
+        self.bytes.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Sets the SHA-256, unless it is known, and drops the bytes.
+    fn set_sha256(&self, sha256: String) {
+        let file = Arc::new(ReadFile { sha256, ..ReadFile::clone(&self.read) });
+        self.hashed.get_or_init(|| file);
+        self.bytes.lock().unwrap_or_else(PoisonError::into_inner).take();
     }
 }

@@ -535,13 +535,30 @@ impl ReadClip {
     }
 }
 
+/// The SHA-256 of bytes that come piece by piece.
+#[derive(Clone, Debug, Default)]
+pub struct PiecewiseSha256(Sha256);
+
+impl PiecewiseSha256 {
+    /// Takes the bytes that follow.
+    pub fn update(&mut self, piece: &[u8]) {
+        self.0.update(piece);
+    }
+
+    /// Returns the SHA-256 of all bytes in lower-case hexadecimal.
+    #[must_use]
+    pub fn hex(self) -> String {
+        hex(&self.0.finalize())
+    }
+}
+
 /// Returns the SHA-256 of some bytes in lower-case hexadecimal.
 #[must_use]
 pub fn sha256_hex(bytes: &[u8]) -> String {
     // In pieces, because browsers optimise a function only between calls.
-    let mut digest = Sha256::new();
-    bytes.chunks(1 << 16).for_each(|piece| digest.update(piece));
-    hex(&digest.finalize())
+    let mut sha256 = PiecewiseSha256::default();
+    bytes.chunks(1 << 16).for_each(|piece| sha256.update(piece));
+    sha256.hex()
 }
 
 #[cfg(test)]
