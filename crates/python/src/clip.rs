@@ -29,6 +29,9 @@ use std::sync::Arc;
 /// The number of frames whose kinematics one core computes at a time.
 const FRAMES_PER_PART: usize = 256;
 
+/// The least number of rotations that one core converts at a time.
+const ROTATIONS_PER_PART: usize = 1 << 13;
+
 /// The clips of a file, or the reason why there are none.
 pub(crate) type Loaded = Result<Vec<Clip>, PyErr>;
 
@@ -104,10 +107,11 @@ impl Clip {
     }
 
     /// Returns the rotation of each joint in its parent in each frame.
-    fn rotations_by(&self, components: impl Fn(&Quat) -> [f32; 4] + Sync) -> Vec<f32> {
-        self.by_frame(|clip, frame, (): &mut (), out| {
-            set_each(out, clip.rotations(frame), &components);
-        })
+    fn rotations_by(&self, components: impl Fn(&Quat) -> [f32; 4] + Sync + Send) -> Vec<f32> {
+        let rotations = self.motion.clip().all_rotations().par_iter();
+        let of_all: Vec<[f32; 4]> =
+            rotations.with_min_len(ROTATIONS_PER_PART).map(components).collect();
+        of_all.into_flattened()
     }
 }
 

@@ -223,6 +223,12 @@ impl Clip {
         &self.rotations[frame * joints..(frame + 1) * joints]
     }
 
+    /// Returns the local rotations of all joints in all frames: frame-major, frames × joints long.
+    #[must_use]
+    pub fn all_rotations(&self) -> &[Quat] {
+        &self.rotations
+    }
+
     /// Returns the world translations of the root joint, one per frame, metres.
     #[must_use]
     pub fn root_translations(&self) -> &[Vec3] {
