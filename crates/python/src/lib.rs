@@ -21,7 +21,11 @@ mod origin;
 mod save;
 mod words;
 
+use mimalloc::MiMalloc;
 use pyo3::prelude::*;
+
+#[global_allocator]
+static ALLOCATOR: MiMalloc = MiMalloc;
 
 /// The compiled part of `segue`.
 #[pymodule]
