@@ -96,6 +96,7 @@ await corpusServer(folder, { after: Number(values.after) }, async (address, aske
   note("filters with all histograms", await timed(`document.querySelector("#corpus .tools button").click()`, drawn), { "longest task ms": await longest() });
   note("map", await timed(`[...document.querySelectorAll("#corpus header [role=radio]")][1].click()`, "window.mapsDrawn"), { "longest task ms": await longest() });
   await page.evaluate(() => [...document.querySelectorAll("#corpus header [role=radio]")][0].click());
+  await until("the table is there again", () => page.evaluate(filled));
   const clips = JSON.stringify((await segue("clips")).length);
   note("click until the clip is on the stage", await timed(`document.querySelector("#corpus .row").click()`, `window.segue.clips().length > ${clips} && document.querySelector("#corpus .row[aria-current]")`));
   console.table(rows);

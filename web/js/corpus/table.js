@@ -31,6 +31,7 @@ export class ClipTable {
   /** Requests of thumbnails under way: their rows, and how to stop them. */
   #batches = new Set();
   #frame = 0;
+  #isDue = false;
   #rested = delayed(() => this.#readThumbnails(), REST_MS);
   #resized = new ResizeObserver(() => this.#later());
   #hasEnded = false;
@@ -60,7 +61,7 @@ export class ClipTable {
     this.#active = Math.max(rows.indexOf(before), 0);
     this.#scroller.scrollTop = 0;
     this.#clear();
-    this.#later();
+    this.#soon();
   }
 
   /** Shows these columns of numbers beside the names. `sort` is { by, down }. */
@@ -86,7 +87,7 @@ export class ClipTable {
       element("div", { role: "columnheader", class: "acts" }, [element("span", { class: "unseen", textContent: sentence("putInto") })]),
     );
     if (focused >= 0) this.#head.children[focused]?.querySelector("button")?.focus({ preventScroll: true });
-    this.#later();
+    this.#soon();
   }
 
   /** Marks the row that is on the stage. */
@@ -127,10 +128,26 @@ export class ClipTable {
     this.#scroller.removeAttribute("aria-activedescendant");
   }
 
+  /** Shows the rows in sight with the next frame, once for all that is scrolled until then. */
   #later() {
     if (this.#hasEnded) return;
     cancelAnimationFrame(this.#frame);
     this.#frame = requestAnimationFrame(() => this.#show());
+  }
+
+  /**
+   * Shows the rows in sight at the end of this task: where frames are slow, what is asked for with one and arrives
+   * before the next would be two frames late.
+   */
+  #soon() {
+    if (this.#isDue) return;
+    this.#isDue = true;
+    queueMicrotask(() => {
+      this.#isDue = false;
+      if (this.#hasEnded) return;
+      cancelAnimationFrame(this.#frame);
+      this.#show();
+    });
   }
 
   get #rowHeight() {
@@ -202,7 +219,7 @@ export class ClipTable {
       if (this.#cells.size <= MAX_CELLS) break;
       this.#cells.delete(oldest);
     }
-    this.#later();
+    this.#soon();
   }
 
   async #readThumbnails() {
