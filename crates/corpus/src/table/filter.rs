@@ -245,17 +245,30 @@ impl Table {
 
     /// Returns the rank of each row by its name in lower case.
     fn name_ranks(&self) -> Vec<u32> {
-        let names: Vec<String> =
-            (0..self.rows() as u32).map(|row| self.name(row).to_lowercase()).collect();
-        let mut rows: Vec<u32> = self.by_path().to_vec();
-        let name = |row: &u32| names.get(*row as usize);
-        rows.sort_by(|a, b| name(a).cmp(&name(b)));
+        // All names are in one text: memory for each would take longer than sorting.
+        let (mut text, mut ends) = (String::new(), vec![0]);
+        for row in self.by_path() {
+            let (name, start) = (self.name(*row), text.len());
+            if name.is_ascii() {
+                text.push_str(name);
+                text[start..].make_ascii_lowercase();
+            } else {
+                text.extend(name.chars().flat_map(char::to_lowercase));
+            }
+            ends.push(text.len());
+        }
+        let named = |(row, ends): (&u32, &[usize])| (&text.as_bytes()[ends[0]..ends[1]], *row);
+        let mut rows: Vec<(&[u8], u32)> =
+            self.by_path().iter().zip(ends.windows(2)).map(named).collect();
+        rows.sort_by_key(|(name, _)| *name);
         let mut ranks = vec![0; rows.len()];
         let mut rank = 0;
-        for (at, row) in rows.iter().enumerate() {
+        let mut before = rows.first().map_or(&[][..], |(name, _)| name);
+        for (name, row) in &rows {
             // Equal names have one rank, so that the order of paths remains among them.
-            if at > 0 && name(row) != name(&rows[at - 1]) {
+            if *name != before {
                 rank += 1;
+                before = name;
             }
             ranks[*row as usize] = rank;
         }
