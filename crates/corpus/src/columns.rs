@@ -165,6 +165,21 @@ pub(crate) struct Coded {
     pub(crate) codes: Vec<u8>,
 }
 
+impl Coded {
+    /// Returns its values in ascending order, and how many rows have each.
+    pub(crate) fn levels(&self) -> Vec<(f64, usize)> {
+        let mut counts = [0; 1 << u8::BITS];
+        for code in &self.codes {
+            counts[usize::from(*code)] += 1;
+        }
+        let counted = self.values.iter().zip(counts).filter(|(_, count)| *count > 0);
+        let mut levels: Vec<(f64, usize)> =
+            counted.filter_map(|(value, count)| Some(((*value)?, count))).collect();
+        levels.sort_by(|a, b| a.0.total_cmp(&b.0));
+        levels
+    }
+}
+
 /// The distinct values of columns.
 #[derive(Clone, Debug)]
 pub(crate) struct Lists {
