@@ -394,28 +394,20 @@ impl Table {
 
     /// Returns the values that few clips are below and above.
     fn range(&self, number: Number) -> [f64; 2] {
-        // Few levels are counted in less time than all values are ordered.
-        let levels = match number {
-            Number::Coded(index) => self.columns.coded.get(index).map(Coded::levels),
-            _ => None,
+        let range = |count: usize, nth: &mut dyn FnMut(usize) -> f64| {
+            let Some(last) = count.checked_sub(1) else { return [0.0; 2] };
+            let beyond = (last as f64 * BEYOND) as usize;
+            [beyond, last - beyond].map(|at| rounded(nth(at), DIGITS))
         };
-        let levels = levels.unwrap_or_else(|| {
-            let all = (0..self.rows() as u32).filter_map(|row| self.number(number, row));
-            let mut all: Vec<(f64, usize)> = all.map(|value| (value, 1)).collect();
-            all.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-            all
-        });
-        let count: usize = levels.iter().map(|(_, count)| count).sum();
-        let Some(last) = count.checked_sub(1) else { return [0.0; 2] };
-        let beyond = (last as f64 * BEYOND) as usize;
-        [beyond, last - beyond].map(|at| {
-            let mut before = 0;
-            let level = levels.iter().find(|(_, count)| {
-                before += count;
-                before > at
-            });
-            level.map_or(0.0, |(value, _)| rounded(*value, DIGITS))
-        })
+        if let Number::Coded(index) = number {
+            // Few levels are counted in less time than all values are ordered.
+            let levels = self.columns.coded.get(index).map(Coded::levels).unwrap_or_default();
+            let count = levels.iter().map(|(_, count)| count).sum();
+            return range(count, &mut |at| nth_value(&levels, at));
+        }
+        let all = (0..self.rows() as u32).filter_map(|row| self.number(number, row));
+        let mut values: Vec<f64> = all.collect();
+        range(values.len(), &mut |at| *values.select_nth_unstable_by(at, f64::total_cmp).1)
     }
 
     /// Returns path, name and labels of each place in lower case.
@@ -434,4 +426,14 @@ impl Table {
         }
         texts
     }
+}
+
+/// Returns a value by its place in ascending order, where each level stands for so many values.
+fn nth_value(levels: &[(f64, usize)], at: usize) -> f64 {
+    let mut before = 0;
+    let level = levels.iter().find(|(_, count)| {
+        before += count;
+        before > at
+    });
+    level.map_or(0.0, |(value, _)| *value)
 }

@@ -3,6 +3,7 @@
 use super::terms::Terms;
 use super::{CHOICES, Number, Table};
 use crate::CorpusError;
+use crate::packed::Texts;
 use serde::Deserialize;
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
@@ -245,25 +246,14 @@ impl Table {
 
     /// Returns the rank of each row by its name in lower case.
     fn name_ranks(&self) -> Vec<u32> {
-        // All names are in one text: memory for each would take longer than sorting.
-        let (mut text, mut ends) = (String::new(), vec![0]);
-        for row in self.by_path() {
-            let (name, start) = (self.name(*row), text.len());
-            if name.is_ascii() {
-                text.push_str(name);
-                text[start..].make_ascii_lowercase();
-            } else {
-                text.extend(name.chars().flat_map(char::to_lowercase));
-            }
-            ends.push(text.len());
-        }
-        let named = |(row, ends): (&u32, &[usize])| (&text.as_bytes()[ends[0]..ends[1]], *row);
-        let mut rows: Vec<(&[u8], u32)> =
-            self.by_path().iter().zip(ends.windows(2)).map(named).collect();
+        let mut names = Texts::default();
+        self.by_path().iter().for_each(|row| names.push(&self.name(*row).to_lowercase()));
+        let named = self.by_path().iter().enumerate().map(|(at, row)| (names.get(at), *row));
+        let mut rows: Vec<(&str, u32)> = named.collect();
         rows.sort_by_key(|(name, _)| *name);
         let mut ranks = vec![0; rows.len()];
         let mut rank = 0;
-        let mut before = rows.first().map_or(&[][..], |(name, _)| name);
+        let mut before = rows.first().map_or("", |(name, _)| name);
         for (name, row) in &rows {
             // Equal names have one rank, so that the order of paths remains among them.
             if *name != before {

@@ -281,3 +281,58 @@ proptest! {
         prop_assert_eq!(counts.iter().sum::<u32>() as usize, known.count());
     }
 }
+
+proptest! {
+    #[test]
+    fn values_of_levels_are_those_of_all_rows_in_order(
+        values in prop::collection::vec(prop::option::of(-9.0..9.0), 1..8),
+        codes in prop::collection::vec(0..10_u8, 0..40),
+    ) {
+        let coded = Coded {
+            name: String::new(),
+            label: String::new(),
+            unit: String::new(),
+            help: String::new(),
+            values,
+            codes,
+        };
+        let value = |code: &u8| coded.values.get(usize::from(*code)).copied().flatten();
+        let mut expected: Vec<f64> = coded.codes.iter().filter_map(value).collect();
+        expected.sort_by(f64::total_cmp);
+        let levels = coded.levels();
+        let found: Vec<f64> = (0..expected.len()).map(|at| nth_value(&levels, at)).collect();
+        prop_assert_eq!(found, expected);
+        prop_assert_eq!(levels.iter().map(|level| level.1).sum::<usize>(), coded.codes.iter().filter_map(value).count());
+    }
+}
+
+#[test]
+fn equal_names_keep_the_order_of_paths() {
+    let mut rows = vec![];
+    let mut texts = vec![];
+    for (at, (path, name)) in
+        [("c.bvh", "Ärm"), ("b.bvh", "walk"), ("a.bvh", "Walk"), ("d.bvh", "WALK")]
+            .into_iter()
+            .enumerate()
+    {
+        rows.push(CorpusRow {
+            id: format!("{at:010}-0"),
+            key: format!("{at:010}"),
+            clip: 0,
+            row: ClipRow { format: "bvh".to_owned(), ..ClipRow::of_file(Status::Ok) },
+            poses: None,
+            thumbnail: None,
+            moments: 0,
+            map: None,
+            copy_of: None,
+            is_mirrored: false,
+        });
+        texts.push(RowTexts { path: path.to_owned(), name: name.to_owned(), labels: vec![] });
+    }
+    let table = Table::read(&write_columns(&rows, &texts).unwrap()).unwrap();
+    let sorted = |down: bool| {
+        let sort = Some(Sort { by: "name".to_owned(), down });
+        table.select(&Filter { sort, ..Filter::default() }).unwrap()
+    };
+    assert_eq!((sorted(false), sorted(true)), (vec![2, 1, 3, 0], vec![0, 2, 1, 3]));
+}
