@@ -64,6 +64,10 @@ impl Rounds {
         }
         let most = rayon::current_num_threads();
         let parts = if most > 1 { parts(text, start, PARTS_PER_CORE * most) } else { Vec::new() };
+        if parts.len() < 2 {
+            self.next = usize::MAX;
+            return None;
+        }
         // Within one call of the pool, because each call wakes its threads.
         rayon::scope(|_| self.read_parts(parts, text, start, row, sink))
     }
@@ -76,11 +80,7 @@ impl Rounds {
         row: &mut [f64],
         sink: &mut S,
     ) -> Option<PlainRows> {
-        let (Some(last), true) = (parts.last(), parts.len() > 1) else {
-            self.next = usize::MAX;
-            return None;
-        };
-        let end = last.end;
+        let end = parts.last()?.end;
         // Each row ends in a line feed, if anything here is as usual.
         let line_feeds = |part: &Range<usize>| {
             memchr_iter(b'\n', text.get(part.clone()).unwrap_or_default()).count()
