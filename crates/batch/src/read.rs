@@ -201,3 +201,20 @@ fn skeletons_in(folder: &Path) -> Vec<SkeletonFile> {
     };
     paths.into_iter().filter_map(read).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn large_files_are_read_whole() {
+        let path = std::env::temp_dir().join(format!("segue-batch-{}-large", std::process::id()));
+        let size = LARGE_BYTES as usize + 12_345;
+        let written: Vec<u8> =
+            (0..size as u32).map(|at| (at.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
+        fs::write(&path, &written).unwrap();
+        let read = bytes_of(&path, usize::MAX);
+        fs::remove_file(&path).unwrap();
+        assert!(read.unwrap() == written);
+    }
+}
