@@ -40,6 +40,20 @@ const faults = (page) => page.evaluate(async (axe) => {
   const { violations } = await window.axe.run(document.getElementById("corpus"), { resultTypes: ["violations"] });
   return violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join("\n")}`);
 }, AXE);
+/** Keeps the page from drawing frames until it calls `releaseFrames`. */
+const holdFrames = (page) => page.evaluate(() => {
+  const [request, held] = [window.requestAnimationFrame, []];
+  window.requestAnimationFrame = (callback) => held.push(callback);
+  window.releaseFrames = () => {
+    window.requestAnimationFrame = request;
+    for (const callback of held) request(callback);
+  };
+});
+const typeInto = (page, text) => page.evaluate((text) => {
+  const field = document.querySelector("#corpus input[type=search]");
+  field.value = text;
+  field.dispatchEvent(new Event("input"));
+}, text);
 const corpusClips = async (segue) => (await segue("clips")).filter(({ format, sha256 }) => sha256 && format === "npz");
 
 // Fails when the table is not made of the columns alone, or search, order and filters do not work.
@@ -61,6 +75,13 @@ onOneBackend("corpus opens as a table that is searched, sorted and filtered", as
     await rowsAre(page, "the search is cleared", ({ count }) => count === first.count);
     await search.press("Escape");
     assert.equal(await page.locator("#corpus").count(), 1, "Escape in an empty search closes nothing");
+    // Beside a stage that draws slowly, frames are long.
+    await holdFrames(page);
+    await typeInto(page, first.names[0]);
+    await rowsAre(page, "the search finds without a frame", ({ names, count }) => count === found.count && names.length > 0);
+    await page.evaluate(() => window.releaseFrames());
+    await typeInto(page, "");
+    await rowsAre(page, "the search is cleared again", ({ count }) => count === first.count);
 
     const length = page.getByRole("columnheader", { name: "Length" });
     await length.getByRole("button").click();

@@ -136,8 +136,8 @@ export class ClipTable {
   }
 
   /**
-   * Shows the rows in sight at the end of this task: where frames are slow, what is asked for with one and arrives
-   * before the next would be two frames late.
+   * Shows the rows in sight at the end of this task. To wait for a frame before their texts are requested, and for
+   * another before these are shown, would cost two frames, which are long beside a stage that draws slowly.
    */
   #soon() {
     if (this.#isDue) return;
