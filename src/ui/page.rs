@@ -69,16 +69,15 @@ fn notices_on_stage(stage: Rect, is_small: bool, theme: Theme) -> NoticePlace {
     NoticePlace { row, heading_end: row.left() - space::S }
 }
 
-fn panel_frame(ui: &Ui, horizontal: f32, vertical: f32) -> Frame {
-    Frame::new()
-        .fill(palette_of(ui).panel)
-        .inner_margin(Margin::symmetric(horizontal as i8, vertical as i8))
+/// Returns the frame of a panel. It fills nothing: the page is cleared in the colour of panels.
+fn panel_frame(horizontal: f32, vertical: f32) -> Frame {
+    Frame::new().inner_margin(Margin::symmetric(horizontal as i8, vertical as i8))
 }
 
 /// Returns the frame of a panel that scrolls, with room for the scroll bar at the right edge, so
 /// that it does not cover numbers and units.
-fn scrolling_frame(ui: &Ui, horizontal: f32, vertical: f32) -> Frame {
-    let mut frame = panel_frame(ui, horizontal, vertical);
+fn scrolling_frame(horizontal: f32, vertical: f32) -> Frame {
+    let mut frame = panel_frame(horizontal, vertical);
     frame.inner_margin.right = BAR_MARGIN as i8;
     frame
 }
@@ -136,7 +135,7 @@ fn desk_ui(
 ) {
     let scale = theme_of(ui).scale();
     let height = ui.available_height();
-    let frame = panel_frame(ui, space::L, space::S);
+    let frame = panel_frame(space::L, space::S);
     Panel::top("top bar").exact_size(bar_height(ui)).frame(frame).show(ui, |ui| {
         kit::set_role(Role::Banner, text::TOP_BAR, ui);
         top_bar::top_bar_ui(session, layout, state, out, ui);
@@ -155,18 +154,18 @@ fn desk_ui(
     let least = state.timeline_least.min(0.55 * height);
     Panel::bottom("timeline")
         .exact_size(timeline_height(session, height, scale).max(least).round())
-        .frame(panel_frame(ui, space::L, space::S))
+        .frame(panel_frame(space::L, space::S))
         .resizable(false)
         .show(ui, |ui| {
             kit::set_role(Role::Region, text::TIMELINE, ui);
             timeline_panel_ui(session, layout, curves, state, out, ui);
             note_least_height(state, ui);
         });
-    let side = |ui: &Ui| panel_frame(ui, space::M, space::M);
+    let side = panel_frame(space::M, space::M);
     if lesson && layout == Layout::Desk {
         Panel::left("lesson")
             .exact_size(lessons_panel::width(ui.available_width(), scale))
-            .frame(scrolling_frame(ui, space::L, space::M))
+            .frame(scrolling_frame(space::L, space::M))
             .resizable(false)
             .show(ui, |ui| {
                 kit::set_role(Role::Complementary, text::LESSON, ui);
@@ -174,7 +173,7 @@ fn desk_ui(
             });
     }
     if state.library_open || !has_drawer(session, layout) {
-        Panel::left("library").exact_size(244.0 * scale).frame(side(ui)).resizable(false).show(
+        Panel::left("library").exact_size(244.0 * scale).frame(side).resizable(false).show(
             ui,
             |ui| {
                 kit::set_role(Role::Complementary, text::LIBRARY, ui);
@@ -188,7 +187,7 @@ fn desk_ui(
     if state.labs.graph.has_map_panel {
         Panel::right("graph map")
             .exact_size((labs::side_panel_share(session) * ui.available_width()).round())
-            .frame(panel_frame(ui, space::M, space::M))
+            .frame(panel_frame(space::M, space::M))
             .resizable(false)
             .show(ui, |ui| {
                 kit::set_role(Role::Region, text::MAP, ui);
@@ -224,7 +223,7 @@ fn lab_side_ui(
     let scale = theme_of(ui).scale();
     Panel::right("lab")
         .exact_size(if shared { 340.0 } else { 288.0 } * scale)
-        .frame(scrolling_frame(ui, space::L, space::M))
+        .frame(scrolling_frame(space::L, space::M))
         .resizable(false)
         .show(ui, |ui| {
             kit::set_role(Role::Form, text::PARAMETERS, ui);
@@ -302,7 +301,7 @@ fn slim_time_ui(
     } else {
         panel.default_size(136.0 * scale)
     };
-    panel.frame(panel_frame(ui, margin, space::S)).show(ui, |ui| {
+    panel.frame(panel_frame(margin, space::S)).show(ui, |ui| {
         kit::set_role(Role::Region, text::TIMELINE, ui);
         timeline_panel_ui(session, Layout::Phone, curves, state, out, ui);
     });
@@ -317,7 +316,7 @@ fn phone_ui(
     paint: Paint<'_>,
     ui: &mut Ui,
 ) {
-    let frame = panel_frame(ui, space::M, space::S);
+    let frame = panel_frame(space::M, space::S);
     Panel::top("top bar").exact_size(bar_height(ui)).frame(frame).show(ui, |ui| {
         kit::set_role(Role::Banner, text::TOP_BAR, ui);
         top_bar::top_bar_ui(session, Layout::Phone, state, out, ui);
@@ -335,7 +334,7 @@ fn phone_ui(
         stage_panel_ui(session, Layout::Phone, state, out, paint, ui);
     });
     slim_time_ui(Panel::top("timeline"), space::L, session, state, curves, out, ui);
-    egui::CentralPanel::default().frame(scrolling_frame(ui, space::L, space::M)).show(ui, |ui| {
+    egui::CentralPanel::default().frame(scrolling_frame(space::L, space::M)).show(ui, |ui| {
         let part = if state.library_open {
             (Role::Complementary, text::LIBRARY)
         } else {
@@ -379,7 +378,7 @@ fn embedded_ui(
     let scale = theme_of(ui).scale();
     slim_time_ui(Panel::bottom("timeline"), space::M, session, state, curves, out, ui);
     if labs::has_named_params(session) {
-        let frame = panel_frame(ui, space::M, space::S).stroke(Stroke::NONE);
+        let frame = panel_frame(space::M, space::S).stroke(Stroke::NONE);
         Panel::bottom("parameters").frame(frame).show(ui, |ui| {
             kit::set_role(Role::Form, text::PARAMETERS, ui);
             labs::named_params_ui(session, out, ui);

@@ -100,7 +100,6 @@ impl Strip {
         }
         let palette = palette_of(ui);
         let line = Stroke::new(theme_of(ui).hairline(), palette.line);
-        ui.painter().rect_filled(self.place, 0.0, palette.panel);
         ui.painter().hline(self.place.x_range(), self.place.top(), line);
         for (_, pane) in self.panes.iter().skip(1) {
             ui.painter().vline(pane.left(), self.place.y_range(), line);
