@@ -33,6 +33,9 @@ const LIBRARIES: [&str; 10] = [
     "segue-cli",
 ];
 
+/// The options of cargo for the app as it is tested: without what only a user's desktop needs.
+const UI_TESTS: &[&str] = &["--no-default-features", "--features=segue/ui-tests"];
+
 type Part = fn(&mut Report);
 
 pub fn run(names: &[&str]) -> Result<()> {
@@ -88,7 +91,7 @@ impl Beside {
 
 fn lint(report: &mut Report) {
     report.run("rustfmt", cargo(&["fmt", "--all", "--check"]));
-    report.run("clippy", clippy(&["--workspace", "--all-targets", "--features=ui-tests"]));
+    report.run("clippy", clippy(&[&["--workspace", "--all-targets"], UI_TESTS].concat()));
     report.step("clippy, web", || {
         tools::ensure_wasm_target()?;
         tools::clang()?;
@@ -173,13 +176,8 @@ fn command_line() -> Result<PathBuf> {
 fn app(report: &mut Report) {
     report.step("tests, whole app", || {
         tools::software_vulkan()?;
-        shell::run(&mut cargo(&[
-            "test",
-            "--locked",
-            "--package=segue",
-            "--features=ui-tests",
-            "--bin=segue-app",
-        ]))?;
+        let tests = ["test", "--locked", "--package=segue", "--bin=segue-app"];
+        shell::run(cargo(&tests).args(UI_TESTS))?;
         shell::run(&mut cargo(&["test", "--locked", "--package=xtask"]))
     });
 }
