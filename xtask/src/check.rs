@@ -33,6 +33,9 @@ const LIBRARIES: [&str; 10] = [
     "segue-cli",
 ];
 
+/// The first part that needs what [`install_for_tests`] installs.
+const NEEDS_OTHERS: &str = "oracles";
+
 /// The options of cargo for the app as it is tested: without what only a user's desktop needs.
 const UI_TESTS: &[&str] = &["--no-default-features", "--features=segue/ui-tests"];
 
@@ -52,13 +55,51 @@ pub fn run(names: &[&str]) -> Result<()> {
     }
     // The page ends in long links on one core: the other core builds and runs the tests meanwhile.
     let mut web = Some(Beside::start("web")?);
+    // What is fetched needs no core.
+    let mut others = Some(std::thread::spawn(install_for_tests));
     for (name, part) in PARTS {
+        if let Some(others) = others.take_if(|_| name == NEEDS_OTHERS) {
+            report.step("installing, beside the above", || {
+                others.join().unwrap_or_else(|_| fail("what installs panicked"))
+            });
+        }
         match web.take_if(|web| web.part == name) {
             Some(web) => report.step("web build as deployed, beside the above", || web.finish()),
             None => part(&mut report),
         }
     }
     report.close()
+}
+
+/// Installs what the tests use beside Rust.
+fn install_for_tests() -> Result<()> {
+    tools::software_vulkan()?;
+    tools::chromium()?;
+    tools::browser_packages()?;
+    python_with_bvhio()?;
+    python_with_numpy()?;
+    python_for_package()?;
+    Ok(())
+}
+
+fn python_with_bvhio() -> Result<PathBuf> {
+    tools::python("bvhio", &["bvhio==1.5.4"])
+}
+
+fn python_with_numpy() -> Result<PathBuf> {
+    tools::python("numpy", &["numpy==1.26.4"])
+}
+
+/// Returns a Python with what builds and tests `import segue`.
+fn python_for_package() -> Result<PathBuf> {
+    let listed = fs::read_to_string(python_package().join("tests/requirements.txt"))?;
+    let is_package = |line: &&str| !line.is_empty() && !line.starts_with('#');
+    let packages: Vec<&str> = listed.lines().map(str::trim).filter(is_package).collect();
+    tools::python("segue", &packages)
+}
+
+fn python_package() -> PathBuf {
+    root().join("crates/python")
 }
 
 /// A part that runs in a process of its own, beside the others.
@@ -126,23 +167,22 @@ fn tests_without_ui() -> Command {
 fn oracles(report: &mut Report) {
     report.step("exported files in three.js, bvhio and NumPy", || {
         tools::browser_packages()?;
-        let python = tools::python("bvhio", &["bvhio==1.5.4"])?;
+        let python = python_with_bvhio()?;
         shell::run(tests_without_ui().arg("--test=exchange"))?;
         let files = shell::target().join("tmp/exchange");
         shell::run(command("node", &["tests/browser/read_back.mjs"]).arg(&files))?;
         shell::run(command(python, &["crates/formats/tests/oracles/read_back.py"]).arg(&files))?;
-        let numpy = tools::python("numpy", &["numpy==1.26.4"])?;
-        shell::run(command(numpy, &["crates/formats/tests/oracles/read_back_npz.py"]).arg(&files))
+        shell::run(
+            command(python_with_numpy()?, &["crates/formats/tests/oracles/read_back_npz.py"])
+                .arg(&files),
+        )
     });
 }
 
 fn python(report: &mut Report) {
     report.step("import segue", || {
-        let package = root().join("crates/python");
-        let listed = fs::read_to_string(package.join("tests/requirements.txt"))?;
-        let is_package = |line: &&str| !line.is_empty() && !line.starts_with('#');
-        let packages: Vec<&str> = listed.lines().map(str::trim).filter(is_package).collect();
-        let python = tools::python("segue", &packages)?;
+        let package = python_package();
+        let python = python_for_package()?;
         // By the profile of the tests: what lies below the libraries is built already, and the
         // wheel that users get takes minutes to optimise.
         let wheels = shell::target().join("wheels");
