@@ -7,6 +7,7 @@
 
 mod buffers;
 mod callback;
+mod coarse_mesh;
 mod encode;
 mod frame;
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! The stage as a paint callback of egui.
 
 use super::StageRenderer;
+use super::renderer::REFINE_AFTER;
 use eframe::egui::{self, PaintCallbackInfo, epaint::ViewportInPixels};
 use eframe::egui_wgpu::{
     Callback, CallbackResources, CallbackTrait, RenderState, ScreenDescriptor,
@@ -8,7 +9,6 @@ use eframe::egui_wgpu::{
 use eframe::wgpu;
 use segue_scene::Stage;
 use std::sync::Arc;
-use std::time::Duration;
 
 /// Makes the renderer, and stores it in egui's resources. Call it once, when the app is created.
 pub(crate) fn install(render_state: &RenderState) {
@@ -34,9 +34,6 @@ pub(crate) fn paint_callback(
         StageCallback { id, rect, stage, ctx },
     ))
 }
-
-/// The time without a change after which a coarsely drawn stage is drawn finely.
-const REFINE_AFTER: Duration = Duration::from_millis(200);
 
 /// Returns the size in physical pixels of the target for a stage in `rect`. The viewports of the
 /// panes divide it.
@@ -69,6 +66,7 @@ impl CallbackTrait for StageCallback {
     ) -> Vec<wgpu::CommandBuffer> {
         if let Some(renderer) = resources.get_mut::<StageRenderer>() {
             let size = in_pixels(self.rect, screen.pixels_per_point, screen.size_in_pixels);
+            renderer.set_time(self.ctx.input(|input| input.time));
             let prepared = renderer.prepare(device, queue, encoder, self.id, &self.stage, size);
             if !prepared.complete {
                 self.ctx.request_repaint();

@@ -6,7 +6,7 @@ use super::light::LightMap;
 use super::mesh::ConeBuffers;
 use super::pipelines::{PipelineKind, Pipelines};
 use super::skins::SkinStore;
-use super::view::View;
+use super::view::{PictureState, View};
 use eframe::wgpu;
 use std::cell::Cell;
 
@@ -282,8 +282,10 @@ impl StageEncoder<'_> {
             pass.set_bind_group(2, view.joints.bound.as_ref(), &[]);
             pass.set_vertex_buffer(0, mesh.vertices.slice(..));
             pass.set_vertex_buffer(1, instances.slice(..));
-            pass.set_index_buffer(mesh.indices.slice(..), wgpu::IndexFormat::Uint32);
-            pass.draw_indexed(0..mesh.index_count, 0, skin.instances.clone());
+            let coarse = mesh.coarse.as_ref().filter(|_| view.shown == PictureState::Coarse);
+            let triangles = coarse.unwrap_or(&mesh.fine);
+            pass.set_index_buffer(triangles.indices.slice(..), wgpu::IndexFormat::Uint32);
+            pass.draw_indexed(0..triangles.index_count, 0, skin.instances.clone());
         }
     }
 

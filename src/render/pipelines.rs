@@ -71,7 +71,8 @@ impl PipelineKind {
 }
 
 /// The pipelines of a device. WebGL takes long to make one, so the first picture is drawn with the
-/// essential ones, and the others are made one in a frame.
+/// essential ones, and the others are made one in a frame: in software, where a frame takes longer
+/// than all of them, in one.
 pub(super) struct Pipelines {
     device: wgpu::Device,
     pub(super) view_layout: wgpu::BindGroupLayout,
@@ -190,14 +191,15 @@ impl Pipelines {
         slot.get()
     }
 
-    /// Makes the most important of the requested pipelines.
-    pub(super) fn make_next(&self) {
+    /// Makes the most important of the requested pipelines. Returns `false` where there is none.
+    pub(super) fn make_next(&self) -> bool {
         let requested = self.requested.load(Ordering::Relaxed);
         let Some(&kind) = PipelineKind::ALL.iter().find(|&&kind| requested & 1 << kind as u32 != 0)
         else {
-            return;
+            return false;
         };
         self.stage[kind as usize].get_or_init(|| self.make(kind));
         self.requested.fetch_and(!(1 << kind as u32), Ordering::Relaxed);
+        true
     }
 }

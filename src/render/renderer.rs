@@ -13,6 +13,7 @@ use super::targets::Targets;
 use super::view::{PictureState, View};
 use eframe::wgpu;
 use segue_scene::Stage;
+use std::time::Duration;
 
 /// A renderer of stages, one per device. Every stage on the page has an id of its own.
 pub(crate) struct StageRenderer {
@@ -28,6 +29,8 @@ pub(crate) struct StageRenderer {
     light: Option<LightMap>,
     skins: SkinStore,
     views: Vec<(u64, View)>,
+    /// The time of the present frame, seconds.
+    now_secs: f64,
     /// The frame under construction. It is swapped with the one last drawn.
     scratch: Frame,
     bytes: Vec<u8>,
@@ -47,6 +50,10 @@ pub(crate) struct PrepareOutcome {
 /// The greatest number of pixels of a changing picture without a graphics card. More would make the
 /// motion stutter.
 const MAX_PLAIN_PIXELS: f32 = 180_000.0;
+
+/// The time without a change after which a coarsely drawn stage is drawn finely. The fine picture
+/// takes longer than two coarse ones, and would hold up who drags with short rests.
+pub(super) const REFINE_AFTER: Duration = Duration::from_millis(400);
 
 /// The number of frames of other stages after which the memory of a stage is freed.
 const FORGET_AFTER: u32 = 240;
@@ -82,6 +89,7 @@ impl StageRenderer {
                 Quality::Full
             },
             views: Vec::new(),
+            now_secs: 0.0,
             scratch: Frame::default(),
             bytes: Vec::new(),
         }
@@ -91,6 +99,11 @@ impl StageRenderer {
     #[cfg(test)]
     pub(crate) fn set_quality(&mut self, quality: Quality) {
         self.quality = quality;
+    }
+
+    /// Sets the time of the frame that is prepared next, seconds.
+    pub(super) fn set_time(&mut self, now_secs: f64) {
+        self.now_secs = now_secs;
     }
 
     /// Returns the resources of the stage of that id.
@@ -106,8 +119,9 @@ impl StageRenderer {
 
     /// Draws `stage` into its own target of `size` pixels, unless nothing has changed.
     ///
-    /// With [`Quality::Plain`], a changed stage is drawn smaller and stretched. When it is prepared
-    /// again without a change, it is drawn finely.
+    /// With [`Quality::Plain`], a changed stage is drawn with fewer triangles, and where it is
+    /// large, smaller and stretched. When it is prepared again after some time without a change, it
+    /// is drawn finely.
     pub(crate) fn prepare(
         &mut self,
         device: &wgpu::Device,
@@ -139,9 +153,14 @@ impl StageRenderer {
         let small = self.coarse_size(size);
         self.scratch.build(stage, size, small.unwrap_or(size), self.quality);
         if view.shown != PictureState::Nothing {
-            self.pipelines.make_next();
+            while self.pipelines.make_next() && self.quality == Quality::Plain {}
         }
         let changed = !view.complete || view.drawn != self.scratch;
+        if changed {
+            view.changed_secs = self.now_secs;
+        }
+        // A frame that was asked for at that time may come a little early.
+        let rests = self.now_secs - view.changed_secs >= 0.9 * REFINE_AFTER.as_secs_f64();
         let draw = match (changed, small) {
             (true, Some(small)) => {
                 let fits = view.coarse.as_ref().is_some_and(|targets| targets.size == small);
@@ -151,7 +170,7 @@ impl StageRenderer {
                 Some(PictureState::Coarse)
             }
             (true, None) => Some(PictureState::Fine),
-            (false, _) if view.shown == PictureState::Coarse => Some(PictureState::Fine),
+            (false, _) if view.shown == PictureState::Coarse && rests => Some(PictureState::Fine),
             (false, _) => None,
         };
         if let Some(shown) = draw {
@@ -182,13 +201,14 @@ impl StageRenderer {
         Targets::new(device, &self.pipelines, size)
     }
 
-    /// Returns the size of the smaller picture of a stage; `None` where none is needed.
+    /// Returns the size of the picture of a stage in motion; `None` where it is that of a stage at
+    /// rest.
     fn coarse_size(&self, [width, height]: [u32; 2]) -> Option<[u32; 2]> {
-        let pixels = width as f32 * height as f32;
-        if self.quality == Quality::Full || pixels <= MAX_PLAIN_PIXELS {
+        if self.quality == Quality::Full {
             return None;
         }
-        let scale = (MAX_PLAIN_PIXELS / pixels).sqrt();
+        let pixels = width as f32 * height as f32;
+        let scale = (MAX_PLAIN_PIXELS / pixels).sqrt().min(1.0);
         Some([width, height].map(|side| ((side as f32 * scale) as u32).max(1)))
     }
 
@@ -219,7 +239,7 @@ impl StageRenderer {
             figures_bound,
             ..
         } = view;
-        self.skins.load(device, queue, &drawn.meshes);
+        self.skins.load(device, queue, &drawn.meshes, self.quality);
         if !drawn.skins.is_empty() {
             joints.write(device, queue, &self.pipelines, &drawn.joints);
         }

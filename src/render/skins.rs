@@ -2,9 +2,11 @@
 //! texture.
 
 use super::buffers::filled_buffer;
+use super::coarse_mesh::coarse_triangles;
 use super::frame::SharedMesh;
 use super::layout::{JointTexels, SkinVertex};
 use super::pipelines::Pipelines;
+use super::quality::Quality;
 use eframe::wgpu;
 use segue_motion::skin::SkinnedMesh;
 use std::sync::{Arc, Weak};
@@ -16,6 +18,13 @@ const JOINTS_IN_ROW: usize = 512;
 pub(super) struct SkinBuffers {
     mesh: Weak<SkinnedMesh>,
     pub(super) vertices: wgpu::Buffer,
+    pub(super) fine: Triangles,
+    /// Fewer triangles, for pictures in motion without a graphics card; `None` with one.
+    pub(super) coarse: Option<Triangles>,
+}
+
+/// Triangles between the vertices of a mesh.
+pub(super) struct Triangles {
     pub(super) indices: wgpu::Buffer,
     pub(super) index_count: u32,
 }
@@ -48,9 +57,18 @@ fn vertices(mesh: &SkinnedMesh) -> Vec<SkinVertex> {
 }
 
 impl SkinBuffers {
-    fn new(device: &wgpu::Device, queue: &wgpu::Queue, mesh: &Arc<SkinnedMesh>) -> Self {
+    fn new(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        mesh: &Arc<SkinnedMesh>,
+        quality: Quality,
+    ) -> Self {
         let buffer = |contents: &[u8], usage| filled_buffer(device, queue, "skin", contents, usage);
         let vertices = vertices(mesh);
+        let uploaded = |triangles: &[[u32; 3]]| Triangles {
+            indices: buffer(bytemuck::cast_slice(triangles), wgpu::BufferUsages::INDEX),
+            index_count: 3 * triangles.len() as u32,
+        };
         // A triangle with an invalid corner is left out.
         let inside = |triangle: &&[u32; 3]| {
             triangle.iter().all(|&corner| (corner as usize) < vertices.len())
@@ -59,8 +77,8 @@ impl SkinBuffers {
         Self {
             mesh: Arc::downgrade(mesh),
             vertices: buffer(bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX),
-            indices: buffer(bytemuck::cast_slice(&triangles), wgpu::BufferUsages::INDEX),
-            index_count: 3 * triangles.len() as u32,
+            fine: uploaded(&triangles),
+            coarse: (quality == Quality::Plain).then(|| uploaded(&coarse_triangles(mesh))),
         }
     }
 }
@@ -76,11 +94,12 @@ impl SkinStore {
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         meshes: &[SharedMesh],
+        quality: Quality,
     ) {
         self.0.retain(|buffers| buffers.mesh.strong_count() > 0);
         for SharedMesh(mesh) in meshes {
             if self.get(mesh).is_none() {
-                self.0.push(SkinBuffers::new(device, queue, mesh));
+                self.0.push(SkinBuffers::new(device, queue, mesh, quality));
             }
         }
     }

@@ -14,6 +14,8 @@ pub(super) struct View {
     pub(super) coarse: Option<Targets>,
     pub(super) drawn: Frame,
     pub(super) shown: PictureState,
+    /// The time of its last change, seconds.
+    pub(super) changed_secs: f64,
     /// Whether every part of the frame was drawn.
     pub(super) complete: bool,
     pub(super) limbs: GrowingBuffer,
@@ -55,6 +57,7 @@ impl View {
             coarse: None,
             drawn: Frame::default(),
             shown: PictureState::Nothing,
+            changed_secs: 0.0,
             complete: false,
             limbs: GrowingBuffer::new("limbs", vertex),
             skins: GrowingBuffer::new("skins", vertex),

@@ -14,20 +14,27 @@ fn stage_in_software_is_coarse_in_motion_and_fine_at_rest() {
     let Some(mut gpu) = gpu() else { return };
     let actors = actors();
     let size = [960, 600];
-    let mut stage = stage(&actors, size, 2, false, 1.0);
     gpu.renderer.set_quality(Quality::Plain);
-    let mut prepared = |stage: &Stage| {
+    let mut prepared = |secs: f64, stage: &Stage, size: [u32; 2]| {
         let mut encoder =
             gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        gpu.renderer.set_time(secs);
         let prepared = gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 5, stage, size);
         gpu.queue.submit([encoder.finish()]);
         (prepared.drawn, prepared.to_be_refined)
     };
-    assert_eq!(prepared(&stage), (true, true));
-    assert_eq!(prepared(&stage), (true, false));
-    assert_eq!(prepared(&stage), (false, false));
-    stage.panes[0].camera.yaw += 0.1;
-    assert_eq!(prepared(&stage), (true, true));
+    // A small stage, too: it has as many triangles.
+    for size in [size, [64, 40]] {
+        let mut stage = stage(&actors, size, 2, false, 1.0);
+        assert_eq!(prepared(3.0, &stage, size), (true, true));
+        assert_eq!(prepared(3.2, &stage, size), (false, true));
+        assert_eq!(prepared(3.5, &stage, size), (true, false));
+        assert_eq!(prepared(9.0, &stage, size), (false, false));
+        stage.panes[0].camera.yaw += 0.1;
+        assert_eq!(prepared(9.1, &stage, size), (true, true));
+        assert_eq!(prepared(9.3, &stage, size), (false, true));
+    }
+    let stage = stage(&actors, size, 2, false, 1.0);
 
     // The coarse frame has the same panes at the same positions.
     let (mut fine, mut coarse) = (Frame::default(), Frame::default());
@@ -46,6 +53,7 @@ fn stage_in_software_is_coarse_in_motion_and_fine_at_rest() {
 fn stage_without_size_or_with_a_pane_outside_is_drawn() {
     let Some(mut gpu) = gpu() else { return };
     let actors = actors();
+    gpu.renderer.set_quality(Quality::Full);
     let mut stage = stage(&actors, [64, 64], 1, false, 1.0);
     assert!(render_to_image(&mut gpu.renderer, &gpu.device, &gpu.queue, &stage, [0, 64]).is_err());
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
