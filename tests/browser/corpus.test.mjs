@@ -59,7 +59,7 @@ const corpusClips = async (segue) => (await segue("clips")).filter(({ format, sh
 // Fails when the table is not made of the columns alone, or search, order and filters do not work.
 onOneBackend("corpus opens as a table that is searched, sorted and filtered", async ({ open }) => {
   await corpusServer(FOLDER, {}, async (address, asked) => {
-    const { page } = await open(link(address), DESK);
+    const { page, segue } = await open(link(address), DESK);
     const first = await opened(page);
     assert.deepEqual(first.names, first.names.toSorted(), "by name");
     assert.ok(!asked.some(({ name }) => name.startsWith("poses")), "no motion is read for the table");
@@ -112,7 +112,20 @@ onOneBackend("corpus opens as a table that is searched, sorted and filtered", as
     await page.getByRole("radio", { name: "Only" }).click();
     await rowsAre(page, "copies are found", ({ count }) => count > 0 && count < first.count);
     await page.getByRole("radio", { name: "Hide" }).click();
-    await rowsAre(page, "copies are hidden", ({ count, details }) => count < first.count && !details.some((text) => text.includes("copy")));
+    const last = await rowsAre(page, "copies are hidden", ({ count, details }) => count < first.count && !details.some((text) => text.includes("copy")));
+
+    // The link shows the same to others, and another link another part.
+    const inLink = async () => new URL(await segue("url")).searchParams.get("corpus");
+    await until("the link has what is shown", async () => (await inLink()) === `${address}#copies=hide&sort=-seconds`);
+    const again = await open(new URL(await segue("url")).search.slice(1), DESK);
+    await rowsAre(again.page, "the same rows are shown", ({ names, count }) => count === last.count && names.join() === last.names.join());
+    await again.page.getByRole("button", { name: "Filters" }).click();
+    assert.equal(await again.page.getByRole("radio", { name: "Hide" }).getAttribute("aria-checked"), "true");
+    await again.segue("set", { corpus: `${address}#search=${encodeURIComponent(first.names[0])}` });
+    await rowsAre(again.page, "another search is shown", ({ count }) => count === found.count);
+    assert.equal(await again.page.getByRole("searchbox").inputValue(), first.names[0]);
+    await again.segue("set", { corpus: `${address}#seconds=a..&labels=nobody&copies=some&sort=-nothing&fps=9..1&=..` });
+    await rowsAre(again.page, "what is wrong leaves out nothing", ({ names, count }) => count === first.count && names.every((name, row) => name === first.names[row]));
   });
 });
 

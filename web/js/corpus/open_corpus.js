@@ -2,6 +2,7 @@
 // what is on the stage beside it.
 
 import { button, delayed, element, icon } from "./elements.js";
+import { filterOf, filterText } from "./filter_link.js";
 import { Filters } from "./filters.js";
 import { BINS } from "./histogram.js";
 import { Playback } from "./playback.js";
@@ -16,7 +17,8 @@ export class OpenCorpus {
   #facts;
   #hooks;
   #playback;
-  #filter = { text: "", ranges: {}, choices: {}, copies: "all", sort: { by: "name", down: false } };
+  /** { text, ranges, choices, copies, sort }; changed in place. */
+  #filter;
   #rows = new Uint32Array();
   /** A search or copies instead of all clips: { word, values } of its title, and `hits` or `near`. */
   #list;
@@ -34,11 +36,13 @@ export class OpenCorpus {
   /**
    * @param client of its worker
    * @param facts what it says of itself
-   * @param hooks api, player, layout and targets
+   * @param hooks api, player, layout, targets, and `filtered`, called when what is shown has changed
+   * @param filter what is shown first, as in `filter`
    */
-  constructor(place, client, facts, hooks) {
+  constructor(place, client, facts, hooks, filter) {
     this.place = place;
     [this.#client, this.#facts, this.#hooks] = [client, facts, hooks];
+    this.#filter = filterOf(filter, facts.columns);
     client.isShown = true;
     this.#playback = new Playback(this, hooks);
   }
@@ -59,6 +63,19 @@ export class OpenCorpus {
 
   get hasEnded() {
     return this.#ended.signal.aborted;
+  }
+
+  /** What is shown, as it stands behind the address of the corpus. */
+  get filter() {
+    return filterText(this.#filter);
+  }
+
+  set filter(text) {
+    const filter = filterOf(text, this.#facts.columns);
+    if (filterText(filter) === this.filter) return;
+    Object.assign(this.#filter, filter);
+    this.#parts.filters?.update();
+    this.#changed();
   }
 
   /** Aborted when the corpus is closed. */
@@ -201,6 +218,7 @@ export class OpenCorpus {
   #changed() {
     this.#list = undefined;
     this.#refreshSoon();
+    this.#hooks.filtered();
   }
 
   /** Reads the rows, and shows them. */
@@ -260,6 +278,7 @@ export class OpenCorpus {
     this.#filter.sort = { by, down };
     if (this.#list?.hits) this.#list = undefined;
     this.refresh();
+    this.#hooks.filtered();
   }
 
   #toggleFilters() {

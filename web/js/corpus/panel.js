@@ -30,6 +30,9 @@ export class Panel {
   #turn = 0;
   #language = document.documentElement.lang;
   #followSoon = delayed(() => this.#follow(), 150);
+  #linkSoon = delayed(() => this.#link(), 300);
+  /** The text that the panel has put into the link by itself. */
+  #linked;
 
   /** Makes the panel, with its style. */
   static async make(api, discard) {
@@ -57,17 +60,35 @@ export class Panel {
 
   // What is open.
 
-  /** Shows the corpus at an address; without one, closes the one that an address names. */
+  /**
+   * Shows the corpus at an address, with the filter behind it; without one, closes the one that an
+   * address names.
+   */
   async show(text) {
+    if (text === this.#linked) return;
+    this.#linked = undefined;
     if (!text) {
       if (this.#place && !this.#place.files) this.#close();
       return;
     }
     const address = corpusAddress(text);
     if (!address) return this.#fail({ name: text }, new Error(sentence("wrongAddress")));
+    const filter = text.split("#").slice(1).join("#");
     const isHere = this.#place?.address === address && (this.#isOpening || (this.#open && !this.#open.hasFailed));
-    if (isHere) return this.#layout.showPanel(true);
-    await this.#connect({ address, name: corpusName(address) }, () => corpusAt(address));
+    if (!isHere) return this.#connect({ address, name: corpusName(address), filter }, () => corpusAt(address));
+    this.#place.filter = filter;
+    if (this.#open) this.#open.filter = filter;
+    this.#layout.showPanel(true);
+  }
+
+  /** Puts what the table shows into the link. */
+  #link() {
+    const { address, files } = this.#place ?? {};
+    if (!this.#open || !address || files || !this.#api.params().corpus) return;
+    const { filter } = this.#open;
+    this.#linked = filter ? `${address}#${filter}` : address;
+    this.#place.filter = filter;
+    if (this.#linked !== this.#api.params().corpus) this.#api.set({ corpus: this.#linked }).catch((reason) => console.error(reason));
   }
 
   /** Lets the user choose a corpus. */
@@ -117,7 +138,8 @@ export class Panel {
       const facts = await client.opened;
       await loadCatalogue();
       if (turn !== this.#turn) return;
-      this.#open = new OpenCorpus(place, client, facts, { api: this.#api, player: this.#player, layout: this.#layout, targets: this.#targets });
+      const hooks = { api: this.#api, player: this.#player, layout: this.#layout, targets: this.#targets, filtered: () => this.#linkSoon() };
+      this.#open = new OpenCorpus(place, client, facts, hooks, place.filter);
     } catch (reason) {
       if (turn === this.#turn) this.#fail(place, reason);
       return;
@@ -136,6 +158,7 @@ export class Panel {
   /** Begins to show something else. Returns its turn. */
   #begin(place) {
     this.#open?.end();
+    this.#linkSoon.cancel();
     [this.#open, this.#place, this.#isOpening] = [undefined, place, false];
     this.#layout.attach(this.#targets.root);
     this.#theme();
@@ -145,14 +168,15 @@ export class Panel {
   #fail(place, reason) {
     this.#begin(place);
     console.info(reason);
-    const again = place.address && (() => this.show(place.address));
+    const again = place.address && (() => this.show(place.filter ? `${place.address}#${place.filter}` : place.address));
     this.#build(() => [failure(reason, { again, choose: () => this.choose() })]);
   }
 
   #close() {
     const hadFocus = this.#root.contains(document.activeElement) || document.activeElement === document.body;
     this.#open?.end();
-    [this.#open, this.#place, this.#isOpening] = [undefined, undefined, false];
+    this.#linkSoon.cancel();
+    [this.#open, this.#place, this.#isOpening, this.#linked] = [undefined, undefined, false, undefined];
     this.#turn++;
     this.#layout.detach(this.#targets.root);
     if (hadFocus) document.getElementById("segue").focus({ preventScroll: true });
