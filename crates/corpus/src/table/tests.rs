@@ -17,14 +17,27 @@ const ROWS: [Row; 6] = [
     ("f0dddddddd", "über/Spin.bvh", "", &["run", "spin"], Some(0.0), Some(2)),
 ];
 
+/// Returns a row without poses, and without a place on the map.
+fn row_of(id: String, key: String, row: ClipRow) -> CorpusRow {
+    CorpusRow {
+        id,
+        key,
+        clip: 0,
+        row,
+        poses: None,
+        thumbnail: None,
+        moments: 0,
+        map: None,
+        copy_of: None,
+        is_mirrored: false,
+    }
+}
+
 fn table() -> Table {
     let ids: Vec<String> = ROWS.iter().map(|row| format!("{}-0", row.0)).collect();
     let rows: Vec<CorpusRow> = (ROWS.iter().enumerate())
-        .map(|(at, (key, path, _, _, skating, copy))| CorpusRow {
-            id: ids[at].clone(),
-            key: (*key).to_owned(),
-            clip: 0,
-            row: ClipRow {
+        .map(|(at, (key, path, _, _, skating, copy))| {
+            let row = ClipRow {
                 format: path.rsplit('.').next().unwrap().to_owned(),
                 frames: skating.map(|_| 31 + 30 * at),
                 fps: skating.map(|_| 30.0),
@@ -32,13 +45,13 @@ fn table() -> Table {
                 message: skating.map_or(Some("no clip".to_owned()), |_| None),
                 metrics: [("skating_cmps".to_owned(), *skating)].into(),
                 ..ClipRow::of_file(skating.map_or(Status::Unreadable, |_| Status::Ok))
-            },
-            poses: None,
-            thumbnail: None,
-            moments: 0,
-            map: skating.map(|_| [0.5, -0.5]),
-            copy_of: copy.map(|of| ids[of].clone()),
-            is_mirrored: at == 5,
+            };
+            CorpusRow {
+                map: skating.map(|_| [0.5, -0.5]),
+                copy_of: copy.map(|of| ids[of].clone()),
+                is_mirrored: at == 5,
+                ..row_of(ids[at].clone(), (*key).to_owned(), row)
+            }
         })
         .collect();
     let texts: Vec<RowTexts> = ROWS
@@ -161,20 +174,12 @@ fn histogram_counts_what_the_other_columns_leave() {
 
 #[test]
 fn histogram_of_levels_has_no_empty_bins_between_full_ones() {
-    let row = |at: usize| CorpusRow {
-        id: format!("{at:08x}-0"),
-        key: format!("{at:08x}"),
-        clip: 0,
-        row: ClipRow {
+    let row = |at: usize| {
+        let row = ClipRow {
             metrics: [("skating_cmps".to_owned(), Some(at as f64 * 0.01))].into(),
             ..ClipRow::of_file(Status::Ok)
-        },
-        poses: None,
-        thumbnail: None,
-        moments: 0,
-        map: None,
-        copy_of: None,
-        is_mirrored: false,
+        };
+        row_of(format!("{at:08x}-0"), format!("{at:08x}"), row)
     };
     let rows: Vec<CorpusRow> = (0..4000).map(row).collect();
     let texts = vec![RowTexts::default(); 4000];
@@ -315,18 +320,8 @@ fn equal_names_keep_the_order_of_paths() {
             .into_iter()
             .enumerate()
     {
-        rows.push(CorpusRow {
-            id: format!("{at:010}-0"),
-            key: format!("{at:010}"),
-            clip: 0,
-            row: ClipRow { format: "bvh".to_owned(), ..ClipRow::of_file(Status::Ok) },
-            poses: None,
-            thumbnail: None,
-            moments: 0,
-            map: None,
-            copy_of: None,
-            is_mirrored: false,
-        });
+        let row = ClipRow { format: "bvh".to_owned(), ..ClipRow::of_file(Status::Ok) };
+        rows.push(row_of(format!("{at:010}-0"), format!("{at:010}"), row));
         texts.push(RowTexts { path: path.to_owned(), name: name.to_owned(), labels: vec![] });
     }
     let table = Table::read(&write_columns(&rows, &texts).unwrap()).unwrap();
