@@ -16,7 +16,7 @@ use super::timeline::{CurveCache, more_height, timeline_panel_ui};
 use super::top_bar;
 use eframe::egui::accesskit::Role;
 use eframe::egui::scroll_area::{DragScroll, ScrollSource};
-use eframe::egui::{self, Frame, Margin, Panel, Rect, ScrollArea, Stroke, Ui, pos2, vec2};
+use eframe::egui::{self, Frame, Margin, Panel, Rect, ScrollArea, Ui, pos2, vec2};
 use segue_session::{Key, Session};
 
 /// Draws the page. `paint` draws the 3D picture into the stage.
@@ -378,7 +378,7 @@ fn embedded_ui(
     let scale = theme_of(ui).scale();
     slim_time_ui(Panel::bottom("timeline"), space::M, session, state, curves, out, ui);
     if labs::has_named_params(session) {
-        let frame = panel_frame(space::M, space::S).stroke(Stroke::NONE);
+        let frame = panel_frame(space::M, space::S);
         Panel::bottom("parameters").frame(frame).show(ui, |ui| {
             kit::set_role(Role::Form, text::PARAMETERS, ui);
             labs::named_params_ui(session, out, ui);

@@ -33,8 +33,8 @@ const LIBRARIES: [&str; 10] = [
     "segue-cli",
 ];
 
-/// The first part that needs what [`install_for_tests`] installs.
-const NEEDS_OTHERS: &str = "oracles";
+/// The first part that uses what [`install_for_tests`] installs.
+const FIRST_WITH_PACKAGES: &str = "oracles";
 
 /// The options of cargo for the app as it is tested: without what only a user's desktop needs.
 const UI_TESTS: &[&str] = &["--no-default-features", "--features=segue/ui-tests"];
@@ -55,12 +55,12 @@ pub fn run(names: &[&str]) -> Result<()> {
     }
     // The page ends in long links on one core: the other core builds and runs the tests meanwhile.
     let mut web = Some(Beside::start("web")?);
-    // What is fetched needs no core.
-    let mut others = Some(std::thread::spawn(install_for_tests));
+    // Downloads take minutes and hardly any computing time: they go on beside the first parts.
+    let mut installing = Some(std::thread::spawn(install_for_tests));
     for (name, part) in PARTS {
-        if let Some(others) = others.take_if(|_| name == NEEDS_OTHERS) {
-            report.step("installing, beside the above", || {
-                others.join().unwrap_or_else(|_| fail("what installs panicked"))
+        if let Some(installing) = installing.take_if(|_| name == FIRST_WITH_PACKAGES) {
+            report.step("packages for tests, installed beside the above", || {
+                installing.join().unwrap_or_else(|_| fail("the installation panicked"))
             });
         }
         match web.take_if(|web| web.part == name) {
@@ -71,7 +71,7 @@ pub fn run(names: &[&str]) -> Result<()> {
     report.close()
 }
 
-/// Installs what the tests use beside Rust.
+/// Installs what the tests use beside Rust: a Vulkan driver, Chromium, packages of npm and PyPI.
 fn install_for_tests() -> Result<()> {
     tools::software_vulkan()?;
     tools::chromium()?;
@@ -172,10 +172,8 @@ fn oracles(report: &mut Report) {
         let files = shell::target().join("tmp/exchange");
         shell::run(command("node", &["tests/browser/read_back.mjs"]).arg(&files))?;
         shell::run(command(python, &["crates/formats/tests/oracles/read_back.py"]).arg(&files))?;
-        shell::run(
-            command(python_with_numpy()?, &["crates/formats/tests/oracles/read_back_npz.py"])
-                .arg(&files),
-        )
+        let numpy = python_with_numpy()?;
+        shell::run(command(numpy, &["crates/formats/tests/oracles/read_back_npz.py"]).arg(&files))
     });
 }
 
