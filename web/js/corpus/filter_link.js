@@ -5,13 +5,13 @@
 // An end of a range may be open; `-` before the column of the order is for the greatest first.
 
 const COPIES = ["all", "hide", "only"];
-/** Digits of a number, which steps of a range do not need. */
+/** The significant digits of a range's ends, which are finer than its steps. */
 const DIGITS = 6;
 
 /** Returns a filter that leaves out nothing. */
 export const noFilter = () => ({ text: "", ranges: {}, choices: {}, copies: "all", sort: { by: "name", down: false } });
 
-/** Returns the text for a filter; empty for one that leaves out nothing and is in the usual order. */
+/** Returns the text of a filter; empty for one that leaves out nothing and sorts by name. */
 export function filterText({ text, ranges, choices, copies, sort }) {
   const parts = new URLSearchParams();
   if (text) parts.append("search", text);
@@ -30,7 +30,7 @@ export function filterOf(text, columns) {
   filter.text = parts.get("search") ?? "";
   if (COPIES.includes(parts.get("copies"))) filter.copies = parts.get("copies");
   const [, down, by] = /^(-?)(.*)$/s.exec(parts.get("sort") ?? "");
-  if (by === "name" || columns.some(({ name }) => name === by)) filter.sort = { by, down: down === "-" };
+  if (by === "name" || columns.some(({ name, kind }) => name === by && kind === "number")) filter.sort = { by, down: down === "-" };
   for (const { name, kind, values = [] } of columns) {
     if (kind === "number") {
       const range = rangeOf(parts.get(name));
@@ -45,10 +45,13 @@ export function filterOf(text, columns) {
 
 const end = (value) => (value === null ? "" : String(Number(value.toPrecision(DIGITS))));
 
-/** Returns the ends of a range, null where it is open; undefined where both are, or it is none. */
+/**
+ * Returns the ends of a range, null where it is open. Undefined for a text that is no range, and for
+ * one that is open at both ends.
+ */
 function rangeOf(text) {
-  const ends = (text ?? "").split("..").map((part) => (part === "" ? null : Number(part)));
-  const [from, to] = ends;
-  const isRange = ends.length === 2 && (from ?? to) !== null && ends.every((each) => each === null || Number.isFinite(each)) && !(from !== null && to !== null && from > to);
-  return isRange ? ends : undefined;
+  const ends = (text ?? "").split("..").map((part) => (part.trim() ? Number(part) : null));
+  const set = ends.filter((each) => each !== null);
+  if (ends.length !== 2 || !set.length || !set.every(Number.isFinite) || set[0] > set.at(-1)) return undefined;
+  return ends;
 }

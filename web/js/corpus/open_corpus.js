@@ -2,7 +2,7 @@
 // what is on the stage beside it.
 
 import { button, delayed, element, icon } from "./elements.js";
-import { filterOf, filterText } from "./filter_link.js";
+import { filterOf, filterText, noFilter } from "./filter_link.js";
 import { Filters } from "./filters.js";
 import { BINS } from "./histogram.js";
 import { Playback } from "./playback.js";
@@ -229,7 +229,7 @@ export class OpenCorpus {
     const { hits, near } = this.#list ?? {};
     try {
       // The order of hits is that of the search.
-      const filter = near ? { ...this.#filter, text: "", ranges: {}, choices: {}, copies: "all", near } : this.#filter;
+      const filter = near ? { ...noFilter(), sort: this.#filter.sort, near } : this.#filter;
       const rows = hits ? Uint32Array.from(hits, ({ row }) => row) : await this.ask("select", { filter });
       if (asked !== this.#refreshes) return;
       this.#rows = rows;

@@ -66,7 +66,7 @@ export class Panel {
    */
   async show(text) {
     if (text === this.#linked) return;
-    this.#linked = undefined;
+    this.#endLink();
     if (!text) {
       if (this.#place && !this.#place.files) this.#close();
       return;
@@ -75,20 +75,30 @@ export class Panel {
     if (!address) return this.#fail({ name: text }, new Error(sentence("wrongAddress")));
     const filter = text.split("#").slice(1).join("#");
     const isHere = this.#place?.address === address && (this.#isOpening || (this.#open && !this.#open.hasFailed));
-    if (!isHere) return this.#connect({ address, name: corpusName(address), filter }, () => corpusAt(address));
+    if (!isHere) return this.#connectTo({ address, name: corpusName(address), filter });
     this.#place.filter = filter;
     if (this.#open) this.#open.filter = filter;
     this.#layout.showPanel(true);
   }
 
+  #connectTo(place) {
+    return this.#connect(place, () => corpusAt(place.address));
+  }
+
   /** Puts what the table shows into the link. */
   #link() {
-    const { address, files } = this.#place ?? {};
-    if (!this.#open || !address || files || !this.#api.params().corpus) return;
+    const { address } = this.#place;
+    if (!this.#open || !address) return;
     const { filter } = this.#open;
     this.#linked = filter ? `${address}#${filter}` : address;
     this.#place.filter = filter;
     if (this.#linked !== this.#api.params().corpus) this.#api.set({ corpus: this.#linked }).catch((reason) => console.error(reason));
+  }
+
+  /** Leaves the link as it is. */
+  #endLink() {
+    this.#linkSoon.cancel();
+    this.#linked = undefined;
   }
 
   /** Lets the user choose a corpus. */
@@ -158,7 +168,7 @@ export class Panel {
   /** Begins to show something else. Returns its turn. */
   #begin(place) {
     this.#open?.end();
-    this.#linkSoon.cancel();
+    this.#endLink();
     [this.#open, this.#place, this.#isOpening] = [undefined, place, false];
     this.#layout.attach(this.#targets.root);
     this.#theme();
@@ -168,15 +178,15 @@ export class Panel {
   #fail(place, reason) {
     this.#begin(place);
     console.info(reason);
-    const again = place.address && (() => this.show(place.filter ? `${place.address}#${place.filter}` : place.address));
+    const again = place.address && (() => this.#connectTo(place));
     this.#build(() => [failure(reason, { again, choose: () => this.choose() })]);
   }
 
   #close() {
     const hadFocus = this.#root.contains(document.activeElement) || document.activeElement === document.body;
     this.#open?.end();
-    this.#linkSoon.cancel();
-    [this.#open, this.#place, this.#isOpening, this.#linked] = [undefined, undefined, false, undefined];
+    this.#endLink();
+    [this.#open, this.#place, this.#isOpening] = [undefined, undefined, false];
     this.#turn++;
     this.#layout.detach(this.#targets.root);
     if (hadFocus) document.getElementById("segue").focus({ preventScroll: true });
