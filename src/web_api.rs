@@ -380,15 +380,20 @@ impl SegueHandle {
     /// Returns the stage as a PNG.
     pub async fn snapshot(&self) -> Result<Blob, JsValue> {
         let canvas = self.canvas.borrow().clone();
-        snapshot(&canvas, || self.frames(), || self.inbox.wake(), || self.stage_area()).await
+        snapshot(&canvas, || self.frames(), || self.inbox.wake_for_picture(), || self.stage_area())
+            .await
     }
 
     /// Returns a report of the results in Markdown, with a picture of the stage in it.
     pub async fn report(&self) -> Result<String, JsValue> {
         let canvas = self.canvas.borrow().clone();
-        let picture =
-            inline_picture(&canvas, || self.frames(), || self.inbox.wake(), || self.stage_area())
-                .await?;
+        let picture = inline_picture(
+            &canvas,
+            || self.frames(),
+            || self.inbox.wake_for_picture(),
+            || self.stage_area(),
+        )
+        .await?;
         self.borrow()?.report(Some(&picture)).map_err(|reason| error(format!("report: {reason}")))
     }
 

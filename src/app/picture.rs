@@ -56,13 +56,15 @@ impl Picture {
         (0..panes).map(|pane| self.director.figure(pane).to_vec()).collect()
     }
 
-    /// Draws the session's present state into the reserved slot.
+    /// Draws the session's present state into the reserved slot. `fine`: finely, also where it
+    /// changes and is drawn in software.
     pub(crate) fn finish(
         &mut self,
         slot: StageSlot,
         session: &Session,
         (palette, look): (&Palette, Look),
         highlights: Highlights,
+        fine: bool,
         ui: &Ui,
     ) {
         let now_ms = now_ms();
@@ -80,7 +82,7 @@ impl Picture {
         let options =
             StageOptions { panes: &panes, pixels_per_point: scale, look, colors, highlights };
         let stage = self.director.stage(session, &options, dt_secs);
-        painter.set(index, render::paint_callback(STAGE, rect, stage, ui.ctx()));
+        painter.set(index, render::paint_callback(STAGE, rect, stage, fine, ui.ctx()));
     }
 
     /// Prepares what will be drawn, for a millisecond or two. Returns whether there is more to do.

@@ -112,6 +112,8 @@ pub(crate) struct Inbox(Arc<Mutex<Inner>>);
 struct Inner {
     queue: VecDeque<Incoming>,
     ctx: Option<egui::Context>,
+    /// Whether the next frame is for a picture.
+    is_for_picture: bool,
 }
 
 impl fmt::Debug for Inbox {
@@ -158,6 +160,19 @@ impl Inbox {
         self.inner().ctx.clone()
     }
 
+    /// Requests a frame of the app of which a picture is taken, so that it is drawn finely.
+    #[cfg(any(test, target_arch = "wasm32"))]
+    pub(crate) fn wake_for_picture(&self) {
+        self.inner().is_for_picture = true;
+        self.wake();
+    }
+
+    /// Returns whether a picture is taken of this frame. It is not of the next one, unless that is
+    /// requested again.
+    pub(crate) fn take_for_picture(&self) -> bool {
+        std::mem::take(&mut self.inner().is_for_picture)
+    }
+
     /// Requests a frame of the app.
     pub(crate) fn wake(&self) {
         // Outside the lock, because waking may call back.
@@ -195,5 +210,8 @@ mod tests {
         assert_eq!(names, ["1.bvh", "2.bvh"]);
         assert!(inbox.take().is_empty());
         assert!(*asked.lock().unwrap() > 0);
+        assert!(!inbox.take_for_picture());
+        other_end.wake_for_picture();
+        assert_eq!((inbox.take_for_picture(), inbox.take_for_picture()), (true, false));
     }
 }

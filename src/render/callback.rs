@@ -19,6 +19,7 @@ pub(crate) fn install(render_state: &RenderState) {
 }
 
 /// Returns a shape that shows `stage` in `rect`. Every stage of the page has an `id` of its own.
+/// `fine`: a picture is taken of this frame.
 ///
 /// Keep the `Arc`, and change the stage with `Arc::make_mut` in the next frame. egui has dropped
 /// its handle by then, so that nothing is copied.
@@ -26,12 +27,13 @@ pub(crate) fn paint_callback(
     id: u64,
     rect: egui::Rect,
     stage: Arc<Stage>,
+    fine: bool,
     ctx: &egui::Context,
 ) -> egui::Shape {
     let ctx = ctx.clone();
     egui::Shape::Callback(Callback::new_paint_callback(
         rect,
-        StageCallback { id, rect, stage, ctx },
+        StageCallback { id, rect, stage, fine, ctx },
     ))
 }
 
@@ -52,6 +54,7 @@ struct StageCallback {
     id: u64,
     rect: egui::Rect,
     stage: Arc<Stage>,
+    fine: bool,
     ctx: egui::Context,
 }
 
@@ -66,7 +69,7 @@ impl CallbackTrait for StageCallback {
     ) -> Vec<wgpu::CommandBuffer> {
         if let Some(renderer) = resources.get_mut::<StageRenderer>() {
             let size = in_pixels(self.rect, screen.pixels_per_point, screen.size_in_pixels);
-            renderer.set_time(self.ctx.input(|input| input.time));
+            renderer.begin_frame(self.ctx.input(|input| input.time), self.fine);
             let prepared = renderer.prepare(device, queue, encoder, self.id, &self.stage, size);
             if !prepared.complete {
                 self.ctx.request_repaint();

@@ -1,5 +1,5 @@
-//! A mesh with fewer triangles, for pictures in motion that are drawn in software. A triangle costs
-//! there what dozens of pixels cost, whatever its size.
+//! A mesh with fewer triangles, for pictures in motion that are drawn in software. A triangle takes
+//! as long there as dozens of pixels, however small it is.
 
 use glam::{DVec3, Vec3};
 use segue_motion::skin::SkinnedMesh;
@@ -14,7 +14,7 @@ const CELLS: f32 = 64.0;
 /// for rendering complex scenes": clusters of a grid). Vertices on different limbs, and on the two
 /// sides of a thin part, stay apart. Triangles with an invalid corner are left out.
 pub(super) fn coarse_triangles(mesh: &SkinnedMesh) -> Vec<[u32; 3]> {
-    // As the vertices on the device: what is not finite is at the origin.
+    // As in the vertex buffer, positions that are not finite are at the origin.
     let finite = |position: &Vec3| if position.is_finite() { *position } else { Vec3::ZERO };
     let positions: Vec<Vec3> = mesh.positions.iter().map(finite).collect();
     let low = positions.iter().copied().reduce(Vec3::min).unwrap_or_default();

@@ -1,7 +1,6 @@
 //! Rendering of a stage to a picture in memory.
 
 use super::StageRenderer;
-use super::renderer::REFINE_AFTER;
 use eframe::wgpu;
 use flate2::{Compression, Crc, write::ZlibEncoder};
 use segue_scene::Stage;
@@ -54,15 +53,8 @@ pub(crate) fn render_to_image(
     }
     let mut encoder = device
         .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("stage image") });
-    let mut now_secs = 0.0;
-    renderer.set_time(now_secs);
-    while renderer
-        .prepare(device, queue, &mut encoder, SNAPSHOT, stage, [width, height])
-        .to_be_refined
-    {
-        now_secs += REFINE_AFTER.as_secs_f64();
-        renderer.set_time(now_secs);
-    }
+    renderer.begin_frame(0.0, true);
+    renderer.prepare(device, queue, &mut encoder, SNAPSHOT, stage, [width, height]);
     let Some(view) = renderer.view(SNAPSHOT) else {
         return Err(ImageError::Size(width, height));
     };

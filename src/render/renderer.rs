@@ -31,6 +31,8 @@ pub(crate) struct StageRenderer {
     views: Vec<(u64, View)>,
     /// The time of the present frame, seconds.
     now_secs: f64,
+    /// Whether a picture is taken of the present frame.
+    is_for_picture: bool,
     /// The frame under construction. It is swapped with the one last drawn.
     scratch: Frame,
     bytes: Vec<u8>,
@@ -52,7 +54,7 @@ pub(crate) struct PrepareOutcome {
 const MAX_PLAIN_PIXELS: f32 = 180_000.0;
 
 /// The time without a change after which a coarsely drawn stage is drawn finely. The fine picture
-/// takes longer than two coarse ones, and would hold up who drags with short rests.
+/// takes longer than two coarse ones, and would delay the next step of a drag.
 pub(super) const REFINE_AFTER: Duration = Duration::from_millis(400);
 
 /// The number of frames of other stages after which the memory of a stage is freed.
@@ -90,6 +92,7 @@ impl StageRenderer {
             },
             views: Vec::new(),
             now_secs: 0.0,
+            is_for_picture: false,
             scratch: Frame::default(),
             bytes: Vec::new(),
         }
@@ -101,9 +104,10 @@ impl StageRenderer {
         self.quality = quality;
     }
 
-    /// Sets the time of the frame that is prepared next, seconds.
-    pub(super) fn set_time(&mut self, now_secs: f64) {
-        self.now_secs = now_secs;
+    /// Begins the frame that is prepared next, at a time in seconds. A frame of which a picture is
+    /// taken is drawn finely.
+    pub(super) fn begin_frame(&mut self, now_secs: f64, is_for_picture: bool) {
+        (self.now_secs, self.is_for_picture) = (now_secs, is_for_picture);
     }
 
     /// Returns the resources of the stage of that id.
@@ -160,16 +164,17 @@ impl StageRenderer {
             view.changed_secs = self.now_secs;
         }
         // A frame that was asked for at that time may come a little early.
-        let rests = self.now_secs - view.changed_secs >= 0.9 * REFINE_AFTER.as_secs_f64();
+        let rests = self.is_for_picture
+            || self.now_secs - view.changed_secs >= 0.9 * REFINE_AFTER.as_secs_f64();
         let draw = match (changed, small) {
-            (true, Some(small)) => {
+            (true, Some(small)) if !self.is_for_picture => {
                 let fits = view.coarse.as_ref().is_some_and(|targets| targets.size == small);
                 if !fits {
                     view.coarse = Some(self.targets(device, small));
                 }
                 Some(PictureState::Coarse)
             }
-            (true, None) => Some(PictureState::Fine),
+            (true, _) => Some(PictureState::Fine),
             (false, _) if view.shown == PictureState::Coarse && rests => Some(PictureState::Fine),
             (false, _) => None,
         };

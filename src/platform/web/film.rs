@@ -39,8 +39,13 @@ pub(crate) fn save_picture(file_name: &str, stage: Rect, inbox: &Inbox) {
     let (file_name, inbox) = (file_name.to_owned(), inbox.clone());
     spawn_local(async move {
         let area = area_of(stage, ctx.pixels_per_point());
-        let taken =
-            snapshot(&canvas, || ctx.cumulative_frame_nr(), || inbox.wake(), || Some(area)).await;
+        let taken = snapshot(
+            &canvas,
+            || ctx.cumulative_frame_nr(),
+            || inbox.wake_for_picture(),
+            || Some(area),
+        )
+        .await;
         report_failure(&file_name, taken.and_then(|blob| save_blob(&file_name, &blob)), &inbox);
     });
 }
@@ -54,9 +59,13 @@ pub(crate) fn take_picture(stage: Rect, inbox: &Inbox) {
     let inbox = inbox.clone();
     spawn_local(async move {
         let area = area_of(stage, ctx.pixels_per_point());
-        let taken =
-            inline_picture(&canvas, || ctx.cumulative_frame_nr(), || inbox.wake(), || Some(area))
-                .await;
+        let taken = inline_picture(
+            &canvas,
+            || ctx.cumulative_frame_nr(),
+            || inbox.wake_for_picture(),
+            || Some(area),
+        )
+        .await;
         if let Err(error) = &taken {
             log::warn!("no picture: {}", js_error_text(error));
         }

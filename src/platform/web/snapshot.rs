@@ -51,8 +51,8 @@ pub(crate) async fn inline_picture(
 /// Copies a part of the canvas, at most `max_width` pixels wide.
 ///
 /// The pictures of WebGPU and WebGL can be read only until the frame ends. The function therefore
-/// waits for a frame in which the app draws (`frames` counts them, `wake` requests one), and copies
-/// the picture within it.
+/// waits for a frame in which the app draws, and copies the picture within it. `frames` counts
+/// frames, and `wake` requests one that is drawn finely.
 async fn capture(
     canvas: &HtmlCanvasElement,
     frames: impl Fn() -> u64,

@@ -15,14 +15,15 @@ fn stage_in_software_is_coarse_in_motion_and_fine_at_rest() {
     let actors = actors();
     let size = [960, 600];
     gpu.renderer.set_quality(Quality::Plain);
-    let mut prepared = |secs: f64, stage: &Stage, size: [u32; 2]| {
+    let mut prepare = |secs: f64, fine: bool, stage: &Stage, size: [u32; 2]| {
         let mut encoder =
             gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        gpu.renderer.set_time(secs);
+        gpu.renderer.begin_frame(secs, fine);
         let prepared = gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 5, stage, size);
         gpu.queue.submit([encoder.finish()]);
         (prepared.drawn, prepared.to_be_refined)
     };
+    let mut prepared = |secs, stage: &Stage, size| prepare(secs, false, stage, size);
     // A small stage, too: it has as many triangles.
     for size in [size, [64, 40]] {
         let mut stage = stage(&actors, size, 2, false, 1.0);
@@ -34,7 +35,13 @@ fn stage_in_software_is_coarse_in_motion_and_fine_at_rest() {
         assert_eq!(prepared(9.1, &stage, size), (true, true));
         assert_eq!(prepared(9.3, &stage, size), (false, true));
     }
-    let stage = stage(&actors, size, 2, false, 1.0);
+    // A picture of a frame is fine at once, and the next frame in motion is coarse again.
+    let mut stage = stage(&actors, size, 2, false, 1.0);
+    assert_eq!(prepare(20.0, true, &stage, size), (true, false));
+    assert_eq!(prepare(20.1, false, &stage, size), (false, false));
+    stage.panes[0].camera.yaw += 0.1;
+    assert_eq!(prepare(20.2, false, &stage, size), (true, true));
+    assert_eq!(prepare(20.3, true, &stage, size), (true, false));
 
     // The coarse frame has the same panes at the same positions.
     let (mut fine, mut coarse) = (Frame::default(), Frame::default());

@@ -2,6 +2,7 @@
 
 use super::{colors, gpu, options, staged};
 use crate::render::coarse_mesh::coarse_triangles;
+use crate::render::image::read_texture;
 use crate::render::{Quality, frame::Frame, render_to_image};
 use glam::{Quat, Vec3};
 use segue_motion::skeleton::Roles;
@@ -295,11 +296,37 @@ fn volume(mesh: &SkinnedMesh, triangles: &[[u32; 3]]) -> f32 {
     triangles.iter().map(|t| corner(t[0]).dot(corner(t[1]).cross(corner(t[2]))) / 6.0).sum()
 }
 
+/// Returns the body of a walker.
+fn walker() -> SkinnedMesh {
+    let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
+    SkinnedMesh::around_clip(&clip, &Roles::detect(clip.skeleton()), 1.0)
+}
+
+#[test]
+fn body_in_motion_has_fewer_triangles_in_software_and_the_same_outline() {
+    let Some(mut gpu) = gpu() else { return };
+    gpu.renderer.set_quality(Quality::Plain);
+    let mesh = Arc::new(walker());
+    let joints = vec![RigidTransform::IDENTITY; mesh.bind.len()];
+    let stage = stage_of(&mesh, &joints, Skinning::Linear);
+    let size = [SIZE, SIZE];
+    let [coarse, fine] = [false, true].map(|is_for_picture| {
+        let mut encoder =
+            gpu.device.create_command_encoder(&eframe::wgpu::CommandEncoderDescriptor::default());
+        gpu.renderer.begin_frame(0.0, is_for_picture);
+        gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 6, &stage, size);
+        let shown = &gpu.renderer.view(6).unwrap().current().color;
+        read_texture(&gpu.device, &gpu.queue, encoder, shown).unwrap().rgba
+    });
+    // A stage of this size has as many pixels in motion.
+    assert_ne!(coarse, fine);
+    let [few, many] = [coarse, fine].map(|rgba| rgba.chunks(4).filter(|p| p[0] > 0x50).count());
+    assert!(many > 2000 && few.abs_diff(many) < many / 20, "{few} pixels, not {many}");
+}
+
 #[test]
 fn coarse_triangles_are_few_and_keep_the_shape() {
-    let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
-    let roles = Roles::detect(clip.skeleton());
-    let mesh = SkinnedMesh::around_clip(&clip, &roles, 1.0);
+    let mesh = walker();
     let coarse = coarse_triangles(&mesh);
     let (many, few) = (mesh.triangles.len(), coarse.len());
     assert!(few < many / 2 && few > many / 6, "{few} of {many}");
