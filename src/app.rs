@@ -237,6 +237,8 @@ impl Segue {
         }
         self.send_requests();
         let is_converting = self.advance_conversion();
+        // Before the work that takes the answers in: no frame may follow that would do it.
+        self.pool.receive(&mut self.session);
         let passed_ms = self.clock.left_work.map_or(0.0, |left_ms| now_ms - left_ms);
         let max_ms = (WORK_SHARE * passed_ms).clamp(MIN_WORK_MS, MAX_WORK_MS);
         let mut more = true;
@@ -247,7 +249,7 @@ impl Segue {
             more = more || self.picture.work();
         }
         let has_begun = self.frame_stats.count() > 0;
-        more = self.pool.exchange(&mut self.session, has_begun) || more;
+        more = self.pool.send(&mut self.session, has_begun) || more;
         more = more || is_converting || !self.inbox.is_empty();
         self.clock.left_work = more.then_some(now_ms);
         // The work may have made new requests.

@@ -74,9 +74,8 @@ impl Pool {
         self.running.iter().any(|&jobs| jobs > 0)
     }
 
-    /// Hands the session the answers that have arrived, and its jobs to threads. Returns `false`:
-    /// nothing is left to send.
-    pub(crate) fn exchange(&mut self, session: &mut Session, _has_begun: bool) -> bool {
+    /// Hands the session the answers that have arrived.
+    pub(crate) fn receive(&mut self, session: &mut Session) {
         while let Ok(Ended { thread, number, answer, secs }) = self.answers.try_recv() {
             self.jobs += u64::from(answer.is_some());
             session.finish_job(number, answer, secs);
@@ -84,6 +83,10 @@ impl Pool {
                 *running = running.saturating_sub(1);
             }
         }
+    }
+
+    /// Hands the session's jobs to threads. Returns `false`: nothing is left to send.
+    pub(crate) fn send(&mut self, session: &mut Session, _has_begun: bool) -> bool {
         let dropped = session.take_dropped_clips();
         for thread in &self.threads {
             for &clip in &dropped {

@@ -61,7 +61,7 @@ struct State {
     slots: Vec<Slot>,
     /// The jobs that have ended, with the seconds that they took.
     finished: VecDeque<(u64, Option<Answer>, f64)>,
-    /// Workers that were replaced since the last exchange.
+    /// Workers that were replaced, of which the session is still to be told.
     replaced: Vec<usize>,
     /// The number of workers that have ended since the last answer.
     deaths: usize,
@@ -139,18 +139,23 @@ impl Pool {
         self.0.borrow().slots.iter().any(|slot| !slot.is_idle())
     }
 
-    /// Hands the session the answers that have arrived, and its jobs to workers. Workers are not
-    /// made before the page `has_begun`. Returns whether there is more to send.
-    pub(crate) fn exchange(&mut self, session: &mut Session, has_begun: bool) -> bool {
-        let now_ms = now_ms();
-        self.0.borrow_mut().end_lost(now_ms);
+    /// Hands the session the answers that have arrived.
+    pub(crate) fn receive(&mut self, session: &mut Session) {
         let mut state = self.0.borrow_mut();
+        state.end_lost(now_ms());
         for (number, answer, secs) in std::mem::take(&mut state.finished) {
             session.finish_job(number, answer, secs);
         }
         for worker in std::mem::take(&mut state.replaced) {
             session.forget_worker(worker);
         }
+    }
+
+    /// Hands the session's jobs to workers, which are not made before the page `has_begun`. Returns
+    /// whether there is more to send.
+    pub(crate) fn send(&mut self, session: &mut Session, has_begun: bool) -> bool {
+        let now_ms = now_ms();
+        let mut state = self.0.borrow_mut();
         if state.size == 0 {
             session.set_workers(0);
             return false;
