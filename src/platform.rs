@@ -6,6 +6,7 @@
 mod address;
 #[cfg(any(test, target_arch = "wasm32"))]
 mod begun;
+mod bundle;
 mod file_bytes;
 mod gamepad;
 #[cfg_attr(

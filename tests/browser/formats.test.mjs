@@ -3,7 +3,8 @@
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { onOneBackend } from "./harness.mjs";
-import { apart } from "./help.mjs";
+import { apart, stored, until } from "./help.mjs";
+import { boxModel } from "./model.mjs";
 
 const SMALL = { viewport: [960, 640] };
 /** Files of the tests of the readers, and of the fuzzer, with their joints and frames. */
@@ -41,4 +42,28 @@ onOneBackend("written files are read again", async ({ open }) => {
       assert.ok(far < 1e-3, `${format}: ${far} m at ${secs} s`);
     }
   }
+});
+
+// Fails when the files of a model are read one by one, so that its arrays or its image are missing,
+// and when they are not stored together.
+onOneBackend("model is dropped with its arrays and its image", async ({ open }) => {
+  const { page, segue, dropFiles, ready, snapshot } = await open("lab=view&play=off", SMALL);
+  await segue("set", {});
+  await dropFiles([["notes.txt", Buffer.from("no motion")], ...boxModel("box", [230, 0, 0])]);
+  const isRed = (red, green, blue) => red > 90 && red > 2 * green && red > 2 * blue;
+  const shown = async () => {
+    const picture = await snapshot();
+    let pixels = 0;
+    for (let y = 0; y < picture.height; y++) for (let x = 0; x < picture.width; x++) pixels += isRed(...picture.at(x, y));
+    return pixels > 0.01 * picture.width * picture.height;
+  };
+  const clips = async () => (await segue("clips")).filter(({ sha256 }) => sha256).map(({ name, joints }) => [name, joints]);
+  await until("the box is in the library", async () => (await clips()).length > 0);
+  assert.deepEqual(await clips(), [["box", 2]]);
+  await until("the box is red", shown);
+  await until("it is stored", async () => (await stored(page)).ids.some((id) => id.startsWith("box")));
+  await page.reload();
+  await ready();
+  await until("the box is there again", async () => (await clips()).length > 0);
+  await until("it is red again", shown);
 });

@@ -87,7 +87,8 @@ export async function openSegue(backend, query = "", options = {}) {
     segue: (member, ...args) => call(page, member, args),
     /** Loads a file through the API. */
     load: (name, bytes) => load(page, name, bytes),
-    dropFile: (name, bytes, at) => dropFile(page, name, bytes, at),
+    dropFile: (name, bytes, at) => dropFiles(page, [[name, bytes]], at),
+    dropFiles: (files, at) => dropFiles(page, files, at),
     drag: (from, to, steps) => drag(page, from, to, steps),
     /** Returns a picture of the page as PNG bytes. */
     screenshot: () => page.screenshot({ type: "png" }),
@@ -103,18 +104,23 @@ export async function openSegue(backend, query = "", options = {}) {
   return opened;
 }
 
-/** Drops a file on the canvas with the events that a browser sends for a real one. */
-export async function dropFile(page, name, bytes, [x, y] = [400, 300]) {
-  await page.evaluate(async ([name, base64, x, y]) => {
-    const bytes = Uint8Array.from(atob(base64), (char) => char.charCodeAt(0));
+/**
+ * Drops files, each a name and its bytes, on the canvas with the events that a browser sends for
+ * real ones.
+ */
+export async function dropFiles(page, files, [x, y] = [400, 300]) {
+  await page.evaluate(async ([files, x, y]) => {
     const dataTransfer = new DataTransfer();
-    dataTransfer.items.add(new File([bytes], name));
+    for (const [name, base64] of files) {
+      const bytes = Uint8Array.from(atob(base64), (char) => char.charCodeAt(0));
+      dataTransfer.items.add(new File([bytes], name));
+    }
     const canvas = document.getElementById("segue");
     for (const type of ["dragenter", "dragover", "dragover", "drop"]) {
       canvas.dispatchEvent(new DragEvent(type, { bubbles: true, cancelable: true, composed: true, clientX: x, clientY: y, dataTransfer }));
       await new Promise((resolve) => requestAnimationFrame(resolve));
     }
-  }, [name, Buffer.from(bytes).toString("base64"), x, y]);
+  }, [files.map(([name, bytes]) => [name, Buffer.from(bytes).toString("base64")]), x, y]);
 }
 
 /** Drags the real mouse with its first button down. */

@@ -19,7 +19,10 @@ pub const MAX_FILES: usize = 2000;
 /// The endings of the images that textures are.
 const IMAGE_ENDINGS: [&str; 3] = ["png", "jpg", "jpeg"];
 
-/// The endings of files that may refer to images.
+/// The ending of the arrays of glTF files, which may stand beside them.
+const ARRAYS_ENDING: &str = "bin";
+
+/// The endings of files that may refer to images and arrays.
 const SCENE_ENDINGS: [&str; 2] = ["fbx", "gltf"];
 
 /// The depth to which archives inside archives are opened.
@@ -339,8 +342,19 @@ fn has_scene(archive: &ZipSliceArchive<&[u8]>) -> bool {
 }
 
 fn is_motion(path: &str) -> bool {
-    // The arrays of a glTF file stand beside it.
-    MOTION_ENDINGS.iter().chain(&["bin"]).any(|ending| has_extension(path, ending))
+    MOTION_ENDINGS.iter().chain(&[ARRAYS_ENDING]).any(|ending| has_extension(path, ending))
+}
+
+/// Returns whether a file may refer to others beside it, by its name.
+#[must_use]
+pub fn is_scene(name: &str) -> bool {
+    SCENE_ENDINGS.iter().any(|ending| has_extension(name, ending))
+}
+
+/// Returns whether scenes may refer to a file, an image or arrays, by its name.
+#[must_use]
+pub fn is_beside_scene(name: &str) -> bool {
+    IMAGE_ENDINGS.iter().chain([&ARRAYS_ENDING]).any(|ending| has_extension(name, ending))
 }
 
 /// Returns a path inside the archive with `/` only, and without drives, roots, `.` and `..`, and

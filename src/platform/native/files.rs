@@ -2,9 +2,8 @@
 //! that frames continue.
 
 use super::LargeFile;
-use crate::platform::motion_files::{
-    MAX_FILE_BYTES, endings, is_motion_file, last_part, no_motion_in, too_large,
-};
+use crate::platform::bundle::{Bundle, is_in_folder, is_read_in_folder, leave_out_lone_images};
+use crate::platform::motion_files::{MAX_FILE_BYTES, endings, last_part, no_motion_in, too_large};
 use crate::platform::{Inbox, Incoming};
 use eframe::egui::DroppedFileHandle;
 use segue_session::reading::LARGE_BYTES;
@@ -21,22 +20,14 @@ pub(crate) fn open_files(inbox: &Inbox) {
     let inbox = inbox.clone();
     std::thread::spawn(move || {
         let files = pollster::block_on(asked).unwrap_or_default();
-        inbox.push(Incoming::Opening(files.len()));
-        for file in files {
-            read_path(file.path(), &inbox);
-        }
+        read_paths(files.iter().map(rfd::FileHandle::path), &inbox);
     });
 }
 
 /// Reads the files dropped on the window, in order.
 pub(crate) fn read_dropped(files: Vec<DroppedFileHandle>, inbox: &Inbox) {
     let inbox = inbox.clone();
-    std::thread::spawn(move || {
-        inbox.push(Incoming::Opening(files.len()));
-        for file in files {
-            read_path(file.path(), &inbox);
-        }
-    });
+    std::thread::spawn(move || read_paths(files.iter().map(|file| file.path()), &inbox));
 }
 
 /// Reads the files that the command line names, in order.
@@ -47,12 +38,7 @@ pub(crate) fn read_arguments(inbox: &Inbox) {
         .map(PathBuf::from)
         .collect();
     let inbox = inbox.clone();
-    std::thread::spawn(move || {
-        inbox.push(Incoming::Opening(paths.len()));
-        for path in paths {
-            read_path(&path, &inbox);
-        }
-    });
+    std::thread::spawn(move || read_paths(paths.iter().map(PathBuf::as_path), &inbox));
 }
 
 /// Returns whether an argument is a link's query and not a file.
@@ -60,31 +46,77 @@ pub(super) fn is_query(argument: &str) -> bool {
     argument.starts_with('?') || (argument.contains('=') && !Path::new(argument).exists())
 }
 
-/// Reads a file, or the motion files in and below a folder.
-fn read_path(path: &Path, inbox: &Inbox) {
-    let shown = path.to_string_lossy().into_owned();
-    let name = last_part(&shown).to_owned();
-    if !path.is_dir() {
-        read_file(path, name, inbox);
-        return;
-    }
-    let say = |reason| inbox.push(Incoming::Failed { reason });
-    match motion_files(path, &name) {
-        Err(error) => {
-            say(msg!("{name} cannot be read: {error}.", name, error = error.to_string()));
+/// Reads files, and the motion files in and below folders.
+fn read_paths<'a>(paths: impl Iterator<Item = &'a Path>, inbox: &Inbox) {
+    let refused = |reason| inbox.push(Incoming::Failed { reason });
+    let (mut files, mut folders) = (Vec::new(), Vec::new());
+    for path in paths {
+        let name = last_part(&path.to_string_lossy()).to_owned();
+        if !path.is_dir() {
+            files.push((name, path.to_path_buf()));
+            continue;
         }
-        Ok(files) if files.is_empty() => say(no_motion_in(&name)),
-        Ok(files) => {
-            for (path, name) in files {
-                read_file(&path, name, inbox);
+        match motion_files(path, &name) {
+            Ok(found) => {
+                files.extend(found);
+                folders.push(name);
             }
+            Err(error) => {
+                refused(msg!("{name} cannot be read: {error}.", name, error = error.to_string()));
+            }
+        }
+    }
+    leave_out_lone_images(&mut files, |path| size_of(path));
+    folders.retain(|folder| !files.iter().any(|(path, _)| is_in_folder(path, folder)));
+    folders.iter().for_each(|folder| refused(no_motion_in(folder)));
+    read_files(files, inbox);
+}
+
+/// A file that is opened.
+enum Opened {
+    AtPath(PathBuf),
+    /// The archive of a bundle.
+    Archive(Vec<u8>),
+}
+
+/// Reads files, each with its name in the library, in order.
+fn read_files(files: Vec<(String, PathBuf)>, inbox: &Inbox) {
+    let sizes = files.iter().map(|(name, path)| (name.as_str(), size_of(path)));
+    let bundle = Bundle::of(sizes);
+    let mut opened: Vec<_> =
+        files.into_iter().map(|(name, path)| (name, Opened::AtPath(path))).collect();
+    if let Some(bundle) = bundle {
+        // Otherwise the model is read without its images.
+        if let Some(archive) = archive_of(&bundle, &opened) {
+            opened = bundle.replace(opened, Opened::Archive(archive));
+        }
+    }
+    inbox.push(Incoming::Opening(opened.len()));
+    for (name, file) in opened {
+        match file {
+            Opened::AtPath(path) => read_file(&path, name, inbox),
+            Opened::Archive(bytes) => deliver(name, bytes, inbox),
         }
     }
 }
 
-/// Returns the motion files in and below a folder in the order of their paths, each with its name
-/// in the library.
-fn motion_files(folder: &Path, name: &str) -> std::io::Result<Vec<(PathBuf, String)>> {
+/// Returns the archive of a bundle of these files; `None` if one of them cannot be read.
+fn archive_of(bundle: &Bundle, files: &[(String, Opened)]) -> Option<Vec<u8>> {
+    let content = |(index, _): &(usize, String)| match files.get(*index) {
+        Some((_, Opened::AtPath(path))) => std::fs::read(path).ok(),
+        _ => None,
+    };
+    let contents: Option<Vec<_>> = bundle.members.iter().map(content).collect();
+    bundle.archive(contents?).ok()
+}
+
+fn size_of(path: &Path) -> u64 {
+    std::fs::metadata(path).map_or(0, |metadata| metadata.len())
+}
+
+/// Returns the motion files in and below a folder in the order of their paths, and what models
+/// refer to, each with its name in the library.
+fn motion_files(folder: &Path, name: &str) -> std::io::Result<Vec<(String, PathBuf)>> {
     let mut files = Vec::new();
     // A stack of the paths to visit. Symbolic links are not followed, because they may form a
     // cycle.
@@ -96,14 +128,14 @@ fn motion_files(folder: &Path, name: &str) -> std::io::Result<Vec<(PathBuf, Stri
                 let child = child?;
                 let own = child.file_name().to_string_lossy().into_owned();
                 let kind = child.file_type()?;
-                if kind.is_dir() || (kind.is_file() && is_motion_file(&own)) {
+                if kind.is_dir() || (kind.is_file() && is_read_in_folder(&own)) {
                     children.push((child.path(), format!("{name}/{own}"), kind.is_dir()));
                 }
             }
             children.sort_by(|x, y| y.1.cmp(&x.1));
             waiting.extend(children);
         } else {
-            files.push((path, name));
+            files.push((name, path));
         }
     }
     Ok(files)
@@ -121,12 +153,19 @@ fn read_file(path: &Path, name: String, inbox: &Inbox) {
         },
         Err(error) => Err(unreadable(error)),
     };
-    inbox.push(match bytes {
-        Ok(bytes) if bytes.len() as u64 > LARGE_BYTES => {
-            Incoming::Large { name, file: LargeFile::new(Arc::from(bytes)) }
-        }
-        Ok(bytes) => Incoming::File { name, bytes: Arc::from(bytes) },
-        Err(reason) => Incoming::Failed { reason },
+    match bytes {
+        Ok(bytes) => deliver(name, bytes, inbox),
+        Err(reason) => inbox.push(Incoming::Failed { reason }),
+    }
+}
+
+/// Hands the bytes of a file to the app.
+fn deliver(name: String, bytes: Vec<u8>, inbox: &Inbox) {
+    let bytes: Arc<[u8]> = Arc::from(bytes);
+    inbox.push(if bytes.len() as u64 > LARGE_BYTES {
+        Incoming::Large { name, file: LargeFile::new(bytes) }
+    } else {
+        Incoming::File { name, bytes }
     });
 }
 
@@ -186,19 +225,26 @@ mod tests {
             std::fs::write(folder.join(path), "x").unwrap();
         }
         let inbox = Inbox::default();
-        read_path(&folder.join("takes"), &inbox);
+        let read = |paths: &[&Path]| read_paths(paths.iter().copied(), &inbox);
+        read(&[&folder.join("takes")]);
         assert_eq!(
             received(&inbox),
-            ["takes/a.zip", "takes/b/1.ASF", "takes/b/2.amc", "takes/c.bvh"]
+            ["Opening(4)", "takes/a.zip", "takes/b/1.ASF", "takes/b/2.amc", "takes/c.bvh"]
         );
-        read_path(&folder.join("empty"), &inbox);
-        read_path(Path::new("/nowhere/walk.bvh"), &inbox);
+        std::fs::write(folder.join("takes/b/fox.FBX"), "x").unwrap();
+        std::fs::write(folder.join("takes/skin.png"), "x").unwrap();
+        read(&[&folder.join("takes")]);
+        assert_eq!(
+            received(&inbox)[1..],
+            ["takes/a.zip", "takes/b/1.ASF", "takes/b/2.amc", "takes/fox.zip", "takes/c.bvh"]
+        );
+        read(&[Path::new("/nowhere/walk.bvh"), &folder.join("empty")]);
         let reasons = received(&inbox);
+        assert!(reasons[2].starts_with("walk.bvh cannot be read: "), "{reasons:?}");
         assert_eq!(
             reasons[0],
             "empty has no motion files (.bvh, .asf, .amc, .fbx, .glb, .gltf, .vrm, .vrma, .npz, .npy, .c3d, .trc, .csv, .zip, .gz)."
         );
-        assert!(reasons[1].starts_with("walk.bvh cannot be read: "), "{reasons:?}");
         std::fs::remove_dir_all(&folder).unwrap();
     }
 }

@@ -3,17 +3,17 @@
 use super::js_error_text;
 use super::page::{document, listen, window};
 use super::reader::LargeFile;
+use crate::platform::bundle::Bundle;
 use crate::platform::motion_files::{MAX_FILE_BYTES, too_large};
 use crate::platform::{Inbox, Incoming};
 use eframe::egui::{self, DroppedFileHandle};
 use js_sys::{Array, Reflect, Uint8Array};
 use segue_session::reading::LARGE_BYTES;
 use segue_text::{Message, msg};
-use std::path::Path;
 use std::sync::Arc;
 use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::{JsFuture, spawn_local};
-use web_sys::{Blob, BlobPropertyBag, Clipboard, File, HtmlAnchorElement, HtmlInputElement, Url};
+use web_sys::{Blob, BlobPropertyBag, Clipboard, HtmlAnchorElement, HtmlInputElement, Url};
 
 /// The longest text that is shown in a notice, bytes.
 const MAX_NOTICE_BYTES: usize = 2_000;
@@ -38,7 +38,7 @@ pub(crate) fn open_files(inbox: &Inbox) {
             let files = chosen.files().map(|list| {
                 (0..list.length())
                     .filter_map(|index| list.get(index))
-                    .map(|file| (file.name(), file))
+                    .map(|file| (file.name(), file.into()))
                     .collect()
             });
             chosen.remove();
@@ -55,24 +55,45 @@ pub(crate) fn open_files(inbox: &Inbox) {
 }
 
 /// Reads files, each with its name, one after the other, so that their answers are in order.
-pub(super) async fn read(files: Vec<(String, File)>, inbox: Inbox) {
-    inbox.push(Incoming::Opening(files.len()));
-    for (name, file) in files {
-        if let Some(reason) = too_large(&name, file.size() as u64, MAX_FILE_BYTES) {
-            inbox.push(Incoming::Failed { reason });
-            continue;
-        }
-        if !is_read_here(&name, file.size() as u64) {
-            let file = LargeFile::new(file.into());
-            inbox.push(Incoming::Large { name, file });
-            continue;
-        }
-        let bytes = file.array_buffer().await.map(|buffer| Uint8Array::new(&buffer).to_vec());
-        match bytes {
-            Ok(bytes) => deliver(name, bytes, &inbox),
-            Err(error) => refuse(&name, &js_error_text(&error), &inbox),
+pub(super) async fn read(mut files: Vec<(String, Blob)>, inbox: Inbox) {
+    let sizes = files.iter().map(|(name, file)| (name.as_str(), file.size() as u64));
+    if let Some(bundle) = Bundle::of(sizes) {
+        match archive_of(&bundle, &files).await {
+            Ok(archive) => files = bundle.replace(files, archive),
+            // The model without its images.
+            Err(error) => log::warn!("{}: {}", bundle.name, js_error_text(&error)),
         }
     }
+    inbox.push(Incoming::Opening(files.len()));
+    for (name, file) in files {
+        let size = file.size() as u64;
+        if let Some(reason) = too_large(&name, size, MAX_FILE_BYTES) {
+            inbox.push(Incoming::Failed { reason });
+        } else if is_read_here(&name, size) {
+            match bytes_of(&file).await {
+                Ok(bytes) => inbox.push(Incoming::File { name, bytes: Arc::from(bytes) }),
+                Err(error) => refuse(&name, &js_error_text(&error), &inbox),
+            }
+        } else {
+            inbox.push(Incoming::Large { name, file: LargeFile::new(file) });
+        }
+    }
+}
+
+/// Returns the archive of a bundle of these files.
+async fn archive_of(bundle: &Bundle, files: &[(String, Blob)]) -> Result<Blob, JsValue> {
+    let mut contents = Vec::with_capacity(bundle.members.len());
+    for (index, _) in &bundle.members {
+        let (_, file) = files.get(*index).ok_or("no such file")?;
+        contents.push(bytes_of(file).await?);
+    }
+    let archive = bundle.archive(contents).map_err(|full| full.to_string())?;
+    Blob::new_with_u8_array_sequence(&Array::of1(&Uint8Array::from(&archive[..])))
+}
+
+async fn bytes_of(file: &Blob) -> Result<Vec<u8>, JsValue> {
+    let buffer = file.array_buffer().await?;
+    Ok(Uint8Array::new(&buffer).to_vec())
 }
 
 /// Returns whether the app itself needs the bytes of a file: those of a bone map, and of a skeleton
@@ -81,11 +102,6 @@ fn is_read_here(name: &str, size: u64) -> bool {
     let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
     let is_needed = ["json", "asf"].iter().any(|own| ending.eq_ignore_ascii_case(own));
     is_needed && size <= LARGE_BYTES
-}
-
-/// Hands the bytes of a file to the app.
-fn deliver(name: String, bytes: Vec<u8>, inbox: &Inbox) {
-    inbox.push(Incoming::File { name, bytes: Arc::from(bytes) });
 }
 
 /// Reports a file that the browser cannot read. The log gets the reason in the browser's words.
@@ -101,36 +117,11 @@ fn refuse(name: &str, reason: &str, inbox: &Inbox) {
 
 /// Reads the files dropped on the page, in order.
 pub(crate) fn read_dropped(files: Vec<DroppedFileHandle>, inbox: &Inbox) {
-    let inbox = inbox.clone();
-    inbox.push(Incoming::Opening(files.len()));
-    spawn_local(async move {
-        for file in files {
-            let name = file
-                .path()
-                .file_name()
-                .and_then(|name| name.to_str())
-                .map_or_else(|| path_text(file.path()), str::to_owned);
-            let size = file.web_file().map_or(0.0, |file| file.size());
-            if let Some(reason) = too_large(&name, size as u64, MAX_FILE_BYTES) {
-                inbox.push(Incoming::Failed { reason });
-                continue;
-            }
-            match file.web_file().filter(|_| !is_read_here(&name, size as u64)) {
-                Some(file) => {
-                    let file = LargeFile::new(file.clone().into());
-                    inbox.push(Incoming::Large { name, file });
-                }
-                None => match file.bytes_async().await {
-                    Ok(bytes) => deliver(name, bytes, &inbox),
-                    Err(error) => refuse(&name, &error, &inbox),
-                },
-            }
-        }
-    });
-}
-
-fn path_text(path: &Path) -> String {
-    path.to_string_lossy().into_owned()
+    let named = |file: &DroppedFileHandle| {
+        let file = file.web_file()?;
+        Some((file.name(), file.clone().into()))
+    };
+    spawn_local(read(files.iter().filter_map(named).collect(), inbox.clone()));
 }
 
 /// Saves a file for the user.

@@ -4,13 +4,16 @@ use super::corpora::show_corpus_folder;
 use super::files::read;
 use super::js_error_text;
 use super::page::{listen_first, window};
-use crate::platform::motion_files::{is_motion_file, no_motion_in};
+use crate::platform::bundle::{is_in_folder, is_read_in_folder, leave_out_lone_images};
+use crate::platform::motion_files::no_motion_in;
 use crate::platform::{Inbox, Incoming};
 use js_sys::{Array, Promise};
 use segue_text::msg;
 use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::{JsFuture, spawn_local};
-use web_sys::{DragEvent, File, FileSystemDirectoryEntry, FileSystemEntry, FileSystemFileEntry};
+use web_sys::{
+    Blob, DragEvent, File, FileSystemDirectoryEntry, FileSystemEntry, FileSystemFileEntry,
+};
 
 /// Starts to handle every drop that contains a folder, with its folders and files. eframe handles
 /// the others.
@@ -31,11 +34,7 @@ pub(crate) fn watch_folders(inbox: &Inbox) {
             log::warn!("the drop was not ended: {}", js_error_text(&error));
         }
         let inbox = inbox.clone();
-        spawn_local(async move {
-            for entry in entries {
-                read_entry(entry, &inbox).await;
-            }
-        });
+        spawn_local(read_entries(entries, inbox));
     });
 }
 
@@ -48,35 +47,45 @@ fn entries_of(event: &DragEvent) -> Vec<FileSystemEntry> {
     items.filter_map(|item| item.webkit_get_as_entry().ok().flatten()).collect()
 }
 
-/// Reads a file, or the motion files of a folder in the order of their paths. A folder that is a
+/// Reads files, and the motion files of folders in the order of their paths. A folder that is a
 /// corpus is shown.
-async fn read_entry(entry: FileSystemEntry, inbox: &Inbox) {
-    let is_folder = entry.is_directory();
-    let name = entry.name();
-    let files = if is_folder {
-        match motion_files(entry.clone()).await {
-            Ok(Some(files)) => Ok(files),
-            Ok(None) => return show_corpus_folder(&entry, inbox),
-            Err(error) => Err(error),
+async fn read_entries(entries: Vec<FileSystemEntry>, inbox: Inbox) {
+    let refused = |reason| inbox.push(Incoming::Failed { reason });
+    let (mut files, mut folders) = (Vec::new(), Vec::new());
+    for entry in entries {
+        let name = entry.name();
+        let found = if entry.is_directory() {
+            motion_files(entry.clone()).await
+        } else {
+            let path = path_of(&entry);
+            file_of(entry.clone()).await.map(|file| Some(vec![(path, file.into())]))
+        };
+        match found {
+            Ok(Some(found)) => {
+                files.extend(found);
+                folders.extend(entry.is_directory().then_some(name));
+            }
+            Ok(None) => show_corpus_folder(&entry, &inbox),
+            Err(error) => {
+                refused(msg!(
+                    "{name} cannot be read: {error}.",
+                    name,
+                    error = js_error_text(&error)
+                ));
+            }
         }
-    } else {
-        let path = path_of(&entry);
-        file_of(entry).await.map(|file| vec![(path, file)])
-    };
-    match files {
-        Ok(files) if files.is_empty() => {
-            inbox.push(Incoming::Failed { reason: no_motion_in(&name) });
-        }
-        Ok(files) => read(files, inbox.clone()).await,
-        Err(error) => inbox.push(Incoming::Failed {
-            reason: msg!("{name} cannot be read: {error}.", name, error = js_error_text(&error)),
-        }),
+    }
+    leave_out_lone_images(&mut files, |file: &Blob| file.size() as u64);
+    folders.retain(|folder| !files.iter().any(|(path, _)| is_in_folder(path, folder)));
+    folders.iter().for_each(|folder| refused(no_motion_in(folder)));
+    if !files.is_empty() {
+        read(files, inbox).await;
     }
 }
 
-/// Returns the motion files in and below a folder with their paths; `None` if the folder is a
-/// corpus.
-async fn motion_files(folder: FileSystemEntry) -> Result<Option<Vec<(String, File)>>, JsValue> {
+/// Returns the motion files in and below a folder with their paths, and what models refer to;
+/// `None` if the folder is a corpus.
+async fn motion_files(folder: FileSystemEntry) -> Result<Option<Vec<(String, Blob)>>, JsValue> {
     let mut files = Vec::new();
     // A stack of the entries to visit.
     let mut waiting = vec![folder];
@@ -91,8 +100,8 @@ async fn motion_files(folder: FileSystemEntry) -> Result<Option<Vec<(String, Fil
             }
             children.sort_by_cached_key(FileSystemEntry::name);
             waiting.extend(children.into_iter().rev());
-        } else if is_motion_file(&entry.name()) {
-            files.push((path_of(&entry), file_of(entry).await?));
+        } else if is_read_in_folder(&entry.name()) {
+            files.push((path_of(&entry), file_of(entry).await?.into()));
         }
     }
     Ok(Some(files))

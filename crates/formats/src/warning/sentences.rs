@@ -225,7 +225,7 @@ impl ToMessage for ImportWarning {
                 )
             }
             WarningKind::MissingImage { name } => msg!(
-                "imported without {count, plural, one {# texture} other {# textures}} whose image is not in the file, such as `{name}`: pack it into a zip with the file; the plain colour is used"
+                "imported without {count, plural, one {# texture} other {# textures}} whose image is not in the file, such as `{name}`: open them together; the plain colour is used"
             ),
             WarningKind::TextureAtVertices => msg!(
                 "{count, plural, one {# texture is} other {# textures are}} shown by the colour at each vertex"

@@ -157,7 +157,7 @@ fn image_beside_the_file_is_found_by_its_name() {
     assert_eq!(
         sentences(&found),
         [
-            "imported without 1 texture whose image is not in the file, such as `skin.png`: pack it into a zip with the file; the plain colour is used"
+            "imported without 1 texture whose image is not in the file, such as `skin.png`: open them together; the plain colour is used"
         ]
     );
     assert_eq!(colors(&found)[0], [0; 3]);
