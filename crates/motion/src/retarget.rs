@@ -15,6 +15,8 @@
 //! 3. *Hands.* A wrist goes where the source's is relative to its shoulder, times the ratio of the
 //!    arms' lengths, so that an arm is stretched as far as the source's. Hands that are near each
 //!    other in the source keep their distance instead.
+//!    A forefoot of a body on four legs goes over the ground like a wrist, at the height that a foot
+//!    has in 2.
 //! 4. *Stances.* In the source's contacts the point of the foot that stands is held, as in the
 //!    [foot lock](crate::transition::foot_lock()). A foot that slides on purpose, by more than
 //!    [`SLIDE_ON_PURPOSE_M`], slides as far as the source's. Feet that sink in are lifted smoothly.
@@ -46,8 +48,9 @@
 //! # What it does not do
 //!
 //! The ground is one plane. Hands are held by shoulders and by each other, not by the ground, by
-//! the body or by props. A limb that one of the bodies lacks gets the directions of its bones
-//! alone; of a body on four legs, those that have the roles of a person's legs and arms are placed.
+//! the body or by props; so are the forefeet of a body on four legs where the other one stands on
+//! two. A limb that one of the bodies lacks gets the directions of its bones alone. A trunk is not
+//! pitched: forelegs that are too short for the height of their shoulders end above the ground.
 //!
 //! # Sources
 //!
@@ -73,8 +76,7 @@ pub use report::{Compared, LimbReach, RetargetErrors, SkatingValues};
 pub use retargeting::MotionRetargeting;
 
 use crate::clip::{Clip, Motion, RetargetError, reference_pose, stance_for_rest};
-use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose};
-use glam::Vec3;
+use crate::skeleton::{Roles, Skeleton, WorldPose};
 use std::sync::Arc;
 
 /// A foot of a body 1.75 m tall that slides farther than this in one stance does so on purpose, and
@@ -221,14 +223,4 @@ impl Task {
         self.target.roles.body_height(&self.target.skeleton)
             / crate::registration::REFERENCE_HEIGHT_M as f32
     }
-}
-
-/// Returns ankle, ball and tip of a foot, each as a joint and a point in its frame; `None` for
-/// those that the skeleton does not have.
-fn foot_points(skeleton: &Skeleton, roles: &Roles, side: Side) -> [Option<(usize, Vec3)>; 3] {
-    let joint = |role| roles.get_within(role, skeleton.len());
-    let (ankle, ball) = (joint(Role::foot(side)), joint(Role::toe(side)));
-    // The tip of a foot without toes is its own end site.
-    let tip = ball.or(ankle).and_then(|last| Some((last, skeleton.joints()[last].end_site?)));
-    [ankle.map(|joint| (joint, Vec3::ZERO)), ball.map(|joint| (joint, Vec3::ZERO)), tip]
 }

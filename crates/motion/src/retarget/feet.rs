@@ -1,12 +1,12 @@
 //! The places of feet: where the source has them, held in stances, and above the ground.
 
-use super::tracks::{FootTrack, LimbTrack, Tracks};
+use super::tracks::{FootTrack, Tracks};
 use super::{SLIDE_ON_PURPOSE_M, Task};
 use crate::clip::stillest_step;
 use crate::math::stats;
-use crate::skeleton::Side;
+use crate::skeleton::{Foot, FootPair, Side};
 use crate::transition::FootLockOptions;
-use crate::transition::anchor::Foot;
+use crate::transition::anchor;
 use crate::transition::envelope::{largest_around, smoothed};
 use glam::Vec3;
 use std::ops::Range;
@@ -16,7 +16,7 @@ const LIFT_SECS: f64 = 0.08;
 /// The share of the planted frames, those with the lowest ankle, in which the sole counts as flat.
 const FLAT_SHARE: f32 = 0.3;
 
-/// The places of both feet.
+/// The places of the feet of a body on two legs, or of the hind feet.
 #[derive(Debug)]
 pub(super) struct FootGoals {
     /// The amount by which the whole body is raised, metres.
@@ -28,10 +28,10 @@ pub(super) struct FootGoals {
 
 /// Returns the goals of the feet at full weight.
 pub(super) fn goals(task: &Task, tracks: &Tracks) -> FootGoals {
-    let legs =
-        || tracks.legs.iter().enumerate().filter_map(|(side, leg)| Some((side, leg.as_ref()?)));
-    let feet: Vec<(usize, &FootTrack)> = legs().map(|(side, (_, foot))| (side, foot)).collect();
-    let Some(levels) = Levels::of(task, &feet) else {
+    let feet: Vec<(usize, &FootTrack)> = (tracks.legs.iter().enumerate())
+        .filter_map(|(side, leg)| leg.as_ref().map(|(_, foot)| (side, foot)))
+        .collect();
+    let Some(levels) = Levels::of(task, FootPair::Hind, &feet) else {
         return FootGoals { rise: 0.0, shifts: Default::default() };
     };
     let mut shifts: [Vec<Vec3>; 2] = Default::default();
@@ -52,11 +52,39 @@ pub(super) fn goals(task: &Task, tracks: &Tracks) -> FootGoals {
     for shift in shifts.iter_mut().flatten() {
         shift.y -= rise;
     }
-    for (side, (leg, foot)) in legs() {
-        hold(task, Side::BOTH[side], leg, foot, &mut shifts[side]);
+    for (side, foot) in feet {
+        hold(task, Side::BOTH[side].into(), foot, &mut shifts[side]);
         lift(task, foot, rise, &mut shifts[side]);
     }
     FootGoals { rise, shifts }
+}
+
+/// Moves the goals of forefeet, shifts of the ends of arms, to the heights and stances of the
+/// source. `rises` is how far the body is raised in each frame, metres.
+pub(super) fn place_forefeet(
+    task: &Task,
+    tracks: &Tracks,
+    rises: &[f32],
+    shifts: &mut [Vec<Vec3>; 2],
+) {
+    let feet: Vec<(usize, &FootTrack)> = (tracks.forefeet.iter().enumerate())
+        .filter_map(|(side, foot)| Some((side, foot.as_ref()?)))
+        .collect();
+    let Some(levels) = Levels::of(task, FootPair::Fore, &feet) else { return };
+    for (side, foot) in feet {
+        // From where directions alone put the foot, as for hind feet.
+        let mut from_directions: Vec<Vec3> = (shifts[side].iter().enumerate())
+            .map(|(frame, shift)| Vec3 { y: levels.shift(task, foot, frame).y, ..*shift })
+            .collect();
+        let of = Foot { pair: FootPair::Fore, side: Side::BOTH[side] };
+        hold(task, of, foot, &mut from_directions);
+        lift(task, foot, 0.0, &mut from_directions);
+        shifts[side] = from_directions
+            .iter()
+            .zip(rises)
+            .map(|(shift, rise)| *shift - Vec3::Y * rise)
+            .collect();
+    }
 }
 
 /// The heights of ankle, ball and tip on a flat sole, metres, of the source and of the target.
@@ -69,7 +97,7 @@ struct Levels {
 
 impl Levels {
     /// Returns the levels of bodies with these feet; `None` without any.
-    fn of(task: &Task, feet: &[(usize, &FootTrack)]) -> Option<Self> {
+    fn of(task: &Task, pair: FootPair, feet: &[(usize, &FootTrack)]) -> Option<Self> {
         let (_, first) = feet.first()?;
         let has =
             |body: usize| [0, 1, 2].map(|kind| feet.iter().all(|(_, foot)| foot.has[body][kind]));
@@ -81,7 +109,9 @@ impl Levels {
                 (0..foot.source.len()).map(move |frame| (side, foot, frame))
             })
         };
-        let is_planted = |side: usize, frame: usize| contacts.planted(Side::BOTH[side], frame);
+        let is_planted = |side: usize, frame: usize| {
+            contacts.planted(Foot { pair, side: Side::BOTH[side] }, frame)
+        };
         let any = frames().any(|(side, _, frame)| is_planted(side, frame));
         let standing: Vec<(&FootTrack, usize)> = frames()
             .filter(|&(side, _, frame)| !any || is_planted(side, frame))
@@ -124,19 +154,19 @@ impl Levels {
 }
 
 /// Holds the foot in the source's stances.
-fn hold(task: &Task, side: Side, leg: &LimbTrack, foot: &FootTrack, shifts: &mut [Vec3]) {
+fn hold(task: &Task, of: Foot, foot: &FootTrack, shifts: &mut [Vec3]) {
     let fps = task.plain.fps();
     let size = task.size();
-    let stances = task.source.contacts().intervals(side);
+    let stances = task.source.contacts().intervals(of);
     let kept = slides_on_purpose(task, foot, &stances);
     let kinds: Vec<usize> = (0..3).filter(|kind| foot.has[1][*kind]).collect();
     let moved = |frame: usize, kind: usize| foot.target[frame][kind] + shifts[frame] - kept[frame];
-    let ankles = (0..leg.posed.len()).map(|frame| moved(frame, 0)).collect();
-    let points = (0..leg.posed.len())
+    let ankles = (0..foot.target.len()).map(|frame| moved(frame, 0)).collect();
+    let points = (0..foot.target.len())
         .flat_map(|frame| kinds.iter().map(move |&kind| (frame, kind)))
         .map(|(frame, kind)| moved(frame, kind))
         .collect();
-    let held = Foot::moving(ankles, kinds.len(), points);
+    let held = anchor::Foot::moving(ankles, kinds.len(), points);
     let options =
         FootLockOptions { ground_m: None, clearance_m: None, ..FootLockOptions::default() };
     let stances = held.merged(&stances, fps, size);

@@ -5,7 +5,7 @@ use super::solve::{Goals, LIMITS};
 use super::tracks::Tracks;
 use crate::clip::Clip;
 use crate::metrics::SlideMeter;
-use crate::skeleton::{Side, WorldPose};
+use crate::skeleton::{Foot, WorldPose};
 use crate::transition::LimbPose;
 use glam::Vec3;
 use std::ops::Range;
@@ -74,8 +74,8 @@ pub(super) struct ErrorMeter {
     result: Found,
     frames: usize,
     is_across_plans: bool,
-    /// The ankle, ball and tip of both feet, each as a joint and a point in its frame.
-    points: [[Option<(usize, Vec3)>; 3]; 2],
+    /// The ankle, ball and tip of all feet, each as a joint and a point in its frame.
+    points: Vec<(usize, Vec3)>,
     needed: Vec<usize>,
 }
 
@@ -83,10 +83,11 @@ impl ErrorMeter {
     /// Returns a meter that has measured nothing yet.
     pub(super) fn new(task: &Task, tracks: &Tracks) -> Self {
         let (skeleton, roles) = (&task.target.skeleton, &task.target.roles);
-        let points = Side::BOTH.map(|side| super::foot_points(skeleton, roles, side));
+        let feet = Foot::of(roles.body_plan()).iter();
+        let points: Vec<_> = feet.flat_map(|foot| roles.foot_points(skeleton, *foot)).collect();
         let limbs = tracks.legs.iter().flatten().map(|(leg, _)| leg);
         let limbs = limbs.chain(tracks.arms.iter().flatten());
-        let feet = points.iter().flatten().flatten().map(|(joint, _)| *joint);
+        let feet = points.iter().map(|(joint, _)| *joint);
         let needed = limbs.flat_map(|track| track.limb.joints()).chain(feet);
         Self {
             slides: [
@@ -120,7 +121,7 @@ impl ErrorMeter {
             for frame in frames.clone() {
                 clip.world_pose_of(frame, &self.needed, &mut world);
                 found.add(&world, tracks, goals, frame);
-                let lowest = (self.points.iter().flatten().flatten())
+                let lowest = (self.points.iter())
                     .map(|&(joint, point)| world.point(joint, point).y)
                     .fold(f32::INFINITY, f32::min);
                 found.depth_m = found.depth_m.max(task.ground_m() - lowest);

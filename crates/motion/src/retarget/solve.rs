@@ -1,6 +1,6 @@
 //! The solution: hips and limbs for the places of feet and hands.
 
-use super::feet::FootGoals;
+use super::feet::{FootGoals, place_forefeet};
 use super::tracks::{LimbTrack, Tracks};
 use super::{Task, hands};
 use crate::clip::{Clip, ClipError};
@@ -39,8 +39,7 @@ pub(super) struct Solution {
 impl Solution {
     /// Finds the movements of limbs and hips.
     pub(super) fn new(task: &Task, tracks: &Tracks, feet: FootGoals) -> Self {
-        let mut hand_shifts = hands::shifts(tracks);
-        let goals = goals(tracks, &feet, &hand_shifts);
+        let foot_goals = foot_goals(tracks, &feet);
         let (mut foot_shifts, weights) = (feet.shifts, task.options);
         let frames = task.plain.frames();
         let legs = tracks.legs.iter().filter(|leg| leg.is_some()).count().max(1);
@@ -50,11 +49,6 @@ impl Solution {
             for shift in shifts {
                 // The body is raised by `rise` only, so that the rest is left to this leg.
                 *shift = (*shift + Vec3::Y * feet.rise) * weight - Vec3::Y * rise;
-            }
-        }
-        for (shifts, weight) in hand_shifts.iter_mut().zip(weights.hands) {
-            for shift in shifts {
-                *shift *= weight;
             }
         }
         let heights = if weights.feet == [0.0; 2] {
@@ -70,6 +64,15 @@ impl Solution {
             heights.resize(frames, 0.0);
             heights
         };
+        let mut hand_shifts = hands::shifts(tracks);
+        let rises: Vec<f32> = heights.iter().map(|height| rise + height).collect();
+        place_forefeet(task, tracks, &rises, &mut hand_shifts);
+        let goals = Goals { feet: foot_goals, hands: hand_goals(tracks, &hand_shifts) };
+        for (shifts, weight) in hand_shifts.iter_mut().zip(weights.hands) {
+            for shift in shifts {
+                *shift *= weight;
+            }
+        }
         let rotations = Vec::with_capacity(frames * task.target.skeleton.len());
         Self { goals, foot_shifts, hand_shifts, rise, heights, rotations }
     }
@@ -114,16 +117,18 @@ fn turn(track: &LimbTrack, frame: usize, shift: Vec3, local: &mut [Quat]) {
     track.limb.write(posed, [upper, lower, Quat::IDENTITY], local);
 }
 
-fn goals(tracks: &Tracks, feet: &FootGoals, hand_shifts: &[Vec<Vec3>; 2]) -> Goals {
-    let foot = |side: usize| {
+fn foot_goals(tracks: &Tracks, feet: &FootGoals) -> [Vec<Vec3>; 2] {
+    [0, 1].map(|side: usize| {
         let Some((leg, _)) = &tracks.legs[side] else { return Vec::new() };
         let ends = leg.starts.iter().zip(&leg.posed).zip(&feet.shifts[side]);
         let raised = Vec3::Y * feet.rise;
         ends.map(|((start, pose), shift)| *start + pose.line() + *shift + raised).collect()
-    };
-    let hand = |side: usize| {
+    })
+}
+
+fn hand_goals(tracks: &Tracks, shifts: &[Vec<Vec3>; 2]) -> [Vec<Vec3>; 2] {
+    [0, 1].map(|side: usize| {
         let Some(arm) = &tracks.arms[side] else { return Vec::new() };
-        arm.posed.iter().zip(&hand_shifts[side]).map(|(pose, shift)| pose.line() + *shift).collect()
-    };
-    Goals { feet: [foot(0), foot(1)], hands: [hand(0), hand(1)] }
+        arm.posed.iter().zip(&shifts[side]).map(|(pose, shift)| pose.line() + *shift).collect()
+    })
 }

@@ -1,11 +1,11 @@
 //! Tests of retargeting by inverse kinematics.
 
 use super::*;
-use crate::clip::fixtures::wander;
+use crate::clip::fixtures::{QuadrupedWalk, quadruped, wander};
 use crate::clip::{ContactOptions, Contacts, retarget};
-use crate::skeleton::{Joint, fixtures};
+use crate::skeleton::{Foot, Joint, Role, Side, fixtures};
 use crate::synth::{Action, Params, synthesize};
-use glam::Quat;
+use glam::{Quat, Vec3};
 use proptest::prelude::*;
 use std::ops::ControlFlow;
 
@@ -53,6 +53,56 @@ fn retarget_motion_to_the_same_rig_is_the_clip() {
     for (new, &old) in order.iter().enumerate() {
         let (a, b) = (walk.clip().world_pose(40), made.clip.world_pose(40));
         assert!(a.positions[old].distance(b.positions[new]) < 1e-5);
+    }
+}
+
+/// The forefeet of an animal stand where the hind feet do: on the ground, and still.
+#[test]
+fn forefeet_of_another_animal_stand_still_on_the_ground() {
+    // Forelegs that are too short for the height of their shoulders would not reach the ground.
+    for (forelegs, hind_legs) in [(1.15, 0.9), (1.3, 1.0)] {
+        for axis in [None, Some(Vec3::X)] {
+            let made = QuadrupedWalk { yaw: 0.8, axis, ..QuadrupedWalk::default() };
+            let walk = Motion::analyze(made.clip());
+            let factors: [Factor; 4] = [
+                (Role::forearm, forelegs),
+                (Role::hand, forelegs),
+                (Role::shin, hind_legs),
+                (Role::foot, hind_legs),
+            ];
+            let (target, roles) = (stretched(&quadruped(), &factors), Roles::detect(&quadruped()));
+            let options = RetargetOptions::default();
+            let RetargetedMotion { clip, report, .. } =
+                retarget_motion(&walk, &body(&target, &roles), &options).unwrap();
+            let what = format!("{forelegs} {axis:?} {report:?}");
+            assert_eq!(report.skating.result.stances, report.source_skating.stances, "{what}");
+            assert!(report.skating.directions.worst_cm > 2.0, "{what}");
+            assert!(
+                report.skating.result.worst_cm < report.source_skating.worst_cm + 0.3,
+                "{what}"
+            );
+            assert!(report.penetration_cm.result < 0.5, "{what}");
+            assert_eq!(report.beyond_limits.result, 0, "{what}");
+            // Planted, they are as low as the source's.
+            for foot in Foot::ALL {
+                let lowest = |clip: &Clip, roles: &Roles, frame: usize| {
+                    let (world, points) =
+                        (clip.world_pose(frame), roles.foot_points(clip.skeleton(), foot));
+                    let heights = points.iter().map(|&(joint, point)| world.point(joint, point).y);
+                    heights.fold(f32::INFINITY, f32::min)
+                };
+                for frame in
+                    (0..clip.frames()).filter(|frame| walk.contacts().planted(foot, *frame))
+                {
+                    let [theirs, ours] =
+                        [lowest(walk.clip(), walk.roles(), frame), lowest(&clip, &roles, frame)];
+                    assert!(
+                        (ours - theirs).abs() < 0.02,
+                        "{what} {foot:?} {frame}: {theirs} {ours}"
+                    );
+                }
+            }
+        }
     }
 }
 

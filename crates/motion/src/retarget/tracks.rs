@@ -1,8 +1,8 @@
 //! The limbs of both bodies, frame by frame.
 
-use super::{Task, foot_points};
+use super::Task;
 use crate::clip::Clip;
-use crate::skeleton::{Roles, Side, Skeleton, WorldPose, canonical_stance};
+use crate::skeleton::{Foot, FootPair, Roles, Side, Skeleton, WorldPose, canonical_stance};
 use crate::transition::{Limb, LimbPose};
 use glam::Vec3;
 use std::ops::Range;
@@ -42,6 +42,8 @@ pub(super) struct Tracks {
     /// Legs with their feet, and arms; left, then right.
     pub(super) legs: [Option<(LimbTrack, FootTrack)>; 2],
     pub(super) arms: [Option<LimbTrack>; 2],
+    /// The forefeet of the arms, where both bodies stand on four legs.
+    pub(super) forefeet: [Option<FootTrack>; 2],
     /// The limbs of the source, and of the target.
     theirs: Limbs,
     ours: Limbs,
@@ -52,21 +54,30 @@ pub(super) struct Tracks {
 struct Limbs {
     legs: [Option<Limb>; 2],
     arms: [Option<Limb>; 2],
-    feet: [[Option<(usize, Vec3)>; 3]; 2],
+    feet: [FootPoints; 2],
+    forefeet: [FootPoints; 2],
 }
+
+/// Ankle, ball and tip of a foot, each as a joint and a point in its frame.
+type FootPoints = [Option<(usize, Vec3)>; 3];
 
 impl Limbs {
     fn of(skeleton: &Skeleton, roles: &Roles) -> Self {
+        let points =
+            |pair| Side::BOTH.map(|side| roles.points_of_foot(skeleton, Foot { pair, side }));
         Self {
             legs: Side::BOTH.map(|side| Limb::leg(skeleton, roles, side)),
             arms: Side::BOTH.map(|side| Limb::arm(skeleton, roles, side)),
-            feet: Side::BOTH.map(|side| foot_points(skeleton, roles, side)),
+            feet: points(FootPair::Hind),
+            forefeet: Side::BOTH
+                .map(|side| roles.points_of_foot(skeleton, Foot { pair: FootPair::Fore, side })),
         }
     }
 
     fn joints(&self) -> impl Iterator<Item = usize> {
         let limbs = self.legs.iter().chain(&self.arms).flatten().flat_map(Limb::joints);
-        limbs.chain(self.feet.iter().flatten().flatten().map(|(joint, _)| *joint))
+        let feet = self.feet.iter().chain(&self.forefeet).flatten().flatten();
+        limbs.chain(feet.map(|(joint, _)| *joint))
     }
 }
 
@@ -94,14 +105,24 @@ impl Tracks {
                 starts: Vec::with_capacity(frames),
             })
         };
-        let foot = |side: usize| FootTrack {
-            has: [theirs.feet[side].map(|p| p.is_some()), ours.feet[side].map(|p| p.is_some())],
+        let foot = |theirs: &FootPoints, ours: &FootPoints| FootTrack {
+            has: [theirs.map(|point| point.is_some()), ours.map(|point| point.is_some())],
             source: Vec::with_capacity(frames),
             target: Vec::with_capacity(frames),
         };
+        let on_four = task.source.roles().is_quadruped() && target.roles.is_quadruped();
+        let forefoot = |side: usize| {
+            let (theirs, arm) = (&theirs.forefeet[side], &ours.arms[side]);
+            let ours = &ours.forefeet[side];
+            (on_four && arm.is_some() && theirs[0].is_some() && ours[0].is_some())
+                .then(|| foot(theirs, ours))
+        };
         Self {
-            legs: [0, 1].map(|side| Some((track(&ours.legs[side])?, foot(side)))),
+            legs: [0, 1].map(|side| {
+                Some((track(&ours.legs[side])?, foot(&theirs.feet[side], &ours.feet[side])))
+            }),
             arms: [0, 1].map(|side| track(&ours.arms[side])),
+            forefeet: [0, 1].map(forefoot),
             theirs,
             ours,
         }
@@ -131,6 +152,9 @@ impl Tracks {
                 if let (Some(arm), Some(limb)) = (&mut self.arms[side], &limbs.arms[side]) {
                     arm.source.push(read(limb));
                 }
+                if let Some(foot) = &mut self.forefeet[side] {
+                    foot.source.push(points(&world, &limbs.forefeet[side]));
+                }
             }
         }
     }
@@ -152,6 +176,9 @@ impl Tracks {
                 }
                 if let Some(arm) = &mut self.arms[side] {
                     push(arm);
+                }
+                if let Some(foot) = &mut self.forefeet[side] {
+                    foot.target.push(points(&world, &limbs.forefeet[side]));
                 }
             }
         }
@@ -178,6 +205,6 @@ impl Tracks {
     }
 }
 
-fn points(world: &WorldPose, foot: &[Option<(usize, Vec3)>; 3]) -> [Vec3; 3] {
+fn points(world: &WorldPose, foot: &FootPoints) -> [Vec3; 3] {
     foot.map(|point| point.map_or(Vec3::ZERO, |(joint, point)| world.point(joint, point)))
 }
