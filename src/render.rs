@@ -31,4 +31,5 @@ pub(crate) use callback::{install, paint_callback, stage_pixels};
 use image::{Image, render_to_image};
 #[cfg(test)]
 use quality::Quality;
+pub(crate) use quality::Refinement;
 pub(crate) use renderer::StageRenderer;

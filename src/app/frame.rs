@@ -64,8 +64,8 @@ impl Segue {
         let theme = ui::stage_theme(&self.session, ui::theme::theme_of(ui));
         let look = ui::stage_look(&self.session, theme);
         let highlights = ui::highlights(&self.session, &self.panels);
-        let fine = self.inbox.take_for_picture();
-        self.picture.finish(slot, &self.session, (theme.palette(), look), highlights, fine, ui);
+        let is_taken = self.inbox.take_for_picture();
+        self.picture.finish(slot, &self.session, (theme.palette(), look), highlights, is_taken, ui);
         if self.session.revision() != before {
             ui.ctx().request_repaint();
         }

@@ -1,7 +1,7 @@
 //! The picture of the stage: the connection of the panels' layout and the renderer.
 
 use crate::platform::now_ms;
-use crate::render;
+use crate::render::{self, Refinement};
 use crate::ui::theme::Palette;
 use eframe::egui::layers::ShapeIdx;
 use eframe::egui::{Color32, Painter, Rect, Shape, Ui};
@@ -64,7 +64,7 @@ impl Picture {
         session: &Session,
         (palette, look): (&Palette, Look),
         highlights: Highlights,
-        fine: bool,
+        is_taken: bool,
         ui: &Ui,
     ) {
         let now_ms = now_ms();
@@ -82,7 +82,12 @@ impl Picture {
         let options =
             StageOptions { panes: &panes, pixels_per_point: scale, look, colors, highlights };
         let stage = self.director.stage(session, &options, dt_secs);
-        painter.set(index, render::paint_callback(STAGE, rect, stage, fine, ui.ctx()));
+        let refinement = match (is_taken, self.director.is_at_work()) {
+            (true, _) => Refinement::Now,
+            (false, true) => Refinement::Later,
+            (false, false) => Refinement::AtRest,
+        };
+        painter.set(index, render::paint_callback(STAGE, rect, stage, refinement, ui.ctx()));
     }
 
     /// Prepares what will be drawn, for a millisecond or two. Returns whether there is more to do.

@@ -1,6 +1,7 @@
 //! The stage as a paint callback of egui.
 
 use super::StageRenderer;
+use super::quality::Refinement;
 use super::renderer::REFINE_AFTER;
 use eframe::egui::{self, PaintCallbackInfo, epaint::ViewportInPixels};
 use eframe::egui_wgpu::{
@@ -19,7 +20,6 @@ pub(crate) fn install(render_state: &RenderState) {
 }
 
 /// Returns a shape that shows `stage` in `rect`. Every stage of the page has an `id` of its own.
-/// `fine`: a picture is taken of this frame.
 ///
 /// Keep the `Arc`, and change the stage with `Arc::make_mut` in the next frame. egui has dropped
 /// its handle by then, so that nothing is copied.
@@ -27,13 +27,13 @@ pub(crate) fn paint_callback(
     id: u64,
     rect: egui::Rect,
     stage: Arc<Stage>,
-    fine: bool,
+    refinement: Refinement,
     ctx: &egui::Context,
 ) -> egui::Shape {
     let ctx = ctx.clone();
     egui::Shape::Callback(Callback::new_paint_callback(
         rect,
-        StageCallback { id, rect, stage, fine, ctx },
+        StageCallback { id, rect, stage, refinement, ctx },
     ))
 }
 
@@ -54,7 +54,7 @@ struct StageCallback {
     id: u64,
     rect: egui::Rect,
     stage: Arc<Stage>,
-    fine: bool,
+    refinement: Refinement,
     ctx: egui::Context,
 }
 
@@ -69,7 +69,7 @@ impl CallbackTrait for StageCallback {
     ) -> Vec<wgpu::CommandBuffer> {
         if let Some(renderer) = resources.get_mut::<StageRenderer>() {
             let size = in_pixels(self.rect, screen.pixels_per_point, screen.size_in_pixels);
-            renderer.begin_frame(self.ctx.input(|input| input.time), self.fine);
+            renderer.begin_frame(self.ctx.input(|input| input.time), self.refinement);
             let prepared = renderer.prepare(device, queue, encoder, self.id, &self.stage, size);
             if !prepared.complete {
                 self.ctx.request_repaint();

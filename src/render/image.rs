@@ -1,6 +1,6 @@
 //! Rendering of a stage to a picture in memory.
 
-use super::StageRenderer;
+use super::{Refinement, StageRenderer};
 use eframe::wgpu;
 use flate2::{Compression, Crc, write::ZlibEncoder};
 use segue_scene::Stage;
@@ -53,7 +53,7 @@ pub(crate) fn render_to_image(
     }
     let mut encoder = device
         .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("stage image") });
-    renderer.begin_frame(0.0, true);
+    renderer.begin_frame(0.0, Refinement::Now);
     renderer.prepare(device, queue, &mut encoder, SNAPSHOT, stage, [width, height]);
     let Some(view) = renderer.view(SNAPSHOT) else {
         return Err(ImageError::Size(width, height));

@@ -7,7 +7,7 @@ use super::layout::{COLOR_FORMAT, DEPTH_FORMAT, FigureUniform, ViewUniform};
 use super::light::{LightMap, MAP_SIZE};
 use super::mesh::{ConeBuffers, ConeMesh};
 use super::pipelines::Pipelines;
-use super::quality::Quality;
+use super::quality::{Quality, Refinement};
 use super::skins::SkinStore;
 use super::targets::Targets;
 use super::view::{PictureState, View};
@@ -31,8 +31,7 @@ pub(crate) struct StageRenderer {
     views: Vec<(u64, View)>,
     /// The time of the present frame, seconds.
     now_secs: f64,
-    /// Whether a picture is taken of the present frame.
-    is_for_picture: bool,
+    refinement: Refinement,
     /// The frame under construction. It is swapped with the one last drawn.
     scratch: Frame,
     bytes: Vec<u8>,
@@ -92,7 +91,7 @@ impl StageRenderer {
             },
             views: Vec::new(),
             now_secs: 0.0,
-            is_for_picture: false,
+            refinement: Refinement::default(),
             scratch: Frame::default(),
             bytes: Vec::new(),
         }
@@ -104,10 +103,9 @@ impl StageRenderer {
         self.quality = quality;
     }
 
-    /// Begins the frame that is prepared next, at a time in seconds. A frame of which a picture is
-    /// taken is drawn finely.
-    pub(super) fn begin_frame(&mut self, now_secs: f64, is_for_picture: bool) {
-        (self.now_secs, self.is_for_picture) = (now_secs, is_for_picture);
+    /// Begins the frame that is prepared next, at a time in seconds.
+    pub(super) fn begin_frame(&mut self, now_secs: f64, refinement: Refinement) {
+        (self.now_secs, self.refinement) = (now_secs, refinement);
     }
 
     /// Returns the resources of the stage of that id.
@@ -125,7 +123,7 @@ impl StageRenderer {
     ///
     /// With [`Quality::Plain`], a changed stage is drawn with fewer triangles, and where it is
     /// large, smaller and stretched. When it is prepared again after some time without a change, it
-    /// is drawn finely.
+    /// is drawn finely; see [`Refinement`].
     pub(crate) fn prepare(
         &mut self,
         device: &wgpu::Device,
@@ -164,10 +162,15 @@ impl StageRenderer {
             view.changed_secs = self.now_secs;
         }
         // A frame that was asked for at that time may come a little early.
-        let rests = self.is_for_picture
-            || self.now_secs - view.changed_secs >= 0.9 * REFINE_AFTER.as_secs_f64();
+        let rests = match self.refinement {
+            Refinement::Now => true,
+            Refinement::AtRest => {
+                self.now_secs - view.changed_secs >= 0.9 * REFINE_AFTER.as_secs_f64()
+            }
+            Refinement::Later => false,
+        };
         let draw = match (changed, small) {
-            (true, Some(small)) if !self.is_for_picture => {
+            (true, Some(small)) if self.refinement != Refinement::Now => {
                 let fits = view.coarse.as_ref().is_some_and(|targets| targets.size == small);
                 if !fits {
                     view.coarse = Some(self.targets(device, small));

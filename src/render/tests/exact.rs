@@ -3,7 +3,7 @@
 use super::{A, B, actors, ball, gpu, gpu_for, stage};
 use crate::render::frame::Frame;
 use crate::render::image::read_texture;
-use crate::render::{Quality, render_to_image};
+use crate::render::{Quality, Refinement, render_to_image};
 use eframe::wgpu;
 use glam::Vec3;
 use segue_scene::{Camera, Lens, Look, Pane, Stage, Viewport, rgb};
@@ -11,19 +11,20 @@ use std::time::Instant;
 
 #[test]
 fn stage_in_software_is_coarse_in_motion_and_fine_at_rest() {
+    use Refinement::{AtRest, Later, Now};
     let Some(mut gpu) = gpu() else { return };
     let actors = actors();
     let size = [960, 600];
     gpu.renderer.set_quality(Quality::Plain);
-    let mut prepare = |secs: f64, fine: bool, stage: &Stage, size: [u32; 2]| {
+    let mut prepare = |secs: f64, refinement: Refinement, stage: &Stage, size: [u32; 2]| {
         let mut encoder =
             gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        gpu.renderer.begin_frame(secs, fine);
+        gpu.renderer.begin_frame(secs, refinement);
         let prepared = gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 5, stage, size);
         gpu.queue.submit([encoder.finish()]);
         (prepared.drawn, prepared.to_be_refined)
     };
-    let mut prepared = |secs, stage: &Stage, size| prepare(secs, false, stage, size);
+    let mut prepared = |secs, stage: &Stage, size| prepare(secs, AtRest, stage, size);
     // A small stage, too: it has as many triangles.
     for size in [size, [64, 40]] {
         let mut stage = stage(&actors, size, 2, false, 1.0);
@@ -37,11 +38,16 @@ fn stage_in_software_is_coarse_in_motion_and_fine_at_rest() {
     }
     // A picture of a frame is fine at once, and the next frame in motion is coarse again.
     let mut stage = stage(&actors, size, 2, false, 1.0);
-    assert_eq!(prepare(20.0, true, &stage, size), (true, false));
-    assert_eq!(prepare(20.1, false, &stage, size), (false, false));
+    assert_eq!(prepare(20.0, Now, &stage, size), (true, false));
+    assert_eq!(prepare(20.1, AtRest, &stage, size), (false, false));
     stage.panes[0].camera.yaw += 0.1;
-    assert_eq!(prepare(20.2, false, &stage, size), (true, true));
-    assert_eq!(prepare(20.3, true, &stage, size), (true, false));
+    assert_eq!(prepare(20.2, AtRest, &stage, size), (true, true));
+    assert_eq!(prepare(20.3, Now, &stage, size), (true, false));
+    // What is still being prepared changes the stage soon.
+    stage.panes[0].camera.yaw += 0.1;
+    assert_eq!(prepare(21.0, Later, &stage, size), (true, true));
+    assert_eq!(prepare(22.0, Later, &stage, size), (false, true));
+    assert_eq!(prepare(22.1, AtRest, &stage, size), (true, false));
 
     // The coarse frame has the same panes at the same positions.
     let (mut fine, mut coarse) = (Frame::default(), Frame::default());

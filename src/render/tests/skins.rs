@@ -3,7 +3,7 @@
 use super::{colors, gpu, options, staged};
 use crate::render::coarse_mesh::coarse_triangles;
 use crate::render::image::read_texture;
-use crate::render::{Quality, frame::Frame, render_to_image};
+use crate::render::{Quality, Refinement, frame::Frame, render_to_image};
 use glam::{Quat, Vec3};
 use segue_motion::skeleton::Roles;
 use segue_motion::skin::{RigidTransform, SkinnedMesh, dual_quaternion, linear_blend};
@@ -310,10 +310,10 @@ fn body_in_motion_has_fewer_triangles_in_software_and_the_same_outline() {
     let joints = vec![RigidTransform::IDENTITY; mesh.bind.len()];
     let stage = stage_of(&mesh, &joints, Skinning::Linear);
     let size = [SIZE, SIZE];
-    let [coarse, fine] = [false, true].map(|is_for_picture| {
+    let [coarse, fine] = [Refinement::AtRest, Refinement::Now].map(|refinement| {
         let mut encoder =
             gpu.device.create_command_encoder(&eframe::wgpu::CommandEncoderDescriptor::default());
-        gpu.renderer.begin_frame(0.0, is_for_picture);
+        gpu.renderer.begin_frame(0.0, refinement);
         gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 6, &stage, size);
         let shown = &gpu.renderer.view(6).unwrap().current().color;
         read_texture(&gpu.device, &gpu.queue, encoder, shown).unwrap().rgba
