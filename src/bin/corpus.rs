@@ -3,6 +3,7 @@
 
 #[cfg(target_arch = "wasm32")]
 mod page {
+    use js_sys::{Object, Reflect};
     use segue_corpus::{CorpusPage, PageError, Slot};
     use wasm_bindgen::JsValue;
     use wasm_bindgen::prelude::wasm_bindgen;
@@ -143,9 +144,16 @@ mod page {
         [slot.shard, slot.offset, slot.length].map(|number| number as f64).to_vec()
     }
 
+    /// Returns what is thrown: an object with the `word` of a sentence, or a text.
     #[expect(clippy::needless_pass_by_value, reason = "passed to map_err")]
     fn thrown(error: PageError) -> JsValue {
-        error.to_string().into()
+        let Some(word) = error.word() else {
+            return error.to_string().into();
+        };
+        let object = Object::new();
+        // A new object takes any property.
+        Reflect::set(&object, &"word".into(), &word.into()).ok();
+        object.into()
     }
 }
 

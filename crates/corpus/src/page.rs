@@ -73,6 +73,23 @@ pub enum PageError {
     Clip(#[from] ClipError),
 }
 
+impl PageError {
+    /// Returns the word by which the page's scripts know the sentence in the user's language;
+    /// `None` for errors of damaged bytes and of the page itself, which have no sentence of their
+    /// own.
+    #[must_use]
+    pub fn word(&self) -> Option<&'static str> {
+        match self {
+            Self::Older => Some("olderCorpus"),
+            Self::Newer => Some("newerCorpus"),
+            Self::TooShort | Self::Place(PlaceError::Empty) => Some("tooShort"),
+            Self::NoClip => Some("noMotion"),
+            Self::Place(PlaceError::FourLegs) => Some("fourLegs"),
+            _ => None,
+        }
+    }
+}
+
 /// The part of `corpus.json` that is read.
 #[derive(Debug, Deserialize)]
 struct Manifest {

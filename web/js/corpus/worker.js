@@ -47,7 +47,8 @@ self.onmessage = async ({ data: { call, name, args, cancel } }) => {
 
 /** Returns what can be posted of an error. */
 function errorOf(reason) {
-  if (reason instanceof SourceError) return { word: reason.word, values: reason.values };
+  // One of the sources, or of the WebAssembly.
+  if (reason?.word) return { word: reason.word, values: reason.values ?? {} };
   if (reason?.name === "AbortError") return { isCancelled: true };
   if (reason instanceof WebAssembly.RuntimeError) return { word: "trapped", values: { reason: reason.message } };
   return { text: String(reason?.message ?? reason) };
@@ -164,8 +165,8 @@ function readable(act) {
   try {
     return act();
   } catch (reason) {
-    // A corpus of another version says itself what to do.
-    if (typeof reason !== "string" || reason.includes("Segue:")) throw reason;
+    // Others have a sentence of their own, or are a trap.
+    if (typeof reason !== "string") throw reason;
     throw new SourceError("damaged", { reason });
   }
 }

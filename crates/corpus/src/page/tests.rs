@@ -210,6 +210,7 @@ fn corpus_of_another_format_is_refused_with_what_to_do() {
     assert!(with(99).contains("newer"), "{}", with(99));
     let old = CorpusPage::new(r#"{"format": 1}"#, b"").unwrap_err();
     assert!(matches!(old, PageError::Older));
+    assert_eq!((old.word(), PageError::NoIndex.word()), (Some("olderCorpus"), None));
     assert!(matches!(CorpusPage::new("<html>", b""), Err(PageError::Manifest(_))));
     assert!(matches!(CorpusPage::new(&made().manifest, b"x"), Err(PageError::Corpus(_))));
     let empty = write_columns(&[], &[]).unwrap();
