@@ -11,6 +11,9 @@ const MAX_HEIGHT = 8_000_000;
 const REST_MS = 80;
 const MAX_CELLS = 4000;
 const MAX_THUMBNAILS = 800;
+/** The longest name that is not cut in the middle, and the number of letters behind the cut: takes differ at the end. */
+const MAX_WHOLE_NAME = 14;
+const NAME_END = 7;
 
 export class ClipTable {
   root;
@@ -264,7 +267,8 @@ export class ClipTable {
   #make(index) {
     const row = this.#rows[index];
     const image = element("img", { alt: "", width: 264, height: 48, decoding: "async", draggable: false, hidden: true });
-    const [title, more] = [element("b"), element("small")];
+    const [start, end, more] = [element("span"), element("span"), element("small")];
+    const header = element("div", { role: "rowheader", class: "name" }, [element("b", {}, [start, end]), more]);
     const numbers = this.#columns.map(() => element("div", { role: "gridcell", class: "number" }));
     const letter = (slot) => button({
       text: slot, class: `slot ${slot.toLowerCase()}`, tabIndex: -1, onclick: (event) => {
@@ -286,11 +290,11 @@ export class ClipTable {
       },
     }, [
       element("div", { role: "gridcell", class: "strip" }, [image]),
-      element("div", { role: "rowheader", class: "name" }, [title, more]),
+      header,
       ...numbers,
       element("div", { role: "gridcell", class: "acts" }, slots),
     ]);
-    const shown = { root, image, title, more, numbers, slots, isFilled: false };
+    const shown = { root, image, header, start, end, more, numbers, slots, isFilled: false };
     this.#mark(shown, index);
     this.#picture(shown, row);
     return shown;
@@ -301,7 +305,9 @@ export class ClipTable {
     const [cell, hit] = [this.#cells.get(row), this.#hits.get(row)];
     const { name, path, labels = [], format, status, message, copyOf, isMirrored, values = {} } = cell;
     shown.isFilled = true;
-    shown.title.textContent = name;
+    const [start, end] = inTwo(name);
+    shown.start.textContent = start;
+    shown.end.textContent = end;
     shown.root.title = path ?? "";
     const isWrong = status !== "ok";
     const folder = path?.split("/").slice(0, -1).join("/");
@@ -310,6 +316,8 @@ export class ClipTable {
       ? [message || sentence(status)]
       : [hit && sentence("at", { seconds: hit.seconds.toFixed(2) }), copy, format?.toUpperCase(), labels.join(", ") || folder];
     shown.more.textContent = facts.filter(Boolean).join(" · ");
+    // The parts of the name would be read as two words.
+    shown.header.setAttribute("aria-label", [name, shown.more.textContent].filter(Boolean).join(", "));
     shown.root.classList.toggle("wrong", isWrong);
     this.#columns.forEach((column, at) => {
       const value = column.name === "distance" ? hit?.distance : (cell[column.name] ?? values[column.name]);
@@ -368,4 +376,11 @@ export function written(value, { max, name }) {
   const most = Math.abs(max ?? 1);
   const decimals = name === "seconds" || name === "distance" ? 2 : most >= 100 ? 0 : most >= 10 ? 1 : 2;
   return value.toFixed(decimals).replace(/^-(0(\.0*)?)$/, "$1");
+}
+
+/** Returns the beginning of a name, which may be cut, and its end, which is not. */
+function inTwo(name) {
+  const letters = [...name];
+  const at = letters.length > MAX_WHOLE_NAME ? letters.length - NAME_END : letters.length;
+  return [letters.slice(0, at).join(""), letters.slice(at).join("")];
 }
