@@ -329,6 +329,13 @@ impl SegueHandle {
         self.change(|segue| Ok(segue.apply(Command::Discard(id))?))
     }
 
+    /// Begins or ends several changes that are one step of undo, also if time passes between them.
+    #[wasm_bindgen(js_name = joinSteps)]
+    pub fn join_steps(&self, begins: bool) -> Result<(), JsValue> {
+        self.borrow_mut()?.join_steps(begins);
+        Ok(())
+    }
+
     /// Stops reading or fetching a file.
     pub fn stop(&self, name: &str) -> Result<(), JsValue> {
         self.change(|segue| segue.stop(name))

@@ -26,9 +26,9 @@ use segue_session::metrics::MetricId;
 use segue_session::outside;
 use segue_session::reading::Content;
 use segue_session::{
-    ClipInfo, Command, CommandError, FileCommand, Key, Kind, LabError, List, LoadedFile, NoResult,
-    PARAMS, Pane, PaneResult, Param, PlaybackCommand, ReportFacts, Value, check_graph_clips,
-    file_stem, frame_at, report,
+    ClipInfo, Command, CommandError, FileCommand, Key, Kind, LabError, LabId, List, LoadedFile,
+    NoResult, PARAMS, Pane, PaneResult, Param, PlaybackCommand, ReportFacts, Selected as _, Value,
+    check_graph_clips, file_stem, frame_at, report,
 };
 use serde_json::{Map, Value as Json};
 use std::collections::BTreeMap;
@@ -108,6 +108,11 @@ pub(crate) fn keys() -> Vec<KeyInfo> {
             default: param.to_json(&param.default_value()),
             unit: param.unit,
             lab: param.group.name(),
+            labs: LabId::ALL
+                .iter()
+                .filter(|lab| param.is_used_by(**lab))
+                .map(|lab| lab.word())
+                .collect(),
             help: param.help,
         }
     };
@@ -128,6 +133,12 @@ impl Segue {
             .iter()
             .map(|param| (param.name.to_owned(), param.to_json(params.get(param.key))))
             .collect()
+    }
+
+    /// Begins or ends several changes that are one step of undo.
+    #[cfg(target_arch = "wasm32")]
+    pub(crate) fn join_steps(&mut self, begins: bool) {
+        self.session.join_steps(begins);
     }
 
     /// Sets parameters, all or none.

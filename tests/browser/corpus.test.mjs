@@ -146,6 +146,13 @@ onOneBackend("click plays a clip, and the link shows the same to others", async 
     await playing(names[1]);
     await until("the clip that was looked at is gone", async () => !(await corpusClips(segue)).some(({ id }) => id === first.id));
 
+    // A click is one step of undo.
+    const press = (name) => page.getByRole("button", { name, exact: true }).evaluate((button) => button.click());
+    await press("Undo");
+    await playing(names[0]);
+    await press("Redo");
+    await playing(names[1]);
+
     // A range of it, by keyboard.
     const end = page.getByRole("slider", { name: "End of the range" });
     await end.focus();
@@ -325,6 +332,9 @@ onOneBackend("hosts without ranges and damaged files are told in a sentence", as
   await told({ change: (name, bytes) => (name === "corpus.json" ? null : bytes) }, /There is no corpus\.json at this address/);
   await told({ change: (name, bytes) => (name === "corpus.json" ? Buffer.from("{") : bytes) }, /does not describe a corpus: it is not JSON/);
   await told({ change: (name, bytes) => (name === "corpus.json" ? Buffer.from("{}") : bytes) }, /older version of Segue/);
+  const ofFormat = (format) => ({ change: (name, bytes) => (name === "corpus.json" ? Buffer.from(JSON.stringify({ ...JSON.parse(bytes), format })) : bytes) });
+  await told(ofFormat(99), /made by a newer version of Segue\. Load the page again/);
+  await told(ofFormat(1), /older version of Segue, in another format\. Build it again/);
   await told({ change: (name, bytes) => (name === "columns.bin" ? bytes.subarray(0, bytes.length / 2) : bytes) }, /The corpus is damaged: columns\.bin/);
   await told({ change: (name, bytes) => (name === "columns.bin" ? Buffer.alloc(bytes.length, 7) : bytes) }, /The corpus is damaged/);
   await told({ ranges: false, stated: (name) => (name.startsWith("poses") ? 64 << 20 : undefined) }, /sends whole files instead of the parts/, play);
@@ -333,6 +343,19 @@ onOneBackend("hosts without ranges and damaged files are told in a sentence", as
   await told({ change: (name, bytes) => (name.endsWith("centroids.bin") ? bytes.subarray(0, 10) : bytes) }, /The corpus is damaged: centroids/, async () => {
     await opened(page);
     await page.getByRole("button", { name: "More like this moment" }).click();
+  });
+  // What a link leaves out is left out after another try, too.
+  let isThere = false;
+  await corpusServer(FOLDER, { change: (name, bytes) => (name === "corpus.json" && !isThere ? null : bytes) }, async (address) => {
+    await segue("set", { corpus: `${address}#copies=hide` });
+    await until("it says what is missing", async () => /There is no corpus\.json/.test(await message(page)));
+    isThere = true;
+    await page.getByRole("button", { name: "Try again" }).click();
+    await opened(page);
+    await page.getByRole("button", { name: "Filters" }).click();
+    assert.equal(await page.getByRole("radio", { name: "Hide" }).getAttribute("aria-checked"), "true");
+    assert.equal((await segue("params")).corpus, `${address}#copies=hide`);
+    await segue("set", { corpus: "" });
   });
   // A small corpus is read whole from a host without ranges.
   await corpusServer(FOLDER, { ranges: false }, async (address) => {

@@ -120,6 +120,11 @@ impl Document {
         self.history.can_redo()
     }
 
+    /// Begins or ends several changes that are one step of undo.
+    pub(crate) fn join_steps(&mut self, begins: bool) {
+        self.history.join(begins);
+    }
+
     /// Ends a gesture: the next change is a step of its own.
     pub(crate) fn settle(&mut self) {
         self.history.settle();

@@ -152,6 +152,11 @@ impl Session {
         self.revision
     }
 
+    /// Begins or ends several changes that are one step of undo, also if time passes between them.
+    pub fn join_steps(&mut self, begins: bool) {
+        self.document.join_steps(begins);
+    }
+
     /// Returns whether there is a step to take back.
     #[must_use]
     pub fn can_undo(&self) -> bool {

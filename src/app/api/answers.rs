@@ -23,6 +23,8 @@ pub(crate) struct KeyInfo {
     pub(super) default: Json,
     pub(super) unit: &'static str,
     pub(super) lab: &'static str,
+    /// The labs whose results, or the views beside them, depend on it.
+    pub(super) labs: Vec<&'static str>,
     pub(super) help: &'static str,
 }
 

@@ -7,7 +7,7 @@ let panel;
 
 /** Returns the panel, which comes with its first use. `app` has the app's handle. */
 function panelOf(app) {
-  panel ??= Promise.all([import("./panel.js"), window.segueReady]).then(([{ Panel }, api]) => Panel.make(api, (id) => app.handle.discard(id)));
+  panel ??= Promise.all([import("./panel.js"), window.segueReady]).then(([{ Panel }, api]) => Panel.make(api, () => app.handle));
   panel.catch(() => { panel = undefined; });
   return panel;
 }

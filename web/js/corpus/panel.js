@@ -35,7 +35,7 @@ export class Panel {
   #linked;
 
   /** Makes the panel, with its style. */
-  static async make(api, discard) {
+  static async make(api, app) {
     const style = element("link", { rel: "stylesheet", href: new URL("./panel.css", import.meta.url).href });
     const loaded = new Promise((resolve) => {
       style.addEventListener("load", resolve);
@@ -43,12 +43,12 @@ export class Panel {
     });
     document.head.append(style);
     await loaded;
-    return new Panel(api, discard);
+    return new Panel(api, app);
   }
 
-  constructor(api, discard) {
+  constructor(api, app) {
     this.#api = api;
-    this.#player = new Player(api, discard);
+    this.#player = new Player(api, app);
     this.#root = element("section", {
       id: "corpus", class: "corpus", role: "complementary", onkeydown: (event) => this.#key(event), ondragover: (event) => this.#dragOver(event), ondrop: (event) => this.#drop(event),
     });

@@ -6,14 +6,12 @@
 import { clipAddress, clipOf } from "./address.js";
 import { clipsRead } from "./client.js";
 
-/** Labs that have no B. */
-const WITHOUT_B = new Set(["view", "make", "loop", "path", "graph", "match", "in_place", "edit", "clean"]);
 /** The most addresses of files in a link. */
 const MAX_SOURCES = 16;
 
 export class Player {
   #api;
-  #discard;
+  #app;
   /** Clips that were only looked at: id in the library by address or by a key of its own. */
   #lookedAt = new Map();
   /** Addresses whose clips the app was asked for, and that failed or gave way to a newer click. */
@@ -24,10 +22,11 @@ export class Player {
 
   /**
    * @param api the page's API
-   * @param discard takes a clip out of the library by its id
+   * @param app returns the app, of which the API shows a part: `discard(id)` takes a clip out of the
+   *   library, `joinSteps(begins)` makes one step of undo of several changes
    */
-  constructor(api, discard) {
-    [this.#api, this.#discard] = [api, discard];
+  constructor(api, app) {
+    [this.#api, this.#app] = [api, app];
   }
 
   /**
@@ -43,17 +42,26 @@ export class Player {
     this.#drop.abort(new DOMException("another clip was asked for", "AbortError"));
     this.#drop = new AbortController();
     const signal = options.slot ? undefined : this.#drop.signal;
-    const done = this.#queue.then(() => this.#put(clip, options, signal));
+    const done = this.#queue.then(() => this.#putInOneStep(clip, options, signal));
     this.#queue = done.catch(() => {});
     return done;
   }
 
-  async #put({ corpus, id, range, read }, { slot, seconds }, signal) {
+  async #putInOneStep(clip, options, signal) {
     signal?.throwIfAborted();
+    this.#app().joinSteps(true);
+    try {
+      await this.#put(clip, options, signal);
+    } finally {
+      this.#app().joinSteps(false);
+    }
+  }
+
+  async #put({ corpus, id, range, read }, { slot, seconds }, signal) {
     const params = this.#api.params();
     const address = corpus && clipAddress(corpus, id, range);
     const clipId = address ? await this.#fetch(address, params, signal) : await this.#load(await unlessDropped(read(), signal));
-    const lab = !slot ? "view" : slot === "B" && WITHOUT_B.has(params.lab) ? "blend" : params.lab;
+    const lab = !slot ? "view" : slot === "B" && !this.#hasB(params.lab) ? "blend" : params.lab;
     const values = { lab, [slot === "B" ? "b" : "a"]: clipId };
     const wanted = { ...this.#api.params(), ...values };
     this.#lookAtDropped(address);
@@ -64,7 +72,7 @@ export class Player {
     for (const [key, old] of unused) {
       this.#lookedAt.delete(key);
       // It may be gone by the user's hand.
-      try { this.#discard(old); } catch { /* nothing to discard */ }
+      try { this.#app().discard(old); } catch { /* nothing to discard */ }
     }
     const key = address ?? clipId;
     if (slot) this.#lookedAt.delete(key);
@@ -72,6 +80,11 @@ export class Player {
     if (slot || signal.aborted) return;
     this.#api.seek(seconds ?? 0);
     if (!window.matchMedia("(prefers-reduced-motion: reduce)").matches) this.#api.play();
+  }
+
+  /** Returns whether a lab has a B. */
+  #hasB(lab) {
+    return this.#api.keys().some(({ key, labs }) => key === "b" && labs.includes(lab));
   }
 
   /** Has the app load an address. Returns the id of the clip in the library. */

@@ -22,6 +22,9 @@ pub(super) struct History {
     open: Option<Key>,
     /// The selection of files whose arrival was the last step: further files of it join that step.
     batch: Option<u32>,
+    /// Whether the first of several changes that are one step has been made; `None` while each
+    /// change is a step.
+    joined: Option<bool>,
 }
 
 /// A lesson's worth of steps. A state is small: clips are shared.
@@ -37,6 +40,11 @@ impl History {
         self.open = key;
         self.batch = None;
         self.future.clear();
+        if let Some(has_begun) = &mut self.joined
+            && std::mem::replace(has_begun, true)
+        {
+            return;
+        }
         if self.past.len() >= MAX_STEPS {
             self.past.remove(0);
         }
@@ -55,6 +63,11 @@ impl History {
             self.before_change(params, library, None);
             self.batch = batch;
         }
+    }
+
+    /// Begins or ends several changes that are one step.
+    pub(super) fn join(&mut self, begins: bool) {
+        self.joined = begins.then_some(false);
     }
 
     /// Ends a gesture: the next change is a step of its own.
@@ -140,14 +153,20 @@ impl History {
 
     /// Swaps the present for the state before the last step; returns whether there was one.
     pub(super) fn undo(&mut self, params: &mut Params, library: &mut Library) -> bool {
-        self.batch = None;
+        self.end_step();
         Self::swap(&mut self.past, &mut self.future, &mut self.open, params, library)
     }
 
     /// Swaps the present for the state that was taken back last; returns whether there was one.
     pub(super) fn redo(&mut self, params: &mut Params, library: &mut Library) -> bool {
-        self.batch = None;
+        self.end_step();
         Self::swap(&mut self.future, &mut self.past, &mut self.open, params, library)
+    }
+
+    /// Has the next file or joined change begin a step.
+    fn end_step(&mut self) {
+        self.batch = None;
+        self.joined = self.joined.map(|_| false);
     }
 
     fn swap(

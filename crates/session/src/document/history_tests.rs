@@ -20,6 +20,35 @@ fn drag_of_a_slider_is_one_step() {
 }
 
 #[test]
+fn joined_changes_are_one_step() {
+    let mut session = Session::new();
+    session.join_steps(true);
+    blend_window(&mut session, 20.0);
+    let id = session.load("x.bvh", made_bvh(1.0)).unwrap().ids.remove(0);
+    session.apply(Command::Settle).unwrap();
+    blend_window(&mut session, 25.0);
+    session.join_steps(false);
+    blend_window(&mut session, 40.0);
+    session.apply(Command::Undo).unwrap();
+    assert_eq!(session.params().number(Key::BlendWindow), 25.0);
+    session.apply(Command::Undo).unwrap();
+    assert_eq!(session.params().number(Key::BlendWindow), 30.0);
+    assert!(session.library().get(&id).is_none() && !session.can_undo());
+    // What is taken back in between is not made again by the changes after it.
+    session.join_steps(true);
+    blend_window(&mut session, 20.0);
+    session.apply(Command::Undo).unwrap();
+    session.apply(Command::Settle).unwrap();
+    blend_window(&mut session, 25.0);
+    session.apply(Command::Undo).unwrap();
+    assert_eq!(session.params().number(Key::BlendWindow), 30.0);
+    // Nothing changed: no step.
+    session.join_steps(true);
+    session.join_steps(false);
+    assert!(!session.can_undo());
+}
+
+#[test]
 fn undo_keeps_playhead_and_camera() {
     let mut session = Session::new();
     blend_window(&mut session, 20.0);
