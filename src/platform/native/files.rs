@@ -68,7 +68,9 @@ fn read_paths<'a>(paths: impl Iterator<Item = &'a Path>, inbox: &Inbox) {
     }
     leave_out_lone_images(&mut files, |path| size_of(path));
     folders.retain(|folder| !files.iter().any(|(path, _)| is_in_folder(path, folder)));
-    folders.iter().for_each(|folder| refused(no_motion_in(folder)));
+    for folder in &folders {
+        refused(no_motion_in(folder));
+    }
     read_files(files, inbox);
 }
 

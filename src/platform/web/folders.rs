@@ -77,7 +77,9 @@ async fn read_entries(entries: Vec<FileSystemEntry>, inbox: Inbox) {
     }
     leave_out_lone_images(&mut files, |file: &Blob| file.size() as u64);
     folders.retain(|folder| !files.iter().any(|(path, _)| is_in_folder(path, folder)));
-    folders.iter().for_each(|folder| refused(no_motion_in(folder)));
+    for folder in &folders {
+        refused(no_motion_in(folder));
+    }
     if !files.is_empty() {
         read(files, inbox).await;
     }
