@@ -40,7 +40,7 @@ impl Segue {
             self.warn_of_host();
         }
         if !dropped.is_empty() {
-            platform::read_dropped(dropped, &self.inbox);
+            platform::read_dropped(&dropped, &self.inbox);
         }
         if self.autosave.is_waiting() {
             return;

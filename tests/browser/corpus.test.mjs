@@ -34,6 +34,8 @@ const rowsAre = (page, what, test) => until(what, async () => {
   return now.isFilled && test(now) && now;
 });
 const opened = (page) => rowsAre(page, "the table has rows", ({ names, count }) => count > 0 && names.length > 0);
+/** Returns the row of a clip by its name. */
+const rowOf = (page, name) => page.locator("#corpus .row").filter({ has: page.getByRole("rowheader", { name: new RegExp(`^${name}(,|$)`) }) });
 const message = (page) => until("a sentence is there", () => page.evaluate(() => [...document.querySelectorAll("#corpus [role=alert]")].map((each) => each.textContent).find(Boolean)));
 const faults = (page) => page.evaluate(async (axe) => {
   if (!window.axe) (0, eval)(axe);
@@ -134,7 +136,6 @@ onOneBackend("click plays a clip, and the link shows the same to others", async 
   await corpusServer(FOLDER, {}, async (address) => {
     const { page, segue } = await open(link(address), DESK);
     const { names: all, playable: names } = await opened(page);
-    const rowOf = (page, name) => page.locator("#corpus .row").filter({ has: page.locator(`b:text-is("${name}")`) });
     const row = (name) => rowOf(page, name);
     await row(names[0]).click();
     const playing = async (name) => until(`${name} plays`, async () => {
@@ -201,7 +202,7 @@ onOneBackend("newer click in a corpus replaces one that is still read", async ({
   await corpusServer(FOLDER, { after: 500 }, async (address) => {
     const { page, segue } = await open(link(address), DESK);
     const { playable: names } = await opened(page);
-    const row = (name) => page.locator("#corpus .row").filter({ has: page.locator(`b:text-is("${name}")`) });
+    const row = (name) => rowOf(page, name);
     await row(names[0]).click();
     await row(names[1]).click();
     await until("the newer one plays, alone", async () => {

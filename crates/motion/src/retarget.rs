@@ -15,8 +15,8 @@
 //! 3. *Hands.* A wrist goes where the source's is relative to its shoulder, times the ratio of the
 //!    arms' lengths, so that an arm is stretched as far as the source's. Hands that are near each
 //!    other in the source keep their distance instead.
-//!    A forefoot of a body on four legs goes over the ground like a wrist, at the height that a foot
-//!    has in 2.
+//!    A forefoot of a body on four legs goes over the ground like a wrist, at the height that a
+//!    foot has in 2.
 //! 4. *Stances.* In the source's contacts the point of the foot that stands is held, as in the
 //!    [foot lock](crate::transition::foot_lock()). A foot that slides on purpose, by more than
 //!    [`SLIDE_ON_PURPOSE_M`], slides as far as the source's. Feet that sink in are lifted smoothly.

@@ -25,8 +25,8 @@ pub(crate) fn open_files(inbox: &Inbox) {
 }
 
 /// Reads the files dropped on the window, in order.
-pub(crate) fn read_dropped(files: Vec<DroppedFileHandle>, inbox: &Inbox) {
-    let inbox = inbox.clone();
+pub(crate) fn read_dropped(files: &[DroppedFileHandle], inbox: &Inbox) {
+    let (files, inbox) = (files.to_vec(), inbox.clone());
     std::thread::spawn(move || read_paths(files.iter().map(|file| file.path()), &inbox));
 }
 

@@ -83,8 +83,7 @@ pub(super) async fn read(mut files: Vec<(String, Blob)>, inbox: Inbox) {
 /// Returns the archive of a bundle of these files.
 async fn archive_of(bundle: &Bundle, files: &[(String, Blob)]) -> Result<Blob, JsValue> {
     let mut contents = Vec::with_capacity(bundle.members.len());
-    for (index, _) in &bundle.members {
-        let (_, file) = files.get(*index).ok_or("no such file")?;
+    for (_, file) in bundle.members.iter().filter_map(|(index, _)| files.get(*index)) {
         contents.push(bytes_of(file).await?);
     }
     let archive = bundle.archive(contents).map_err(|full| full.to_string())?;
@@ -116,7 +115,7 @@ fn refuse(name: &str, reason: &str, inbox: &Inbox) {
 }
 
 /// Reads the files dropped on the page, in order.
-pub(crate) fn read_dropped(files: Vec<DroppedFileHandle>, inbox: &Inbox) {
+pub(crate) fn read_dropped(files: &[DroppedFileHandle], inbox: &Inbox) {
     let named = |file: &DroppedFileHandle| {
         let file = file.web_file()?;
         Some((file.name(), file.clone().into()))

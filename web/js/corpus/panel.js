@@ -68,7 +68,8 @@ export class Panel {
     if (text === this.#linked) return;
     this.#endLink();
     if (!text) {
-      if (this.#place && !this.#place.files) this.#close();
+      // The link is as it should be, and may name another corpus by now.
+      if (this.#place && !this.#place.files) this.#leave();
       return;
     }
     const address = corpusAddress(text);
@@ -182,7 +183,14 @@ export class Panel {
     this.#build(() => [failure(reason, { again, choose: () => this.choose() })]);
   }
 
+  /** Closes the panel by hand. */
   #close() {
+    this.#leave();
+    if (this.#api.params().corpus) this.#api.set({ corpus: "" }).catch((reason) => console.error(reason));
+  }
+
+  /** Closes the panel, and leaves the link as it is. */
+  #leave() {
     const hadFocus = this.#root.contains(document.activeElement) || document.activeElement === document.body;
     this.#open?.end();
     this.#endLink();
@@ -190,7 +198,6 @@ export class Panel {
     this.#turn++;
     this.#layout.detach(this.#targets.root);
     if (hadFocus) document.getElementById("segue").focus({ preventScroll: true });
-    if (this.#api.params().corpus) this.#api.set({ corpus: "" }).catch((reason) => console.error(reason));
   }
 
   // The page around it.

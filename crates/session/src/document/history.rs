@@ -67,6 +67,7 @@ impl History {
 
     /// Begins or ends several changes that are one step.
     pub(super) fn join(&mut self, begins: bool) {
+        self.settle();
         self.joined = begins.then_some(false);
     }
 
