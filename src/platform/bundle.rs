@@ -7,6 +7,9 @@ use segue_formats::{ZipFull, ZipWriter};
 
 /// The greatest size of all files of a bundle together, bytes. The archive is made in memory.
 const MAX_BYTES: u64 = 256 * 1024 * 1024;
+/// The greatest number of models of a bundle: a clip whose motion is not in memory is read again
+/// from the whole archive.
+const MAX_MODELS: usize = 16;
 
 /// Files that are read as one archive, because a reader gets one file, and the library stores it.
 #[derive(Debug, PartialEq, Eq)]
@@ -19,14 +22,16 @@ pub(super) struct Bundle {
 
 impl Bundle {
     /// Returns the bundle of files that are opened together, given their names and sizes in bytes.
-    /// `None` if no model is among them, or nothing beside it, or if they are too large.
+    /// `None` if no model is among them, or nothing beside it, or if there are too many or they are
+    /// too large.
     pub(super) fn of<'a>(files: impl Iterator<Item = (&'a str, u64)>) -> Option<Self> {
         let files = files.enumerate().map(|(index, (name, bytes))| (index, name, bytes));
         let members: Vec<_> =
             files.filter(|(_, name, _)| is_scene(name) || is_beside_scene(name)).collect();
         let first = members.iter().map(|(_, name, _)| *name).find(|name| is_scene(name))?;
-        let has_others = members.iter().any(|(_, name, _)| is_beside_scene(name));
-        if !has_others || members.iter().map(|(.., bytes)| bytes).sum::<u64>() > MAX_BYTES {
+        let models = members.iter().filter(|(_, name, _)| is_scene(name)).count();
+        let bytes: u64 = members.iter().map(|(.., bytes)| bytes).sum();
+        if models == members.len() || models > MAX_MODELS || bytes > MAX_BYTES {
             return None;
         }
         let mut folder = folder_of(first);
@@ -114,6 +119,8 @@ mod tests {
         assert_eq!(of(&[]), None);
         let large = [("fox.fbx", MAX_BYTES), ("skin.png", 1)];
         assert_eq!(Bundle::of(large.into_iter()), None);
+        let many = |models| [vec!["fox.fbx"; models], vec!["skin.png"]].concat();
+        assert!(of(&many(MAX_MODELS)).is_some() && of(&many(MAX_MODELS + 1)).is_none());
     }
 
     #[test]
