@@ -345,7 +345,7 @@ onOneBackend("hosts without ranges and damaged files are told in a sentence", as
     await opened(page);
     await page.getByRole("button", { name: "More like this moment" }).click();
   });
-  // What a link leaves out is left out after another try, too.
+  // A link has a filter, and its corpus can be read only when it is tried again: the filter is set.
   let isThere = false;
   await corpusServer(FOLDER, { change: (name, bytes) => (name === "corpus.json" && !isThere ? null : bytes) }, async (address) => {
     await segue("set", { corpus: `${address}#copies=hide` });

@@ -43,7 +43,7 @@ fn stage_in_software_is_coarse_in_motion_and_fine_at_rest() {
     stage.panes[0].camera.yaw += 0.1;
     assert_eq!(prepare(20.2, AtRest, &stage, size), (true, true));
     assert_eq!(prepare(20.3, Now, &stage, size), (true, false));
-    // What is still being prepared changes the stage soon.
+    // While a body is prepared, a stage at rest stays coarse; afterwards it is drawn finely.
     stage.panes[0].camera.yaw += 0.1;
     assert_eq!(prepare(21.0, Later, &stage, size), (true, true));
     assert_eq!(prepare(22.0, Later, &stage, size), (false, true));

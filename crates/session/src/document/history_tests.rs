@@ -34,7 +34,7 @@ fn joined_changes_are_one_step() {
     session.apply(Command::Undo).unwrap();
     assert_eq!(session.params().number(Key::BlendWindow), 30.0);
     assert!(session.library().get(&id).is_none() && !session.can_undo());
-    // What is taken back in between is not made again by the changes after it.
+    // After an undo among the joined changes, the next change begins a step of its own.
     session.join_steps(true);
     blend_window(&mut session, 20.0);
     session.apply(Command::Undo).unwrap();
