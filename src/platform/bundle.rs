@@ -3,9 +3,8 @@
 
 use super::motion_files::{is_motion_file, last_part};
 use segue_formats::archive::{is_beside_scene, is_scene};
-use segue_formats::{ZipFull, ZipWriter};
 
-/// The greatest size of all files of a bundle together, bytes. The archive is made in memory.
+/// The greatest size of all files of a bundle together, bytes. The reader unpacks them in memory.
 const MAX_BYTES: u64 = 256 * 1024 * 1024;
 /// The greatest number of models of a bundle: a clip whose motion is not in memory is read again
 /// from the whole archive.
@@ -21,28 +20,31 @@ pub(super) struct Bundle {
 }
 
 impl Bundle {
-    /// Returns the bundle of files that are opened together, given their names and sizes in bytes.
-    /// `None` if no model is among them, or nothing beside it, or if there are too many or they are
-    /// too large.
-    pub(super) fn of<'a>(files: impl Iterator<Item = (&'a str, u64)>) -> Option<Self> {
-        let files = files.enumerate().map(|(index, (name, bytes))| (index, name, bytes));
+    /// Returns the bundle of files that are opened together, each with its name; `bytes` returns
+    /// the size of one. `None` if no model is among them, or nothing beside it, or if there are too
+    /// many or they are too large.
+    pub(super) fn of<T>(files: &[(String, T)], bytes: impl Fn(&T) -> u64) -> Option<Self> {
+        let names = files.iter().map(|(name, _)| name.as_str()).enumerate();
         let members: Vec<_> =
-            files.filter(|(_, name, _)| is_scene(name) || is_beside_scene(name)).collect();
-        let first = members.iter().map(|(_, name, _)| *name).find(|name| is_scene(name))?;
-        let models = members.iter().filter(|(_, name, _)| is_scene(name)).count();
-        let bytes: u64 = members.iter().map(|(.., bytes)| bytes).sum();
-        if models == members.len() || models > MAX_MODELS || bytes > MAX_BYTES {
+            names.filter(|(_, name)| is_scene(name) || is_beside_scene(name)).collect();
+        let (_, first) = *members.iter().find(|(_, name)| is_scene(name))?;
+        let models = members.iter().filter(|(_, name)| is_scene(name)).count();
+        if models == members.len() || models > MAX_MODELS {
+            return None;
+        }
+        let sizes = members.iter().filter_map(|(index, _)| files.get(*index));
+        if sizes.map(|(_, file)| bytes(file)).sum::<u64>() > MAX_BYTES {
             return None;
         }
         let mut folder = folder_of(first);
-        while !members.iter().all(|(_, name, _)| name.starts_with(folder)) {
+        while !members.iter().all(|(_, name)| name.starts_with(folder)) {
             folder = folder_of(folder.trim_end_matches('/'));
         }
         let stem = last_part(first).rsplit_once('.').map_or(first, |(stem, _)| stem);
         let path = |name: &str| name.get(folder.len()..).unwrap_or(name).to_owned();
         Some(Self {
             name: format!("{folder}{stem}.zip"),
-            members: members.iter().map(|&(index, name, _)| (index, path(name))).collect(),
+            members: members.iter().map(|&(index, name)| (index, path(name))).collect(),
         })
     }
 
@@ -57,18 +59,6 @@ impl Bundle {
         files.insert(first, (self.name, archive));
         files
     }
-
-    /// Returns the archive, given the contents of its files in the order of `members`.
-    pub(super) fn archive(
-        &self,
-        contents: impl IntoIterator<Item = Vec<u8>>,
-    ) -> Result<Vec<u8>, ZipFull> {
-        let mut zip = ZipWriter::default();
-        for ((_, path), bytes) in self.members.iter().zip(contents) {
-            zip.store(path, &bytes)?;
-        }
-        Ok(zip.finish())
-    }
 }
 
 /// Returns whether a file of a folder may be read, by its name: see [`leave_out_lone_images`].
@@ -78,7 +68,7 @@ pub(super) fn is_read_in_folder(name: &str) -> bool {
 
 /// Leaves out images and arrays of folders, unless they are in a bundle.
 pub(super) fn leave_out_lone_images<T>(files: &mut Vec<(String, T)>, bytes: impl Fn(&T) -> u64) {
-    if Bundle::of(files.iter().map(|(name, file)| (name.as_str(), bytes(file)))).is_none() {
+    if Bundle::of(files, bytes).is_none() {
         files.retain(|(name, _)| !is_beside_scene(name));
     }
 }
@@ -96,10 +86,10 @@ fn folder_of(path: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use segue_formats::archive::{ArchiveLimits, unpack};
 
     fn of(names: &[&str]) -> Option<Bundle> {
-        Bundle::of(names.iter().map(|name| (*name, 10)))
+        let files: Vec<_> = names.iter().map(|name| ((*name).to_owned(), ())).collect();
+        Bundle::of(&files, |()| 10)
     }
 
     #[test]
@@ -118,7 +108,8 @@ mod tests {
         assert_eq!(of(&["skin.png", "walk.bvh"]), None);
         assert_eq!(of(&[]), None);
         let large = [("fox.fbx", MAX_BYTES), ("skin.png", 1)];
-        assert_eq!(Bundle::of(large.into_iter()), None);
+        let large = large.map(|(name, bytes)| (name.to_owned(), bytes));
+        assert_eq!(Bundle::of(&large, |bytes| *bytes), None);
         let many = |models| [vec!["fox.fbx"; models], vec!["skin.png"]].concat();
         assert!(of(&many(MAX_MODELS)).is_some() && of(&many(MAX_MODELS + 1)).is_none());
     }
@@ -142,10 +133,8 @@ mod tests {
         let names = ["zoo/fox/model/fox.fbx", "zoo/fox/maps/a/skin.png", "zoo/fox/maps/skin.jpeg"];
         let bundle = of(&names).unwrap();
         assert_eq!(bundle.name, "zoo/fox/fox.zip");
-        let archive = bundle.archive([b"x", b"y", b"z"].map(|content| content.to_vec())).unwrap();
-        let files = unpack("fox.zip", &archive, &ArchiveLimits::default()).unwrap().files;
-        let paths: Vec<&str> = files.iter().map(|file| file.path.as_str()).collect();
-        assert_eq!(paths, ["maps/a/skin.png", "maps/skin.jpeg", "model/fox.fbx"]);
+        let paths: Vec<&str> = bundle.members.iter().map(|(_, path)| path.as_str()).collect();
+        assert_eq!(paths, ["model/fox.fbx", "maps/a/skin.png", "maps/skin.jpeg"]);
         // Names that only begin alike share no folder.
         let bundle = of(&["zoo/a.fbx", "zoom/a.png"]).unwrap();
         assert_eq!((bundle.name.as_str(), bundle.members[1].1.as_str()), ("a.zip", "zoom/a.png"));

@@ -105,7 +105,7 @@ pub use gzip::unpack_gzip;
 pub use measure::{CMU_METRES_PER_UNIT, Measure, UpSource};
 pub use unlikely::Mendable;
 pub use warning::{ImportWarning, WarningKind};
-pub use zip_out::{PackedFile, ZipFull, ZipWriter};
+pub use zip_out::{Crc, PackedFile, ZipFull, ZipIndex, ZipWriter};
 
 use segue_motion::clip::{Clip, UpAxis};
 use segue_motion::skeleton::Roles;

@@ -1,6 +1,7 @@
 //! Writing of zip archives.
 
-use flate2::{Compression, Crc, write::DeflateEncoder};
+pub use flate2::Crc;
+use flate2::{Compression, write::DeflateEncoder};
 use std::collections::BTreeSet;
 use std::io::Write as _;
 
@@ -47,13 +48,92 @@ impl PackedFile {
 #[error("the archive is full: convert the remaining files in a second run")]
 pub struct ZipFull;
 
+/// All of a zip archive but the contents of its files, for whoever has these elsewhere: the headers
+/// that stand before them, and the directory behind the last.
+#[derive(Clone, Debug, Default)]
+pub struct ZipIndex {
+    /// The number of bytes of the headers and contents so far.
+    at: usize,
+    /// The central directory so far.
+    list: Vec<u8>,
+    names: BTreeSet<String>,
+}
+
+impl ZipIndex {
+    /// Adds a file that is not compressed, and returns the header that stands before its content;
+    /// `None` if there is a file of that name.
+    ///
+    /// # Errors
+    /// [`ZipFull`] when there is no room for it; the index is as before.
+    pub fn store(&mut self, path: &str, content: &Crc) -> Result<Option<Vec<u8>>, ZipFull> {
+        let size = content.amount();
+        self.add(path, STORED, [content.sum(), size], size as usize)
+    }
+
+    /// Returns the directory, which stands behind the content of the last file.
+    #[must_use]
+    pub fn finish(mut self) -> Vec<u8> {
+        let (at, size) = (self.at as u32, self.list.len() as u32);
+        let count = self.names.len() as u16;
+        self.list.extend(b"PK\x05\x06\0\0\0\0");
+        for number in [count, count] {
+            self.list.extend(number.to_le_bytes());
+        }
+        for number in [size, at] {
+            self.list.extend(number.to_le_bytes());
+        }
+        self.list.extend(0_u16.to_le_bytes());
+        self.list
+    }
+
+    fn len(&self) -> usize {
+        self.at + self.list.len() + END
+    }
+
+    /// Adds a file with `packed` bytes of content; see [`Self::store`].
+    fn add(
+        &mut self,
+        path: &str,
+        method: u16,
+        [crc, size]: [u32; 2],
+        packed: usize,
+    ) -> Result<Option<Vec<u8>>, ZipFull> {
+        let length = u16::try_from(path.len()).map_err(|_| ZipFull)?;
+        let grown = self.len() + packed + OVERHEAD + 2 * path.len();
+        if u32::try_from(grown).is_err() || self.names.len() >= usize::from(u16::MAX) {
+            return Err(ZipFull);
+        }
+        if !self.names.insert(path.to_owned()) {
+            return Ok(None);
+        }
+        let mut common: Vec<u8> = Vec::new();
+        let flags = if path.is_ascii() { 0 } else { UTF8 };
+        // Version 2.0; flags, method, time and date.
+        for field in [20, flags, method, 0, DOS_DATE] {
+            common.extend(u16::to_le_bytes(field));
+        }
+        for field in [crc, packed as u32, size] {
+            common.extend(field.to_le_bytes());
+        }
+        common.extend(length.to_le_bytes());
+        common.extend(0_u16.to_le_bytes());
+        let header = [b"PK\x03\x04", &common[..], path.as_bytes()].concat();
+        self.list.extend(b"PK\x01\x02\x14\0");
+        self.list.extend(&common);
+        // No comment, first disk, no attributes.
+        self.list.extend([0; 10]);
+        self.list.extend((self.at as u32).to_le_bytes());
+        self.list.extend(path.as_bytes());
+        self.at += header.len() + packed;
+        Ok(Some(header))
+    }
+}
+
 /// A zip archive that is written file by file.
 #[derive(Clone, Debug, Default)]
 pub struct ZipWriter {
     bytes: Vec<u8>,
-    /// The central directory so far.
-    list: Vec<u8>,
-    names: BTreeSet<String>,
+    index: ZipIndex,
 }
 
 impl ZipWriter {
@@ -79,69 +159,33 @@ impl ZipWriter {
     /// Returns the number of bytes so far.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.bytes.len() + self.list.len() + END
+        self.index.len()
     }
 
     /// Returns whether there is no file yet.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.names.is_empty()
+        self.index.names.is_empty()
     }
 
     fn add(
         &mut self,
         path: &str,
         method: u16,
-        [crc, size]: [u32; 2],
+        sums: [u32; 2],
         content: &[u8],
     ) -> Result<(), ZipFull> {
-        let length = u16::try_from(path.len()).map_err(|_| ZipFull)?;
-        let grown = self.len() + content.len() + OVERHEAD + 2 * path.len();
-        if u32::try_from(grown).is_err() || self.names.len() >= usize::from(u16::MAX) {
-            return Err(ZipFull);
+        if let Some(header) = self.index.add(path, method, sums, content.len())? {
+            self.bytes.extend(header);
+            self.bytes.extend(content);
         }
-        if !self.names.insert(path.to_owned()) {
-            return Ok(());
-        }
-        let mut common: Vec<u8> = Vec::new();
-        let flags = if path.is_ascii() { 0 } else { UTF8 };
-        // Version 2.0; flags, method, time and date.
-        for field in [20, flags, method, 0, DOS_DATE] {
-            common.extend(u16::to_le_bytes(field));
-        }
-        for field in [crc, content.len() as u32, size] {
-            common.extend(field.to_le_bytes());
-        }
-        common.extend(length.to_le_bytes());
-        common.extend(0_u16.to_le_bytes());
-        let at = self.bytes.len() as u32;
-        self.bytes.extend(b"PK\x03\x04");
-        self.bytes.extend(&common);
-        self.bytes.extend(path.as_bytes());
-        self.bytes.extend(content);
-        self.list.extend(b"PK\x01\x02\x14\0");
-        self.list.extend(&common);
-        // No comment, first disk, no attributes.
-        self.list.extend([0; 10]);
-        self.list.extend(at.to_le_bytes());
-        self.list.extend(path.as_bytes());
         Ok(())
     }
 
     /// Returns the archive.
     #[must_use]
     pub fn finish(mut self) -> Vec<u8> {
-        let (at, size) = (self.bytes.len() as u32, self.list.len() as u32);
-        let count = self.names.len() as u16;
-        self.bytes.append(&mut self.list);
-        self.bytes.extend(b"PK\x05\x06\0\0\0\0");
-        for number in [count, count] {
-            self.bytes.extend(number.to_le_bytes());
-        }
-        for number in [size, at] {
-            self.bytes.extend(number.to_le_bytes());
-        }
-        self.bytes.extend(0_u16.to_le_bytes());
+        self.bytes.append(&mut self.index.finish());
         self.bytes
     }
 }
@@ -170,6 +214,23 @@ mod tests {
         let names: Vec<&str> = files.iter().map(|file| file.path.as_str()).collect();
         assert_eq!(names, ["a/stored.bvh", "走/packed.bvh"]);
         assert!(files.iter().all(|file| file.bytes == text.as_bytes()));
+    }
+
+    #[test]
+    fn archive_of_pieces_is_that_of_the_writer() {
+        let (mut zip, mut index, mut pieces) =
+            (ZipWriter::default(), ZipIndex::default(), Vec::new());
+        for (path, content) in [("a.gltf", &b"{}"[..]), ("b/skin.png", b""), ("a.gltf", b"other")] {
+            zip.store(path, content).unwrap();
+            let mut crc = Crc::new();
+            // In parts, as they are read.
+            content.chunks(1).for_each(|part| crc.update(part));
+            if let Some(header) = index.store(path, &crc).unwrap() {
+                pieces.extend([&header, content].concat());
+            }
+        }
+        pieces.extend(index.finish());
+        assert_eq!(pieces, zip.finish());
     }
 
     #[test]

@@ -6,6 +6,7 @@ use crate::platform::bundle::{Bundle, is_in_folder, is_read_in_folder, leave_out
 use crate::platform::motion_files::{MAX_FILE_BYTES, endings, last_part, no_motion_in, too_large};
 use crate::platform::{Inbox, Incoming};
 use eframe::egui::DroppedFileHandle;
+use segue_formats::ZipWriter;
 use segue_session::reading::LARGE_BYTES;
 use segue_text::msg;
 use std::path::{Path, PathBuf};
@@ -83,8 +84,7 @@ enum Opened {
 
 /// Reads files, each with its name in the library, in order.
 fn read_files(files: Vec<(String, PathBuf)>, inbox: &Inbox) {
-    let sizes = files.iter().map(|(name, path)| (name.as_str(), size_of(path)));
-    let bundle = Bundle::of(sizes);
+    let bundle = Bundle::of(&files, |path| size_of(path));
     let mut opened: Vec<_> =
         files.into_iter().map(|(name, path)| (name, Opened::AtPath(path))).collect();
     if let Some(bundle) = bundle {
@@ -104,12 +104,12 @@ fn read_files(files: Vec<(String, PathBuf)>, inbox: &Inbox) {
 
 /// Returns the archive of a bundle of these files; `None` if one of them cannot be read.
 fn archive_of(bundle: &Bundle, files: &[(String, Opened)]) -> Option<Vec<u8>> {
-    let content = |(index, _): &(usize, String)| match files.get(*index) {
-        Some((_, Opened::AtPath(path))) => std::fs::read(path).ok(),
-        _ => None,
-    };
-    let contents: Option<Vec<_>> = bundle.members.iter().map(content).collect();
-    bundle.archive(contents?).ok()
+    let mut zip = ZipWriter::default();
+    for (index, path) in &bundle.members {
+        let (_, Opened::AtPath(file)) = files.get(*index)? else { return None };
+        zip.store(path, &std::fs::read(file).ok()?).ok()?;
+    }
+    Some(zip.finish())
 }
 
 fn size_of(path: &Path) -> u64 {

@@ -8,6 +8,7 @@ use crate::platform::motion_files::{MAX_FILE_BYTES, too_large};
 use crate::platform::{Inbox, Incoming};
 use eframe::egui::{self, DroppedFileHandle};
 use js_sys::{Array, Reflect, Uint8Array};
+use segue_formats::{Crc, ZipIndex};
 use segue_session::reading::LARGE_BYTES;
 use segue_text::{Message, msg};
 use std::sync::Arc;
@@ -17,6 +18,8 @@ use web_sys::{Blob, BlobPropertyBag, Clipboard, HtmlAnchorElement, HtmlInputElem
 
 /// The longest text that is shown in a notice, bytes.
 const MAX_NOTICE_BYTES: usize = 2_000;
+/// The number of bytes of a file whose checksum is computed at once.
+const CHECKED_AT_ONCE_BYTES: f64 = 1_048_576.0;
 /// The name of the file in which a longer text is saved.
 const TEXT_FILE: &str = "segue.md";
 
@@ -56,8 +59,7 @@ pub(crate) fn open_files(inbox: &Inbox) {
 
 /// Reads files, each with its name, one after the other, so that their answers are in order.
 pub(super) async fn read(mut files: Vec<(String, Blob)>, inbox: Inbox) {
-    let sizes = files.iter().map(|(name, file)| (name.as_str(), file.size() as u64));
-    if let Some(bundle) = Bundle::of(sizes) {
+    if let Some(bundle) = Bundle::of(&files, |file| file.size() as u64) {
         match archive_of(&bundle, &files).await {
             Ok(archive) => files = bundle.replace(files, archive),
             // The model without its images.
@@ -80,14 +82,25 @@ pub(super) async fn read(mut files: Vec<(String, Blob)>, inbox: Inbox) {
     }
 }
 
-/// Returns the archive of a bundle of these files.
+/// Returns the archive of a bundle of these files. The browser joins them: the app reads them for
+/// their checksums alone, in parts that take a few milliseconds.
 async fn archive_of(bundle: &Bundle, files: &[(String, Blob)]) -> Result<Blob, JsValue> {
-    let mut contents = Vec::with_capacity(bundle.members.len());
-    for (_, file) in bundle.members.iter().filter_map(|(index, _)| files.get(*index)) {
-        contents.push(bytes_of(file).await?);
+    let (mut zip, pieces) = (ZipIndex::default(), Array::new());
+    for (index, path) in &bundle.members {
+        let Some((_, file)) = files.get(*index) else { continue };
+        let (mut checksum, mut at) = (Crc::new(), 0.0);
+        while at < file.size() {
+            let end = at + CHECKED_AT_ONCE_BYTES;
+            checksum.update(&bytes_of(&file.slice_with_f64_and_f64(at, end)?).await?);
+            at = end;
+        }
+        if let Some(header) = zip.store(path, &checksum).map_err(|full| full.to_string())? {
+            pieces.push(&Uint8Array::from(&header[..]));
+            pieces.push(file);
+        }
     }
-    let archive = bundle.archive(contents).map_err(|full| full.to_string())?;
-    Blob::new_with_u8_array_sequence(&Array::of1(&Uint8Array::from(&archive[..])))
+    pieces.push(&Uint8Array::from(&zip.finish()[..]));
+    Blob::new_with_blob_sequence(&pieces)
 }
 
 async fn bytes_of(file: &Blob) -> Result<Vec<u8>, JsValue> {
