@@ -149,10 +149,13 @@ onOneBackend("click plays a clip, and the link shows the same to others", async 
 
     // A click is one step of undo.
     const press = (name) => page.getByRole("button", { name, exact: true }).evaluate((button) => button.click());
+    const isAtFoot = (name) => until(`${name} is at the foot`, () => page.evaluate((name) => document.querySelector("#corpus .dock b").textContent === name, name));
     await press("Undo");
     await playing(names[0]);
+    await isAtFoot(names[0]);
     await press("Redo");
     await playing(names[1]);
+    await isAtFoot(names[1]);
 
     // A range of it, by keyboard.
     const end = page.getByRole("slider", { name: "End of the range" });
