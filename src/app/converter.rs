@@ -38,6 +38,8 @@ pub(super) struct Converter {
 struct Run {
     conversion: Conversion,
     setup: ReadSetup,
+    /// The options of converting each file as it is read.
+    convert: Option<Arc<ConvertOptions>>,
     /// The number of files and clips in all.
     all: usize,
     current: Option<Current>,
@@ -144,8 +146,8 @@ impl Converter {
                     FileBytes::Large(file) => file.len(),
                 };
                 let content = Content::Outside(String::new());
-                let task =
-                    ReadTask { id, name: name.clone(), content, size, setup: run.setup.clone() };
+                let (setup, convert) = (run.setup.clone(), run.convert.clone());
+                let task = ReadTask { id, name: name.clone(), content, size, setup, convert };
                 run.current = Some(Current { task: id, name, size, done: 0 });
                 reader.start(task, bytes);
             }
@@ -287,20 +289,20 @@ impl Segue {
             (false, _) => None,
         };
         let options = ConvertOptions { export: *how, rig };
-        let mut setup = self.session.setup_for_conversion(&options);
+        let mut setup = self.session.setup_for_conversion();
         setup.skeleton_files.extend(self.converter.take_skeletons());
         // Bodies before the motions that need them, the others in their order.
         self.converter.waiting.make_contiguous().sort_by_key(|item| !item.has_name_of_model());
         let all = self.converter.waiting.len();
+        // One file of all needs their motions, for the body that they share.
+        let convert = (!in_one_file).then(|| Arc::new(options.clone()));
         let conversion = if in_one_file {
-            // Motions come back, for the body that they share.
-            setup.convert = None;
             let character = self.session.character().filter(|_| !onto_a);
             Conversion::in_one_file(options, character.as_ref())
         } else {
             Conversion::new(options)
         };
-        self.converter.run = Some(Run { conversion, setup, all, current: None });
+        self.converter.run = Some(Run { conversion, setup, convert, all, current: None });
         self.converter.rows = Arc::default();
     }
 

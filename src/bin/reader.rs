@@ -2,9 +2,14 @@
 //! of the app. `web/js/reader.js` calls it.
 
 #[cfg(target_arch = "wasm32")]
+#[path = "file_worker/report.rs"]
+mod report;
+
+#[cfg(target_arch = "wasm32")]
 mod worker {
-    use js_sys::{Function, Uint8Array};
-    use segue_session::reading::{Parcel, ReadSetup, read};
+    use super::report;
+    use js_sys::Function;
+    use segue_session::reading::read;
     use wasm_bindgen::JsValue;
     use wasm_bindgen::prelude::wasm_bindgen;
 
@@ -22,25 +27,10 @@ mod worker {
         head: &Function,
         piece: &Function,
     ) -> Result<(), JsValue> {
-        let mut setup: ReadSetup =
-            serde_json::from_str(setup).map_err(|error| error.to_string())?;
-        setup.sha256 = setup.sha256.or(sha256);
-        let report = read(name, &bytes, &setup, &mut |done| {
-            progress.call1(&JsValue::NULL, &JsValue::from(done as f64)).is_ok()
-        });
+        let setup = report::setup(setup, sha256)?;
+        let report = read(name, &bytes, &setup, &mut |done| report::goes_on(progress, done));
         drop(bytes);
-        let Some(report) = report else {
-            return Err("stopped".into());
-        };
-        let parcel = Parcel::new(report).map_err(|error| error.to_string())?;
-        head.call1(&JsValue::NULL, &JsValue::from(parcel.head()))?;
-        let mut failed = Ok(());
-        parcel.pieces(|bytes| {
-            if failed.is_ok() {
-                failed = piece.call1(&JsValue::NULL, &Uint8Array::from(bytes)).map(|_| ());
-            }
-        });
-        failed
+        report::hand_over(report, head, piece)
     }
 }
 

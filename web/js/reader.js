@@ -1,37 +1,47 @@
-// A worker that reads motion files, with a WebAssembly of its own (src/bin/reader.rs).
-// src/platform/web/reader.rs gives it tasks.
+// A worker that reads motion files, with a WebAssembly of its own (src/bin/reader.rs), and converts
+// them with another one (src/bin/converter.rs). src/platform/web/reader.rs gives it tasks.
 //
-// Tasks are { task, name, setup, file, stored, returnsBytes }: a Blob, or the place of the bytes in
-// the storage, or both. For each the worker answers with messages { task, progress }, { task, head },
+// Tasks are { task, name, setup, convert, file, stored, returnsBytes }: a Blob, or the place of the
+// bytes in the storage, or both; `convert` has the options of a file that is converted. For each the worker answers with messages { task, progress }, { task, head },
 // { task, piece } …, { task, end: true, bytes }, or { task, failed: reason }, or { task, lost: true }
 // when there is no such file any more.
 
 import init, { readFile } from "./read/reader.js";
 
-const started = init();
-started.catch(() => {}); // each task reports a failure
+const reader = init();
+reader.catch(() => {}); // each task reports a failure
+let starting; // the converter
 
 /** The memory from which on a trap is taken for a failed allocation, bytes. */
 const MIN_EXHAUSTED_BYTES = 1 << 30;
 
-self.onmessage = async ({ data: { task, name, setup, file, stored, returnsBytes } }) => {
+self.onmessage = async ({ data: { task, name, setup, convert, file, stored, returnsBytes } }) => {
   const post = (message, transfer = []) => self.postMessage({ task, ...message }, transfer);
+  let memory;
   try {
-    await started;
+    const converter = convert && await (starting ??= startConverter());
+    ({ memory } = converter || await reader);
     const buffer = await bytesOf(file, stored);
     if (!buffer) return post({ lost: true });
     const sha256 = await digest(buffer);
     const bytes = new Uint8Array(buffer);
-    const progress = (done) => post({ progress: done });
-    readFile(name, bytes, setup, sha256, progress, (head) => post({ head }), (piece) => post({ piece }, [piece.buffer]));
+    const answers = [(done) => post({ progress: done }), (head) => post({ head }), (piece) => post({ piece }, [piece.buffer])];
+    if (converter) converter.convertFile(name, bytes, setup, convert, sha256, ...answers);
+    else readFile(name, bytes, setup, sha256, ...answers);
     if (returnsBytes) post({ end: true, bytes }, [buffer]);
     else post({ end: true });
   } catch (reason) {
     const trapped = reason instanceof WebAssembly.RuntimeError;
-    const noMemory = trapped && (await started).memory.buffer.byteLength >= MIN_EXHAUSTED_BYTES;
+    const noMemory = trapped && memory?.buffer.byteLength >= MIN_EXHAUSTED_BYTES;
     post({ failed: noMemory ? "there is no memory to read it" : String(reason?.message ?? reason) });
   }
 };
+
+async function startConverter() {
+  const { default: init, convertFile } = await import("./read/converter.js");
+  const { memory } = await init();
+  return { convertFile, memory };
+}
 
 /** Returns the bytes of a file, from the storage where the file cannot be read; null where there are none. */
 async function bytesOf(file, stored) {

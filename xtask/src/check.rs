@@ -136,8 +136,8 @@ fn lint(report: &mut Report) {
     report.step("clippy, web", || {
         tools::ensure_wasm_target()?;
         tools::clang()?;
-        let modules = ["--bin=segue-app", "--bin=reader", "--bin=compute", "--bin=corpus"];
-        shell::run(&mut clippy(&[&["--target=wasm32-unknown-unknown"], &modules[..]].concat()))
+        let modules = ["--target=wasm32-unknown-unknown", "--bin=segue-app"];
+        shell::run(&mut clippy(&[&modules[..], &dist::WORKERS].concat()))
     });
 }
 

@@ -43,10 +43,7 @@ pub fn build(profile: Profile, modules: Modules) -> Result<()> {
         || {
             // The app ends in one long link on one core: the other core builds the tool meanwhile.
             progress::run(vec![
-                Build {
-                    name: "Segue for the web",
-                    cargo: app(profile, &["--bin=reader", "--bin=compute", "--bin=corpus"]),
-                },
+                Build { name: "Segue for the web", cargo: app(profile, &WORKERS) },
                 Build { name: "its JavaScript's writer", cargo: bindgen() },
             ])
         },
@@ -63,6 +60,9 @@ pub fn build(profile: Profile, modules: Modules) -> Result<()> {
     }
     step("putting the page together (seconds)", || assemble(profile, modules))
 }
+
+/// The options of cargo for the programs of the page's workers.
+pub const WORKERS: [&str; 4] = ["--bin=reader", "--bin=converter", "--bin=compute", "--bin=corpus"];
 
 /// Returns the folder of compiled modules.
 fn compiled(profile: Profile) -> PathBuf {

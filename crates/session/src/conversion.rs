@@ -2,7 +2,7 @@
 //! archive with a table of what was odd. No file's fault ends the others.
 //!
 //! ```text
-//! file → reading::read with ReadSetup::convert (a worker) → compressed files → Conversion → zip
+//! file → reading::read_and_convert (a worker) → compressed files → Conversion → zip
 //! clip of the library → Conversion::add_clip ─────────────────────────────────────┘
 //! ```
 //!
@@ -80,7 +80,7 @@ impl Conversion {
     }
 
     /// Begins a conversion that makes one file of all clips, each an animation; see [`Together`].
-    /// Files must be read without [`ReadSetup::convert`](crate::reading::ReadSetup::convert).
+    /// Files must be read without being converted.
     #[must_use]
     pub fn in_one_file(options: ConvertOptions, character: Option<&Character>) -> Self {
         let together = Some(Together::new(options.export, character));

@@ -54,6 +54,8 @@ pub struct ReadTask {
     pub size: u64,
     /// The options of reading it.
     pub setup: ReadSetup,
+    /// The options of converting its clips ([`read_and_convert`]); `None` to return them.
+    pub convert: Option<Arc<ConvertOptions>>,
 }
 
 /// Options of reading a file.
@@ -71,9 +73,6 @@ pub struct ReadSetup {
     /// SHA-256 of the file's bytes, if it is known already; lower-case hexadecimal.
     #[serde(default)]
     pub sha256: Option<String>,
-    /// The options of converting its clips; `None` to return them.
-    #[serde(default)]
-    pub convert: Option<Box<ConvertOptions>>,
 }
 
 /// A small file that others depend on: the skeleton of a motion.
@@ -181,7 +180,7 @@ pub fn read(
     setup: &ReadSetup,
     progress: &mut dyn FnMut(usize) -> bool,
 ) -> Option<ReadReport> {
-    read_beside(name, bytes, setup, &|_| None, progress)
+    read_each(name, bytes, setup, &|_| None, None, progress)
 }
 
 /// Reads a file as [`read`] does. `beside` returns the bytes of a file beside it, by its path from
@@ -191,6 +190,35 @@ pub fn read_beside(
     bytes: &[u8],
     setup: &ReadSetup,
     beside: Resolve<'_>,
+    progress: &mut dyn FnMut(usize) -> bool,
+) -> Option<ReadReport> {
+    read_each(name, bytes, setup, beside, None, progress)
+}
+
+/// Reads a file as [`read`] does, and converts its clips. Of an archive each file is converted as
+/// soon as it is read and its motions are dropped, so that many take the memory of one.
+///
+/// Programs that only [`read`] are linked without what writes files.
+pub fn read_and_convert(
+    name: &str,
+    bytes: &[u8],
+    setup: &ReadSetup,
+    options: &ConvertOptions,
+    progress: &mut dyn FnMut(usize) -> bool,
+) -> Option<ReadReport> {
+    let convert: Convert<'_> = &|file| convert_file(file, options);
+    read_each(name, bytes, setup, &|_| None, Some(convert), progress)
+}
+
+/// A function that replaces a file with clips by files that are converted.
+type Convert<'a> = &'a dyn Fn(ReadFile) -> Vec<ReadFile>;
+
+fn read_each(
+    name: &str,
+    bytes: &[u8],
+    setup: &ReadSetup,
+    beside: Resolve<'_>,
+    convert: Option<Convert<'_>>,
     progress: &mut dyn FnMut(usize) -> bool,
 ) -> Option<ReadReport> {
     let most = setup.options.max_bytes;
@@ -218,11 +246,11 @@ pub fn read_beside(
             let sha256 = setup.sha256.as_deref();
             let file = SingleFile { name, bytes, kind, sha256 };
             let file = file.read(setup, &skeletons, beside, progress)?;
-            return Some(ReadReport { files: converted(file, setup), notes: Vec::new() });
+            return Some(ReadReport { files: converted(file, convert), notes: Vec::new() });
         }
     };
     match unpacked {
-        Ok((files, notes)) => read_several(files, notes, bytes.len(), setup, progress),
+        Ok((files, notes)) => read_several(files, notes, bytes.len(), setup, convert, progress),
         Err(error) => Some(ReadReport {
             files: vec![ReadFile {
                 name: name.to_owned(),
@@ -244,6 +272,7 @@ fn read_several(
     notes: Vec<Message>,
     packed: usize,
     setup: &ReadSetup,
+    convert: Option<Convert<'_>>,
     progress: &mut dyn FnMut(usize) -> bool,
 ) -> Option<ReadReport> {
     let kinds: Vec<FileKind> = files.iter().map(|(name, bytes)| kind_of(name, bytes)).collect();
@@ -274,7 +303,7 @@ fn read_several(
             &beside,
             &mut scaled,
         )?;
-        read.extend(converted(file, setup).into_iter().map(|file| (index, file)));
+        read.extend(converted(file, convert).into_iter().map(|file| (index, file)));
         before += bytes.len();
     }
     // A skeleton that a motion uses is not imported by itself.
@@ -285,7 +314,7 @@ fn read_several(
         })
         .collect();
     read.retain(|(_, file)| !used.contains(&file.sha256));
-    for (index, file) in read.iter_mut().filter(|_| setup.convert.is_none()) {
+    for (index, file) in read.iter_mut().filter(|_| convert.is_none()) {
         file.unpacked = files.get_mut(*index).map(|(_, bytes)| std::mem::take(bytes));
     }
     Some(ReadReport { files: read.into_iter().map(|(_, file)| file).collect(), notes })
@@ -308,11 +337,9 @@ fn file_beside(files: &[(String, Vec<u8>)], name: &str, path: &str) -> Option<Ar
     found.map(|(_, bytes)| Arc::from(bytes.as_slice()))
 }
 
-/// Returns the file as it is, or its clips converted where the setup asks for that. Their motions
-/// are dropped at once, so that an archive of many takes the memory of one.
-fn converted(file: ReadFile, setup: &ReadSetup) -> Vec<ReadFile> {
-    match &setup.convert {
-        Some(options) => convert_file(file, options),
+fn converted(file: ReadFile, convert: Option<Convert<'_>>) -> Vec<ReadFile> {
+    match convert {
+        Some(convert) => convert(file),
         None => vec![file],
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::platform::{FileBytes, Inbox, Incoming, ReadEvent};
 use segue_session::Session;
-use segue_session::reading::{ReadTask, read};
+use segue_session::reading::{ReadTask, read, read_and_convert};
 use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::Arc;
@@ -74,10 +74,16 @@ impl Reader {
                 FileBytes::Here(bytes) => bytes,
                 FileBytes::Large(file) => file.bytes(),
             };
-            let report = read(&task.name, bytes, &task.setup, &mut |done| {
+            let progress = &mut |done| {
                 report_event(ReadEvent::Progress(done as u64));
                 !stopped.load(Ordering::Relaxed)
-            });
+            };
+            let report = match &task.convert {
+                Some(options) => {
+                    read_and_convert(&task.name, bytes, &task.setup, options, progress)
+                }
+                None => read(&task.name, bytes, &task.setup, progress),
+            };
             if let Some(report) = report {
                 report_event(ReadEvent::Done(Ok(report)));
             }

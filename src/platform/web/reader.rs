@@ -406,8 +406,12 @@ fn post(
     if let Some(slot) = state.borrow_mut().slots.get_mut(slot) {
         slot.worker = Some(worker.clone());
     }
-    let setup =
-        serde_json::to_string(&task.setup).map_err(|error| ReadError::Failed(error.to_string()))?;
+    let json_error = |error: serde_json::Error| ReadError::Failed(error.to_string());
+    let setup = serde_json::to_string(&task.setup).map_err(json_error)?;
+    let convert = match &task.convert {
+        Some(options) => serde_json::to_string(options.as_ref()).map_err(json_error)?.into(),
+        None => JsValue::UNDEFINED,
+    };
     let file = match bytes {
         FileBytes::Here(bytes) => LargeFile::of_bytes(&Uint8Array::from(&bytes[..])),
         FileBytes::Large(file) => Some(file.clone()),
@@ -419,12 +423,13 @@ fn post(
         _ => JsValue::UNDEFINED,
     };
     // The worker returns the bytes of a small new file, so that they can be stored.
-    let is_new = task.setup.sha256.is_none() && task.setup.convert.is_none();
+    let is_new = task.setup.sha256.is_none() && task.convert.is_none();
     let message = Object::new();
     for (key, value) in [
         ("task", JsValue::from(task.id as f64)),
         ("name", JsValue::from(&task.name)),
         ("setup", JsValue::from(setup)),
+        ("convert", convert),
         ("file", file.to_blob().map_or(JsValue::UNDEFINED, JsValue::from)),
         ("stored", stored),
         ("returnsBytes", JsValue::from(is_new && task.size <= LARGE_BYTES)),

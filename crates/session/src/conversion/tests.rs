@@ -3,7 +3,7 @@
 use super::*;
 use crate::convert::TargetRig;
 use crate::export::{ExportFormat, ExportOptions, ExportRoot, export};
-use crate::reading::{Parcel, ReadSetup, SkeletonFile, Unpacker, read};
+use crate::reading::{Parcel, ReadSetup, SkeletonFile, Unpacker, read, read_and_convert};
 use segue_formats::archive::{ArchiveLimits, unpack};
 use segue_formats::bvh::{WriteOptions, write};
 use segue_formats::fbx::{FbxOptions, write_fbx};
@@ -59,10 +59,11 @@ const C3D: &[u8] = include_bytes!("../../../formats/tests/cases/c3d/ezc3d.c3d");
 /// Converts files as the page does, through the worker's messages.
 fn converted(files: &[(String, Vec<u8>)], options: ConvertOptions) -> Conversion {
     let mut conversion = Conversion::new(options.clone());
-    let setup = ReadSetup { convert: Some(Box::new(options)), ..ReadSetup::default() };
-    let setup: ReadSetup = serde_json::from_str(&serde_json::to_string(&setup).unwrap()).unwrap();
+    let options: ConvertOptions =
+        serde_json::from_str(&serde_json::to_string(&options).unwrap()).unwrap();
+    let setup = ReadSetup::default();
     for (name, bytes) in files {
-        let report = read(name, bytes, &setup, &mut |_| true).unwrap();
+        let report = read_and_convert(name, bytes, &setup, &options, &mut |_| true).unwrap();
         let parcel = Parcel::new(report).unwrap();
         let mut unpacker = Unpacker::new(parcel.head(), u64::MAX).unwrap();
         parcel.pieces(|piece| unpacker.push(piece));
@@ -193,12 +194,13 @@ fn motion_without_its_skeleton_tells_what_it_needs() {
     let reason = alone.rows()[0].output.as_ref().unwrap_err().to_string();
     assert!(reason.contains("ASF"), "{reason}");
     let setup = ReadSetup {
-        convert: Some(Box::new(options(ExportFormat::Bvh))),
         skeleton_files: vec![SkeletonFile::new("small.asf", asf)],
         ..ReadSetup::default()
     };
-    let mut both = Conversion::new(options(ExportFormat::Bvh));
-    both.add_report("small.amc", Ok(read("small.amc", amc, &setup, &mut |_| true).unwrap()));
+    let options = options(ExportFormat::Bvh);
+    let report = read_and_convert("small.amc", amc, &setup, &options, &mut |_| true);
+    let mut both = Conversion::new(options);
+    both.add_report("small.amc", Ok(report.unwrap()));
     assert_eq!(both.rows()[0].output.as_deref(), Ok("small.bvh"));
 }
 

@@ -296,8 +296,14 @@ impl FileIntake {
         purpose: Purpose,
     ) -> u64 {
         self.tasks += 1;
-        let task =
-            ReadTask { id: self.tasks, name: outside::file_name(name), content, size, setup };
+        let task = ReadTask {
+            id: self.tasks,
+            name: outside::file_name(name),
+            content,
+            size,
+            setup,
+            convert: None,
+        };
         self.request(task, purpose);
         self.tasks
     }

@@ -19,7 +19,6 @@ pub(super) fn setup_of(library: &Library, file: &SourceFile) -> ReadSetup {
             None => Vec::new(),
         },
         sha256: Some(file.sha256.clone()),
-        convert: None,
     }
 }
 

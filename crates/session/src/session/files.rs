@@ -1,7 +1,6 @@
 //! Files that are added to the library, and the memory that they need.
 
 use super::Session;
-use crate::convert::ConvertOptions;
 use crate::files::{LoadedFile, setup_for_new};
 use crate::library::{Arrival, Origin};
 use crate::memory::{MemoryUse, PageMemory};
@@ -60,11 +59,8 @@ impl Session {
     /// Returns the setup for reading a file in order to convert it, with the skeleton files that
     /// the library knows.
     #[must_use]
-    pub fn setup_for_conversion(&self, options: &ConvertOptions) -> ReadSetup {
-        ReadSetup {
-            convert: Some(Box::new(options.clone())),
-            ..setup_for_new(&self.document.library)
-        }
+    pub fn setup_for_conversion(&self) -> ReadSetup {
+        setup_for_new(&self.document.library)
     }
 
     /// Requests a file to be read elsewhere ([`Request::Read`](crate::Request::Read)) and then
