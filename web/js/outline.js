@@ -118,7 +118,7 @@ export class Outline {
     for (const attribute of ["aria-checked", "aria-pressed", "aria-selected"]) set(attribute, state?.[0] === attribute ? state[1] : undefined);
     if (role === "slider") {
       const { min = 0, max = 1, now = 0, step } = range ?? {};
-      Object.assign(element, { type: "range", min, max, step: step ?? "any" });
+      for (const [name, value] of Object.entries({ type: "range", min, max, step: step ?? "any" })) set(name, String(value));
       element.value = now;
       set("aria-valuetext", value);
     } else if (role === "edit") {
@@ -258,7 +258,7 @@ export class Outline {
     if (!editor) return;
     const name = this.#told.get(this.#focus)?.name || "Segue";
     if (editor.getAttribute("aria-label") !== name) editor.setAttribute("aria-label", name);
-    editor.tabIndex = -1;
+    if (editor.tabIndex !== -1) editor.tabIndex = -1;
   }
 }
 
