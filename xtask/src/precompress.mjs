@@ -12,7 +12,9 @@ import zlib from "node:zlib";
 const [folder, cache] = process.argv.slice(2);
 const PACKED = /\.(br|gz|png|jpe?g|webp)$/;
 /** The files that are fetched only on request. */
-const LATER = /^(samples|lessons|lang|js-\w+\/read)\//;
+const LATER = /^(samples|lessons|lang|js-\w+\/(read|compute|corpus))\//;
+/** The modules of the app by what a browser draws with: one of them is fetched. A page may have the second alone. */
+const MODULES = { WebGPU: /^webgpu-/, "WebGL 2": /^segue-app-/ };
 
 const brotli = promisify(zlib.brotliCompress);
 const gzip = promisify(zlib.gzip);
@@ -47,5 +49,8 @@ const rows = await Promise.all(files.map(async (file) => {
 const line = (name, ...sizes) => console.log(`  ${name.padEnd(40)}${sizes.map((size) => String(size).padStart(12)).join("")}`);
 line("file", "bytes", "brotli", "gzip");
 for (const row of rows) line(...row);
-const first = rows.filter(([name]) => !LATER.test(name));
-line("first visit", ...[1, 2, 3].map((column) => first.reduce((sum, row) => sum + row[column], 0)));
+for (const [backend, own] of Object.entries(MODULES).filter(([, own]) => rows.some(([name]) => own.test(name)))) {
+  const isOther = (name) => Object.values(MODULES).some((module) => module !== own && module.test(name));
+  const first = rows.filter(([name]) => !LATER.test(name) && !isOther(name));
+  line(`first visit, ${backend}`, ...[1, 2, 3].map((column) => first.reduce((sum, row) => sum + row[column], 0)));
+}
