@@ -74,7 +74,7 @@ onOneBackend("play, pause, seek and time", async ({ open }) => {
 
 // Fails when the picture is empty, as a canvas is that is read outside of its frame.
 onBothBackends("a snapshot is a picture of the stage", async ({ open }) => {
-  const { page, segue, snapshot } = await open("lab=blend&play=off&follow=off", SMALL);
+  const { page, segue, snapshot } = await open("lab=blend&play=off&follow=off", { scale: 1, ...SMALL });
   await segue("set", {});
   const picture = await snapshot();
   assert.equal(picture.height, 640 - 48 - timelineOf(640) - STRIP, "between bar and numbers");

@@ -211,7 +211,7 @@ onBothBackends("a lost graphics device is replaced and the state stays", async (
       };
     }
   });
-  const { page, segue, pixels } = await open("blend_window=24&play=off", { prepare });
+  const { page, segue, pixels } = await open("blend_window=24&play=off", { scale: 1, prepare });
   await page.evaluate(() => { window.firstCanvas = document.getElementById("segue"); });
   await segue("set", { blend_window: 31 });
   for (let time = 0; time < 2; time++) {
@@ -267,7 +267,7 @@ onBackend("webgl2", "WebGL 2 draws where WebGPU has an adapter and no device", a
     let asked = 0;
     GPU.prototype.requestAdapter = async () => (asked++ < 2 ? {} : null);
   });
-  const { page, segue, pixels } = await open("play=off", { prepare });
+  const { page, segue, pixels } = await open("play=off", { scale: 1, prepare });
   assert.equal((await segue("stats")).backend, "webgl2");
   assert.ok((await pixels()).colours() > 50);
 

@@ -116,7 +116,7 @@ const watchDevices = (page) => page.addInitScript(() => {
 // Fails when the page stays on the lost canvas, when a part of the document is lost, and when
 // nothing is drawn afterwards.
 onBothBackends("lost graphics context leaves the work", async ({ open, backend }) => {
-  const { page, segue, load, pixels } = await open("lab=blend&play=off", { ...SMALL, prepare: watchDevices });
+  const { page, segue, load, pixels } = await open("lab=blend&play=off", { scale: 1, ...SMALL, prepare: watchDevices });
   const { clips: [clip] } = await load("mine.bvh", striding({ frames: 90 }));
   await segue("set", { a: "walk", blend_window: 21 });
   const before = { clips: await segue("clips"), params: await segue("params"), pose: await segue("pose", "result", 1) };

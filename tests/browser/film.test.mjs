@@ -31,7 +31,7 @@ async function film(page, segue) {
 
 // Fails when nothing is recorded, when the result is no video, and when an ended recording goes on.
 onBothBackends("recording is a video of the page", async ({ open }) => {
-  const { page, segue } = await open("lab=blend&play=on", { viewport: [640, 480] });
+  const { page, segue } = await open("lab=blend&play=on", { scale: 1, viewport: [640, 480] });
   await segue("set", {});
   await assert.rejects(segue("stopRecording"), /no recording is under way/);
   const made = await until("there is a video", () => film(page, segue));

@@ -9,7 +9,7 @@ const isAccent = (red, green, blue) => green > 150 && green - red > 60 && green 
 // Fails when a folder is read as a file, when a file is read twice or out of order, and when the
 // drop zone stays open.
 onOneBackend("motion files of a dropped folder are read in order", async ({ open }) => {
-  const { page, segue, pixels } = await open("lab=blend&play=off", { viewport: [960, 640] });
+  const { page, segue, pixels } = await open("lab=blend&play=off", { scale: 1, viewport: [960, 640] });
   await segue("set", {});
   await dropFolder(page, [
     ["/takes/z.bvh", striding({ frames: 30 }).toString()],

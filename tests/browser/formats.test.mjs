@@ -20,7 +20,7 @@ const CASES = [
 
 // Fails when a reader is missing from the worker, and when a file is taken for another format.
 onOneBackend("files of every format open", async ({ open }) => {
-  const { segue, load } = await open("lab=view&play=off", SMALL);
+  const { segue, load } = await open("lab=view&play=off", { scale: 1, ...SMALL });
   for (const [path, joints, frames] of CASES) {
     const bytes = await readFile(new URL(`../../crates/formats/tests/cases/${path}`, import.meta.url));
     const [clip] = (await load(path.split("/").at(-1), bytes)).clips;
@@ -47,7 +47,7 @@ onOneBackend("written files are read again", async ({ open }) => {
 // Fails when the files of a model are read one by one, so that its arrays or its image are missing,
 // and when they are not stored together.
 onOneBackend("model is dropped with its arrays and its image", async ({ open }) => {
-  const { page, segue, dropFiles, ready, snapshot } = await open("lab=view&play=off", SMALL);
+  const { page, segue, dropFiles, ready, snapshot } = await open("lab=view&play=off", { scale: 1, ...SMALL });
   await segue("set", {});
   await dropFiles([["notes.txt", Buffer.from("no motion")], ...boxModel("box", [230, 0, 0])]);
   const isRed = (red, green, blue) => red > 90 && red > 2 * green && red > 2 * blue;

@@ -22,6 +22,12 @@ after(close);
 const TEST_TIMEOUT_MS = 400_000;
 
 /**
+ * Device pixels per CSS pixel. A test takes most of its time to draw in software, and a quarter of
+ * the pixels is enough for all that look at none: those that do ask for `scale: 1`.
+ */
+const SCALE = 0.5;
+
+/**
  * Registers a test once per backend. `body` gets `{ backend, open, t }`. The pages that it opens
  * are closed at its end.
  */
@@ -42,7 +48,7 @@ export function onBackend(backend, name, body) {
   test(`${name} [${backend}]`, { timeout: TEST_TIMEOUT_MS }, async (t) => {
     const opened = [];
     const open = async (query = "", options = {}) => {
-      const segue = await openSegue(backend, query, options);
+      const segue = await openSegue(backend, query, { scale: SCALE, ...options });
       opened.push(segue);
       return segue;
     };

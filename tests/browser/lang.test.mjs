@@ -27,13 +27,13 @@ const readerOf = (...languages) => (page) => page.addInitScript((languages) => {
 // look the same.
 onOneBackend("link selects Chinese, the switch selects English, and files are fetched on demand", async ({ open }) => {
   const plain = counted();
-  const english = await open("lab=blend&play=off&t=1", { prepare: plain.prepare });
+  const english = await open("lab=blend&play=off&t=1", { scale: 1, prepare: plain.prepare });
   const before = await english.screenshot();
   assert.deepEqual(plain.fetched, []);
   assert.equal(await english.page.evaluate(() => document.documentElement.lang), "en");
 
   const chinese = counted();
-  const { page, segue, screenshot } = await open("lab=blend&play=off&t=1&lang=zh-Hant", { prepare: chinese.prepare });
+  const { page, segue, screenshot } = await open("lab=blend&play=off&t=1&lang=zh-Hant", { scale: 1, prepare: chinese.prepare });
   await until("both files are asked for", () => chinese.fetched.length === 2);
   assert.deepEqual(chinese.fetched.toSorted(), ["zh-Hant.json", "zh-Hant.otf"]);
   await spoken(page, "zh-Hant");

@@ -68,8 +68,8 @@ onOneBackend("defaults are not part of a link, and the address follows", async (
 // not part of the API, so the picture is checked.
 onOneBackend("wrong parts of a link are reported, and the rest is used", async ({ open }) => {
   const query = "blend_window=24&align=off&play=off";
-  const right = await open(query, SMALL);
-  const wrong = await open(`colour=red&weight_law=steep&ghosts=99&${query}`, SMALL);
+  const right = await open(query, { scale: 1, ...SMALL });
+  const wrong = await open(`colour=red&weight_law=steep&ghosts=99&${query}`, { scale: 1, ...SMALL });
   assert.deepEqual(await wrong.segue("params"), await right.segue("params"));
   assert.equal((await wrong.segue("params")).blend_window, 24);
   for (const { segue } of [right, wrong]) await segue("set", {});

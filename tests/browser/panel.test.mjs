@@ -33,7 +33,7 @@ function firstSlider(picture) {
 // Fails when the mouse does not reach the slider, when the result is not computed again, and when a
 // drag is more than one step of undo.
 onBothBackends("dragging the blend window changes the result, and undo takes it back in one step", async ({ open }) => {
-  const { page, segue, drag, pixels } = await open("lab=blend&play=off", DESK);
+  const { page, segue, drag, pixels } = await open("lab=blend&play=off", { scale: 1, ...DESK });
   await segue("set", {});
   assert.equal((await segue("params")).blend_window, 30);
   const [before, metrics] = [await segue("pose", "result", 2.4), await segue("metrics")];
@@ -58,7 +58,7 @@ onBothBackends("dragging the blend window changes the result, and undo takes it 
 
 // Fails when a pane is missing, empty, or the same as its neighbour.
 onBothBackends("three panes have values and characters of their own", async ({ open }) => {
-  const { segue, pixels } = await open("compare=blend_window:30,15,10&play=off", DESK);
+  const { segue, pixels } = await open("compare=blend_window:30,15,10&play=off", { scale: 1, ...DESK });
   await segue("set", {});
   for (const [name, { panes, value }] of Object.entries(await segue("metrics"))) {
     assert.equal(panes.length, 3, name);
@@ -108,7 +108,7 @@ onBothBackends("page at rest draws nothing", async ({ open }) => {
 // its screen.
 onBothBackends("phone shows one pane, and the whole page", async ({ open }) => {
   const [width, height] = [390, 844];
-  const { page, segue, pixels, log } = await open("compare=blend_window:30,15,10&play=off", { viewport: [width, height] });
+  const { page, segue, pixels, log } = await open("compare=blend_window:30,15,10&play=off", { scale: 1, viewport: [width, height] });
   await segue("set", {});
   const size = await page.evaluate(() => [document.documentElement.scrollWidth, document.documentElement.scrollHeight, document.getElementById("segue").clientWidth]);
   assert.deepEqual(size, [width, height, width]);

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { onBothBackends } from "./harness.mjs";
 
 onBothBackends("page starts and draws", async ({ open, backend }) => {
-  const { page, segue, pixels } = await open();
+  const { page, segue, pixels } = await open("", { scale: 1 });
   assert.equal((await segue("stats")).backend, backend);
   assert.equal(await page.locator("#loading").count(), 0, "the loading state is gone");
   assert.equal(await page.locator(".veil").count(), 0, "no panel shows a failure");
