@@ -3,18 +3,23 @@
 // the browser has not optimised the code yet. "Into the library" is the whole wait of a user:
 // transfer to the worker, reading, hashing, transfer back, and analysis.
 //
+// With a file, the same of that file, of any format, without three.js. "Memory" is that of the
+// reader's WebAssembly at its end, which has grown to the most that it needed, with its own copy of
+// the file.
+//
 //   node tests/browser/speed.mjs [--frames 9600,60000]      frames of a body of 31 joints, some 730 bytes each
+//   node tests/browser/speed.mjs --file FILE
 
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { join } from "node:path";
+import { basename, join } from "node:path";
 import process from "node:process";
 import { fileURLToPath } from "node:url";
 import { parseArgs } from "node:util";
 import { striding } from "./help.mjs";
 import { close, openSegue } from "./segue.mjs";
 
-const { values } = parseArgs({ options: { frames: { type: "string", default: "9600,60000" } } });
+const { values } = parseArgs({ options: { frames: { type: "string", default: "9600,60000" }, file: { type: "string" } } });
 const three = (path) => readFileSync(fileURLToPath(new URL(`node_modules/three/${path}`, import.meta.url)), "utf8");
 const SCRIPTS = {
   "three.module.js": () => three("build/three.module.js"),
@@ -25,7 +30,8 @@ const SCRIPTS = {
 const rows = {};
 try {
   const { page } = await openSegue("webgl2", "lab=view&play=off", { viewport: [640, 480], prepare: (page) => page.route("**/three/*", serve) });
-  for (const frames of values.frames.split(",").map(Number)) {
+  if (values.file) rows[basename(values.file)] = await chosen(page, values.file, readOne);
+  else for (const frames of values.frames.split(",").map(Number)) {
     const bytes = striding({ frames });
     rows[`${(bytes.length / 1e6).toFixed(1)} MB`] = await measure(page, bytes);
   }
@@ -36,16 +42,45 @@ console.table(rows);
 process.exit();
 
 async function measure(page, bytes) {
-  // Through a file input, so that no text of this size travels as JSON.
-  await page.evaluate(() => document.body.append(Object.assign(document.createElement("input"), { type: "file", id: "speed", hidden: true })));
   const folder = mkdtempSync(join(tmpdir(), "segue-speed-"));
-  writeFileSync(join(folder, "speed.bvh"), bytes);
-  await page.setInputFiles("#speed", join(folder, "speed.bvh"));
+  const file = join(folder, "speed.bvh");
+  writeFileSync(file, bytes);
   try {
-    return await compare(page);
+    return await chosen(page, file, compare);
   } finally {
     rmSync(folder, { recursive: true });
   }
+}
+
+/** Runs `read` with a file in the page's input, so that no file of this size travels as JSON. */
+async function chosen(page, file, read) {
+  await page.evaluate(() => document.body.append(Object.assign(document.createElement("input"), { type: "file", id: "speed", hidden: true })));
+  await page.setInputFiles("#speed", file);
+  return read(page);
+}
+
+function readOne(page) {
+  return page.evaluate(async () => {
+    const { files: [file] } = document.getElementById("speed");
+    const buffer = await file.arrayBuffer();
+    const setup = JSON.stringify({ options: { metres_per_unit: null, up: null, fps: null, max_bytes: 512 << 20, drop_t_pose: true }, roles: {}, skeleton_files: [] });
+    const { default: init, readFile } = await import(new URL("./read/reader.js", document.querySelector("link[rel=modulepreload][href$='boot.js']").href));
+    const { memory } = await init();
+    const seconds = async (run) => {
+      const start = performance.now();
+      await run();
+      return Number(((performance.now() - start) / 1e3).toFixed(2));
+    };
+    const reading = await seconds(() => readFile(file.name, new Uint8Array(buffer), setup, "0".repeat(64), () => {}, () => {}, () => {}));
+    const whole = await seconds(() => window.segue.load(file.name, new Uint8Array(buffer)));
+    return {
+      "MB": Number((file.size / 1e6).toFixed(1)),
+      "reading s": reading,
+      "memory MB": Number((memory.buffer.byteLength / 1e6).toFixed(1)),
+      "memory, times the file": Number((memory.buffer.byteLength / file.size).toFixed(2)),
+      "into the library s": whole,
+    };
+  });
 }
 
 function compare(page) {
