@@ -54,6 +54,23 @@ impl Curves<'_> {
         digits.replace('-', "−")
     }
 
+    /// Returns a text of the width that the values of a series need at most, so that what stands
+    /// beside them is at rest while they change. Empty for a series without values.
+    fn widest(&self, series: &Series<'_>) -> String {
+        let values = series.points.iter().map(|point| point[1]).filter(|value| value.is_finite());
+        let ends = values.fold(None, |ends: Option<(f64, f64)>, value| {
+            let (low, high) = ends.unwrap_or((value, value));
+            Some((low.min(value), high.max(value)))
+        });
+        let Some((low, high)) = ends else {
+            return String::new();
+        };
+        let [low, high] = [low, high].map(|end| self.written(end));
+        let longer = if low.chars().count() > high.chars().count() { low } else { high };
+        // No digit is wider than a zero.
+        longer.replace(|c: char| c.is_ascii_digit(), "0")
+    }
+
     /// Returns the range of values that is shown: that of the curves, with a margin.
     fn bounds(&self) -> (f64, f64) {
         let values = self
@@ -141,7 +158,7 @@ pub(super) fn plots_in(place: Rect, count: usize) -> impl Iterator<Item = Rect> 
 }
 
 /// Returns the quantity, and the names of the curves with their values at `now`, each with its
-/// place from the upper left corner of a space of that width.
+/// place from the upper left corner of a space of that width. The places do not depend on `now`.
 fn key_parts(curves: &Curves<'_>, width: f32, now: f64, ui: &Ui) -> Vec<(Vec2, Arc<Galley>)> {
     let palette = palette_of(ui);
     let title = format!("{} {}", say(curves.title, ui), say(curves.unit, ui));
@@ -154,36 +171,43 @@ fn key_parts(curves: &Curves<'_>, width: f32, now: f64, ui: &Ui) -> Vec<(Vec2, A
     sorted.sort_by_key(|series| (!series.strong, series.is_source));
     let entries: Vec<_> = (sorted.into_iter())
         .map(|series| {
-            let value = value_at(series.points, now).map(|value| curves.written(value));
-            let value = value.unwrap_or_default();
-            let runs = [
-                Run::new(series.name, Type::Small, series.ink),
-                Run::new(Text::Data(&value), Type::SmallStrong, palette.text).after(space::XS),
-            ];
+            let with_value = |value: &str, ui: &Ui| {
+                let runs = [
+                    Run::new(series.name, Type::Small, series.ink),
+                    Run::new(Text::Data(value), Type::SmallStrong, palette.text).after(space::XS),
+                ];
+                line_of(&runs, f32::INFINITY, ui)
+            };
+            let room = with_value(&curves.widest(series), ui).size().x;
             // A number that is cut says nothing: a long name stands alone.
-            let fits = line_of(&runs, f32::INFINITY, ui).size().x <= width;
-            line_of(&runs[..if fits { 2 } else { 1 }], width, ui)
+            if room > width {
+                let name = [Run::new(series.name, Type::Small, series.ink)];
+                let name = line_of(&name, width, ui);
+                return (name.size().x, name);
+            }
+            let value = value_at(series.points, now).map(|value| curves.written(value));
+            (room, with_value(&value.unwrap_or_default(), ui))
         })
         .collect();
-    let mut left: f32 = entries.iter().map(|entry| entry.size().x + space::S).sum();
-    for entry in entries {
+    let mut left: f32 = entries.iter().map(|(room, _)| room + space::S).sum();
+    for (room, entry) in entries {
         // Names that have a line of their own are not spread over two.
         let rest = left - space::S;
         let is_split = rest <= width && corner.x + rest > width;
-        if corner.x > 0.0 && (is_split || corner.x + entry.size().x > width) {
+        if corner.x > 0.0 && (is_split || corner.x + room > width) {
             corner = vec2(0.0, corner.y + entry.size().y);
         }
-        left -= entry.size().x + space::S;
-        let right = corner.x + entry.size().x;
+        left -= room + space::S;
+        let right = corner.x + room;
         parts.push((corner, entry));
         corner.x = right + space::S;
     }
     parts
 }
 
-/// Returns the height in which [`key_ui`] draws all names.
-pub(super) fn key_height(curves: &Curves<'_>, width: f32, now: f64, ui: &Ui) -> f32 {
-    let bottoms = key_parts(curves, width, now, ui).into_iter();
+/// Returns the height in which [`key_ui`] draws all names, at any time.
+pub(super) fn key_height(curves: &Curves<'_>, width: f32, ui: &Ui) -> f32 {
+    let bottoms = key_parts(curves, width, 0.0, ui).into_iter();
     // The last line may overlap the height of the time's axis, which begins beside it.
     bottoms.map(|(corner, part)| corner.y + part.size().y).fold(0.0, f32::max) - space::S
 }
@@ -330,6 +354,38 @@ mod tests {
         let tops: Vec<_> = placed.iter().map(|(_, at)| at.y).collect();
         assert!(tops[1] < tops[2] && tops[2] < tops[3], "{placed:?}");
         assert_eq!(tops[3], tops[4], "{placed:?}");
+    }
+
+    #[test]
+    fn names_stay_in_their_places_while_the_values_change() {
+        let all = [[0.0, 0.5], [1.0, 11.11], [2.0, -40.0], [3.0, 9.0]];
+        let window = [[1.0, 3.0], [2.0, 100.0]];
+        let series = [("result", &all[..], false), ("A", &window, true), ("B", &window, true)];
+        let series = series.map(|(name, points, is_source)| Series {
+            name: Text::Data(name),
+            color: Color32::RED,
+            ink: Color32::RED,
+            strong: false,
+            is_source,
+            points,
+        });
+        let curves = Curves { decimals: 2, series: &series, ..Curves::default() };
+        let mut at_times = Vec::new();
+        let builder = egui_kittest::Harness::builder()
+            .with_context_setup(|ctx| crate::ui::theme::Theme::default().install(ctx));
+        let harness = builder.build_ui(|ui| {
+            at_times = [0.0, 1.0, 1.5, 2.0, 3.0]
+                .map(|now| key_parts(&curves, 80.0, now, ui))
+                .map(|parts| parts.into_iter().map(|(at, part)| (at, part.size().x)).collect())
+                .to_vec();
+        });
+        drop(harness);
+        let at_times: Vec<Vec<(Vec2, f32)>> = at_times;
+        let places = |parts: &[(Vec2, f32)]| parts.iter().map(|part| part.0).collect::<Vec<_>>();
+        for parts in &at_times {
+            assert_eq!(places(parts), places(&at_times[0]));
+            assert!(parts.iter().all(|(at, width)| at.x + width <= 80.0), "{parts:?}");
+        }
     }
 
     #[test]

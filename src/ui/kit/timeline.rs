@@ -49,9 +49,7 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> TimelineRespo
         0.0
     } else {
         let key = match timeline.curves {
-            [curves] if gutter > 0.0 => {
-                key_height(curves, gutter - SCALE_WIDTH * scale, timeline.now, ui)
-            }
+            [curves] if gutter > 0.0 => key_height(curves, gutter - SCALE_WIDTH * scale, ui),
             _ => 0.0,
         };
         let least = (MIN_PLOT_HEIGHT * timeline.curves.len() as f32).max(key).ceil();

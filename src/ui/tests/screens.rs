@@ -2,6 +2,8 @@
 
 use super::*;
 use eframe::egui::{Event, Modifiers, TouchDeviceId, TouchId, TouchPhase, pos2};
+use segue_session::PlaybackCommand;
+use std::collections::BTreeMap;
 
 const HALL_SIZE: Vec2 = vec2(1280.0, 720.0);
 const CLASSIC: Vec2 = vec2(1024.0, 768.0);
@@ -39,6 +41,41 @@ fn timeline_of_every_lab_is_whole_on_every_screen() {
                 if let Some(at) = node.bounding_box().filter(|_| !node.is_hidden()) {
                     let inside = at.y0 >= f64::from(top) - 1.0 && at.y1 <= f64::from(size.y) + 1.0;
                     assert!(inside, "{screen} {lab}: {:?} at {at:?} below {top}", node.label());
+                }
+            }
+        }
+    }
+}
+
+/// Returns the places of all that is on the page and says the same at any time, by role and label.
+fn places_at_rest(harness: &Harness<'_, Page>) -> BTreeMap<String, [i64; 4]> {
+    let all = harness.root().children_recursive();
+    let place = |node: egui_kittest::Node<'_>| {
+        let node = node.accesskit_node();
+        let (at, label) = (node.bounding_box()?, node.label()?);
+        let place = [at.x0, at.y0, at.x1, at.y1].map(|edge| edge.round() as i64);
+        Some((format!("{:?} {label}", node.role()), place))
+    };
+    all.filter_map(place).collect()
+}
+
+#[test]
+fn nothing_on_the_page_moves_while_time_passes() {
+    for (size, theme) in
+        [(DESK, DARK), (vec2(1280.0, 800.0), DARK), (HALL_SIZE, HALL), (PHONE, FINGERS)]
+    {
+        for lab in labs() {
+            let link = format!("lab={lab}&play=off&t=0{}", fullest(lab));
+            let mut harness = harness(size, theme, page(&link));
+            let before = places_at_rest(&harness);
+            let duration = harness.state().session.duration_secs();
+            for share in 1..20 {
+                let seek = PlaybackCommand::Seek(duration * f64::from(share) / 20.0);
+                harness.state_mut().session.apply(Command::Playback(seek)).unwrap();
+                harness.run();
+                for (what, place) in places_at_rest(&harness) {
+                    let stays = before.get(&what).is_none_or(|before| *before == place);
+                    assert!(stays, "{lab} at {size}: {what} from {:?} to {place:?}", before[&what]);
                 }
             }
         }
