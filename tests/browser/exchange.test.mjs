@@ -1,8 +1,9 @@
 // Tests of exported files with other programs: three.js, and the validator of Khronos.
 
 import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
 import { onOneBackend } from "./harness.mjs";
-import { striding } from "./help.mjs";
+import { striding, until } from "./help.mjs";
 import { AS_GOOD_AS_SAME, byIndex, complaints, farthest, fromBvh, fromCsv, fromGlb } from "./read_back.mjs";
 
 /** The units of `striding` and of Segue's own clips. */
@@ -31,4 +32,39 @@ onOneBackend("exported GLB can be loaded", async ({ open }) => {
   const { clips: [back], warnings } = await load("back.glb", await segue("export", clip.id, "glb"));
   assert.deepEqual(warnings, []);
   assert.deepEqual([back.frames, back.joints, Math.round(back.fps)], [clip.frames, clip.joints, 60]);
+});
+
+// Fails when files are not converted by the worker, when what converts is fetched before it is
+// needed, and when it cannot be fetched and nothing says so, or there is no second try.
+onOneBackend("dropped files are converted into an archive, also at the second try", async ({ open }) => {
+  const fetched = [];
+  let isThere = false;
+  const prepare = (page) => page.context().route("**/convert/*", (route) => {
+    fetched.push(route.request().url().split("/").at(-1));
+    return isThere ? route.continue() : route.abort();
+  });
+  const { page, segue, load, dropFiles } = await open("lab=view&play=off", { viewport: [960, 640], prepare });
+  await load("read.bvh", striding({ frames: 12 }));
+  assert.deepEqual(fetched, [], "reading needs nothing of it");
+  const press = (role, name) => page.getByRole(role, { name, exact: true }).evaluate((element) => element.click());
+  await press("button", "More ways to share");
+  await until("the menu is open", async () => (await page.getByRole("menuitem", { name: "Convert many files…" }).count()) === 1);
+  await press("menuitem", "Convert many files…");
+  const dialog = page.getByRole("dialog", { name: "Convert many files" });
+  const says = (what) => until(`it says "${what}"`, async () => (await dialog.count()) === 1 && (await dialog.textContent()).includes(what));
+  await says("Drop files");
+  const convert = async () => {
+    await dropFiles([["one.bvh", striding({ frames: 20 })], ["two.bvh", striding({ frames: 30, swing: 20 })]]);
+    await says("2 files");
+    await press("button", "Convert");
+  };
+  await convert();
+  await says("check the network and try again");
+  isThere = true;
+  const download = page.waitForEvent("download");
+  await convert();
+  const zip = (await readFile(await (await download).path())).toString("latin1");
+  for (const name of ["one.bvh", "two.bvh", "conversion.csv"]) assert.ok(zip.includes(name), name);
+  assert.ok(fetched.includes("converter_bg.wasm"));
+  assert.equal((await segue("clips")).filter(({ sha256 }) => sha256).length, 1, "the library is as before");
 });

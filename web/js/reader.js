@@ -38,9 +38,13 @@ self.onmessage = async ({ data: { task, name, setup, convert, file, stored, retu
 };
 
 async function startConverter() {
-  const { default: init, convertFile } = await import("./read/converter.js");
-  const { memory } = await init();
-  return { convertFile, memory };
+  try {
+    const { default: init, convertFile } = await import("./convert/converter.js");
+    const { memory } = await init();
+    return { convertFile, memory };
+  } catch {
+    throw new Error("what converts files cannot be fetched: check the network and try again");
+  }
 }
 
 /** Returns the bytes of a file, from the storage where the file cannot be read; null where there are none. */

@@ -12,7 +12,7 @@ import zlib from "node:zlib";
 const [folder, cache] = process.argv.slice(2);
 const PACKED = /\.(br|gz|png|jpe?g|webp)$/;
 /** The files that are fetched only on request. */
-const LATER = /^(samples|lessons|lang|js-\w+\/(read|compute|corpus))\//;
+const LATER = /^(samples|lessons|lang|js-\w+\/(read|convert|compute|corpus))\//;
 /** The modules of the app by what a browser draws with: one of them is fetched. A page may have the second alone. */
 const MODULES = { WebGPU: /^webgpu-/, "WebGL 2": /^segue-app-/ };
 

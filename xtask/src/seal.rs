@@ -13,8 +13,8 @@ use crate::shell::{Result, fail};
 /// Folders whose files are fetched on request, and cached from then on.
 const LATER: [&str; 3] = ["samples/", "lessons/", "lang/"];
 /// Folders of the page's scripts that are fetched on request: the workers that compute, which are
-/// made for the first long work, and what shows a corpus.
-const LATER_SCRIPTS: [&str; 2] = ["/compute/", "/corpus/"];
+/// made for the first long work, what converts files, and what shows a corpus.
+const LATER_SCRIPTS: [&str; 3] = ["/compute/", "/convert/", "/corpus/"];
 /// The beginning of the names of the app's module with WebGL 2, and of that without it.
 const WEBGL2: &str = "segue-";
 const WEBGPU: &str = "webgpu-";
