@@ -8,6 +8,9 @@
 
 import init, { readFile } from "./read/reader.js";
 
+/** The least time between two messages of progress: each has the page draw, which delays the reading in software. */
+const PROGRESS_MS = 250;
+
 const reader = init();
 reader.catch(() => {}); // each task reports a failure
 let starting; // the converter
@@ -25,7 +28,13 @@ self.onmessage = async ({ data: { task, name, setup, convert, file, stored, retu
     if (!buffer) return post({ lost: true });
     const sha256 = await digest(buffer);
     const bytes = new Uint8Array(buffer);
-    const answers = [(done) => post({ progress: done }), (head) => post({ head }), (piece) => post({ piece }, [piece.buffer])];
+    let told = performance.now();
+    const progress = (done) => {
+      if (performance.now() - told < PROGRESS_MS) return;
+      told = performance.now();
+      post({ progress: done });
+    };
+    const answers = [progress, (head) => post({ head }), (piece) => post({ piece }, [piece.buffer])];
     if (converter) converter.convertFile(name, bytes, setup, convert, sha256, ...answers);
     else readFile(name, bytes, setup, sha256, ...answers);
     if (returnsBytes) post({ end: true, bytes }, [buffer]);
