@@ -10,6 +10,7 @@ use crate::synth::{Action, Params, synthesize};
 use glam::{Quat, Vec3};
 use proptest::prelude::*;
 use std::f32::consts::FRAC_PI_2;
+use std::sync::Arc;
 
 /// The axes along which bones lie in files, and none.
 const AXES: [Option<Vec3>; 3] = [None, Some(Vec3::X), Some(Vec3::Y)];
@@ -49,6 +50,24 @@ fn body_on_four_legs_is_recognised_by_rest_or_by_motion() {
         };
         assert_eq!(shaped.get(role), expected, "{role:?}");
     }
+}
+
+/// As in captures of dogs: a rest pose that shows nothing, and a walk at the end.
+#[test]
+fn body_that_sits_most_of_the_time_is_a_quadruped() {
+    let made = QuadrupedWalk { axis: Some(Vec3::X), ..QuadrupedWalk::default() };
+    let walk = made.clip();
+    let sitting = Quat::from_rotation_x(-1.0);
+    let poses = (0..made.frames).map(|frame| {
+        let mut rotations = walk.rotations(frame).to_vec();
+        if frame < 4 * made.frames / 5 {
+            rotations[0] = sitting * rotations[0];
+        }
+        let root_translation = walk.root_translations()[frame];
+        Pose { root_translation, rotations, translations: Vec::new() }
+    });
+    let clip = Clip::from_poses("sit", Arc::clone(walk.skeleton()), made.fps, poses).unwrap();
+    assert!(Motion::analyze(clip).roles().is_quadruped());
 }
 
 #[test]

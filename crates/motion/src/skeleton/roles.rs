@@ -170,9 +170,10 @@ impl Roles {
     /// that is known to be a quadruped stays one.
     ///
     /// A quadruped has a trunk that is long beside its legs; at rest, or in half of the poses, it
-    /// is level, and all four legs point down from it to one level. A person who crawls has a
-    /// shorter trunk. Poses are asked for only where the rest pose stands on neither, and the trunk
-    /// is long enough.
+    /// is level, and all four legs point down from it to one level. A tenth of the poses is enough
+    /// where none stands upright: animals sit and lie. A person who crawls has a shorter trunk.
+    /// Poses are asked for only where the rest pose stands on neither, and the trunk is long
+    /// enough.
     #[must_use]
     pub fn with_plan_of(
         self,

@@ -3,6 +3,7 @@
 use super::{Roles, is_below};
 use crate::skeleton::{BodyPlan, Foot, FootPair, Role, Skeleton, WorldPose, rests_on_two_legs};
 use glam::Vec3;
+use std::ops::Range;
 
 /// The least distance from hip joints to shoulder joints, as a share of the length of thigh and
 /// shin. People have 0.6, cats, dogs and horses 1.1 to 1.8.
@@ -12,10 +13,15 @@ const MAX_SLOPE: f32 = 0.6;
 /// The least cosine of the angle of a leg, from its first joint to its foot, to the vertical.
 const MIN_DOWN: f32 = 0.6;
 /// The greatest distance of the level of the forefeet from that of the hind feet, as a share of the
-/// height of the trunk above them.
+/// height of the trunk above them: at rest, and in a pose, which may be one of a gallop.
 const MAX_STEP: f32 = 0.3;
+const MAX_STEP_IN_MOTION: f32 = 0.7;
 /// The least share of the poses that have to stand on four legs.
 const MIN_SHARE: f32 = 0.5;
+/// The same where no pose stands on two: dogs sit, lie and gallop for most of some captures.
+const MIN_SHARE_WITHOUT_TWO: f32 = 0.1;
+/// The least sine of the slope of an upright trunk (53°).
+const MIN_UPRIGHT: f32 = 0.8;
 
 /// Returns the body plan that the rest pose shows.
 pub(super) fn at_rest(skeleton: &Skeleton, roles: &Roles) -> BodyPlan {
@@ -24,7 +30,8 @@ pub(super) fn at_rest(skeleton: &Skeleton, roles: &Roles) -> BodyPlan {
 
 /// Returns whether the rest pose stands on four legs, those of these roles.
 pub(super) fn stands_at_rest(skeleton: &Skeleton, roles: &Roles) -> bool {
-    FourLegs::of(skeleton, roles).is_some_and(|legs| legs.stand_in(&skeleton.rest_positions()))
+    FourLegs::of(skeleton, roles)
+        .is_some_and(|legs| legs.stand_in(&skeleton.rest_positions(), MAX_STEP))
 }
 
 /// Returns the body plan that the rest pose shows, or, where that does not stand, the poses.
@@ -34,19 +41,21 @@ pub(super) fn of(
     poses: impl IntoIterator<Item = WorldPose>,
 ) -> BodyPlan {
     let Some(legs) = FourLegs::of(skeleton, roles) else { return BodyPlan::Biped };
-    if legs.stand_in(&skeleton.rest_positions()) {
+    if legs.stand_in(&skeleton.rest_positions(), MAX_STEP) {
         return BodyPlan::Quadruped;
     }
     if rests_on_two_legs(skeleton, roles) {
         return BodyPlan::Biped;
     }
-    let (mut stand, mut all) = (0_usize, 0_usize);
+    let (mut on_four, mut on_two, mut all) = (0_usize, 0_usize, 0_usize);
     for pose in poses {
-        stand += usize::from(legs.stand_in(&pose.positions));
+        on_four += usize::from(legs.stand_in(&pose.positions, MAX_STEP_IN_MOTION));
+        on_two += usize::from(legs.stand_upright_in(&pose.positions));
         all += 1;
     }
-    let is_most = all > 0 && stand as f32 >= MIN_SHARE * all as f32;
-    if is_most { BodyPlan::Quadruped } else { BodyPlan::Biped }
+    let least = if on_two == 0 { MIN_SHARE_WITHOUT_TWO } else { MIN_SHARE };
+    let is_enough = all > 0 && on_four as f32 >= least * all as f32;
+    if is_enough { BodyPlan::Quadruped } else { BodyPlan::Biped }
 }
 
 /// The legs that a body on four legs would have.
@@ -82,18 +91,36 @@ impl FourLegs {
         Some(Self { legs, feet, length_m })
     }
 
-    /// Returns whether the trunk is level and long, and all legs point down from it to one level.
-    fn stand_in(&self, positions: &[Vec3]) -> bool {
+    /// Returns the middle of the hip joints and that of the shoulder joints.
+    fn trunk(&self, positions: &[Vec3]) -> [Vec3; 2] {
         let at = |joint: usize| positions.get(joint).copied().unwrap_or_default();
-        let middle = |pair: [usize; 2]| (at(self.legs[pair[0]].0) + at(self.legs[pair[1]].0)) * 0.5;
-        let (hips, shoulders) = (middle([0, 1]), middle([2, 3]));
+        let [a, b, c, d] = self.legs.map(|(start, _)| at(start));
+        [(a + b) * 0.5, (c + d) * 0.5]
+    }
+
+    /// Returns whether these of the legs, by [`Foot::index`], point down.
+    fn point_down(&self, legs: Range<usize>, positions: &[Vec3]) -> bool {
+        let at = |joint: usize| positions.get(joint).copied().unwrap_or_default();
+        self.legs[legs]
+            .iter()
+            .all(|&(start, end)| (at(start) - at(end)).normalize_or_zero().y >= MIN_DOWN)
+    }
+
+    /// Returns whether the trunk is upright above the hind legs, as that of a person.
+    fn stand_upright_in(&self, positions: &[Vec3]) -> bool {
+        let [hips, shoulders] = self.trunk(positions);
+        (shoulders - hips).normalize_or_zero().y >= MIN_UPRIGHT && self.point_down(0..2, positions)
+    }
+
+    /// Returns whether the trunk is level and long, and all legs point down from it to one level,
+    /// which may differ by `max_step` (see [`MAX_STEP`]).
+    fn stand_in(&self, positions: &[Vec3], max_step: f32) -> bool {
+        let at = |joint: usize| positions.get(joint).copied().unwrap_or_default();
+        let [hips, shoulders] = self.trunk(positions);
         let trunk = shoulders - hips;
         let is_level = trunk.length() >= MIN_TRUNK * self.length_m
             && trunk.y.abs() <= MAX_SLOPE * trunk.length();
-        let all_down = self
-            .legs
-            .iter()
-            .all(|&(start, end)| (at(start) - at(end)).normalize_or_zero().y >= MIN_DOWN);
+        let all_down = self.point_down(0..4, positions);
         let level = |pair: [usize; 2]| {
             let lowest = |foot: usize| {
                 self.feet[foot].iter().map(|&joint| at(joint).y).fold(f32::INFINITY, f32::min)
@@ -102,7 +129,7 @@ impl FourLegs {
         };
         let (hind, fore) = (level([0, 1]), level([2, 3]));
         let height = (hips.y + shoulders.y - hind - fore) * 0.5;
-        is_level && all_down && height > 0.0 && (hind - fore).abs() <= MAX_STEP * height
+        is_level && all_down && height > 0.0 && (hind - fore).abs() <= max_step * height
     }
 }
 
