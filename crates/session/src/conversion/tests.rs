@@ -57,10 +57,10 @@ const ROBOT: &[u8] = include_bytes!("../../../formats/tests/cases/robot_csv/scal
 const C3D: &[u8] = include_bytes!("../../../formats/tests/cases/c3d/ezc3d.c3d");
 
 /// Converts files as the page does, through the worker's messages.
-fn converted(files: &[(String, Vec<u8>)], options: ConvertOptions) -> Conversion {
+fn converted(files: &[(String, Vec<u8>)], options: &ConvertOptions) -> Conversion {
     let mut conversion = Conversion::new(options.clone());
     let options: ConvertOptions =
-        serde_json::from_str(&serde_json::to_string(&options).unwrap()).unwrap();
+        serde_json::from_str(&serde_json::to_string(options).unwrap()).unwrap();
     let setup = ReadSetup::default();
     for (name, bytes) in files {
         let report = read_and_convert(name, bytes, &setup, &options, &mut |_| true).unwrap();
@@ -97,7 +97,7 @@ fn conversion_of_mixed_files_survives_the_broken_ones() {
     let files = mixed();
     assert_eq!(files.len(), 20);
     for format in [ExportFormat::Fbx, ExportFormat::Bvh, ExportFormat::Npz, ExportFormat::Glb] {
-        let conversion = converted(&files, options(format));
+        let conversion = converted(&files, &options(format));
         let failed: Vec<&str> = (conversion.rows().iter())
             .filter(|row| row.output.is_err())
             .map(|row| row.source.as_str())
@@ -118,7 +118,7 @@ fn conversion_of_mixed_files_survives_the_broken_ones() {
 
 #[test]
 fn files_of_a_conversion_keep_their_folders_and_have_names_of_their_own() {
-    let conversion = converted(&mixed(), options(ExportFormat::Fbx));
+    let conversion = converted(&mixed(), &options(ExportFormat::Fbx));
     let paths: Vec<&str> =
         conversion.rows().iter().filter_map(|row| row.output.as_deref().ok()).collect();
     for path in [
@@ -160,7 +160,7 @@ fn conversion_follows_rate_and_rig() {
         rig: Some(TargetRig::of(&target)),
     };
     let files = [("run.bvh".to_owned(), write(&run, &WriteOptions::default()).into_bytes())];
-    let conversion = converted(&files, how.clone());
+    let conversion = converted(&files, &how);
     assert_eq!(conversion.rows()[0].output.as_deref(), Ok("run.npz"));
     let outputs = files_of(conversion);
     let back = read_back("run.npz", bytes_of(&outputs, "run.npz"));
@@ -182,7 +182,7 @@ fn conversion_follows_rate_and_rig() {
         export: ExportOptions { format: ExportFormat::Csv, ..how.export },
         rig: None,
     };
-    let outputs = files_of(converted(&files, table));
+    let outputs = files_of(converted(&files, &table));
     assert_eq!(text_of(&outputs, "run.csv").lines().count(), 1 + frames);
 }
 
@@ -190,7 +190,7 @@ fn conversion_follows_rate_and_rig() {
 fn motion_without_its_skeleton_tells_what_it_needs() {
     let (asf, amc) = (crate::fixtures::ASF.as_bytes(), crate::fixtures::AMC.as_bytes());
     let files = [("small.amc".to_owned(), amc.to_vec())];
-    let alone = converted(&files, options(ExportFormat::Bvh));
+    let alone = converted(&files, &options(ExportFormat::Bvh));
     let reason = alone.rows()[0].output.as_ref().unwrap_err().to_string();
     assert!(reason.contains("ASF"), "{reason}");
     let setup = ReadSetup {
@@ -211,7 +211,7 @@ fn conversion_of_an_archive_has_its_files() {
         zip.store(name, bytes).unwrap();
     }
     let files = [("all.zip".to_owned(), zip.finish())];
-    let conversion = converted(&files, options(ExportFormat::Npz));
+    let conversion = converted(&files, &options(ExportFormat::Npz));
     let paths: Vec<&str> =
         conversion.rows().iter().filter_map(|row| row.output.as_deref().ok()).collect();
     assert_eq!(paths.len(), 5);
