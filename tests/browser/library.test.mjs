@@ -53,6 +53,8 @@ onOneBackend("library of many files is whole after a reload, and a clip that is 
     const { query, ids, files } = await stored(page);
     return files.length === FILES && query.includes(encodeURIComponent(one)) && ids.length > FILES;
   });
+  // It goes before what is stored.
+  await until("the address follows", () => page.url().includes(encodeURIComponent(one)));
 
   await page.reload({ waitUntil: "commit" });
   await ready();

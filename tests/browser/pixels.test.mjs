@@ -16,7 +16,7 @@ async function places(page) {
       return { what: `${element.role ?? element.localName} ${element.ariaLabel ?? element.textContent}`, place: [left, top, width, height].map(parseFloat) };
     }));
     const text = JSON.stringify(now);
-    const rests = now.length > 20 && text === before;
+    const rests = now.length > 20 && text === before && !text.includes("Saving…");
     before = text;
     if (!rests) await page.waitForTimeout(300);
     return rests && now;
