@@ -2,18 +2,19 @@
 // them with another one (src/bin/converter.rs). src/platform/web/reader.rs gives it tasks.
 //
 // Tasks are { task, name, setup, convert, file, stored, returnsBytes }: a Blob, or the place of the
-// bytes in the storage, or both; `convert` has the options of a file that is converted. For each the worker answers with messages { task, progress }, { task, head },
-// { task, piece } …, { task, end: true, bytes }, or { task, failed: reason }, or { task, lost: true }
-// when there is no such file any more.
+// bytes in the storage, or both; `convert` has the options of a file that is converted. For each the
+// worker answers with messages { task, progress }, { task, head }, { task, piece } …, { task, end: true,
+// bytes }, or { task, failed: reason }, or { task, lost: true } when there is no such file any more.
 
 import init, { readFile } from "./read/reader.js";
 
-/** The least time between two messages of progress: each has the page draw, which delays the reading in software. */
+/** The least time between two messages of progress, ms. Each makes the page draw a frame, and software drawing slows the reading. */
 const PROGRESS_MS = 250;
 
 const reader = init();
 reader.catch(() => {}); // each task reports a failure
-let starting; // the converter
+/** The program that converts files, from the first of them on: a promise. */
+let starting;
 
 /** The memory from which on a trap is taken for a failed allocation, bytes. */
 const MIN_EXHAUSTED_BYTES = 1 << 30;
@@ -52,7 +53,7 @@ async function startConverter() {
     const { memory } = await init();
     return { convertFile, memory };
   } catch {
-    throw new Error("what converts files cannot be fetched: check the network and try again");
+    throw new Error("the program that converts files cannot be fetched: check the network and try again");
   }
 }
 

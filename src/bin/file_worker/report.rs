@@ -1,4 +1,5 @@
-//! What both workers for files have in common: the message that they get and their answer.
+//! Messages of the programs that read and that convert files: the options of a task, its progress,
+//! and its report.
 
 use js_sys::{Function, Uint8Array};
 use segue_session::reading::{Parcel, ReadReport, ReadSetup};
