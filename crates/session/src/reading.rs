@@ -2,9 +2,11 @@
 //! worker can read a large file.
 
 mod converted;
+mod skeletons;
 mod wire;
 
 pub(crate) use converted::without_motion;
+pub use skeletons::SkeletonFile;
 pub use wire::{Parcel, Unpacker, WireError};
 
 use super::bone_map::{BoneMaps, mapped};
@@ -25,6 +27,7 @@ use segue_motion::skin::SkinnedMesh;
 use segue_text::{Message, ToMessage, msg};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
+use skeletons::{Skeletons, mismatch};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -73,20 +76,6 @@ pub struct ReadSetup {
     /// SHA-256 of the file's bytes, if it is known already; lower-case hexadecimal.
     #[serde(default)]
     pub sha256: Option<String>,
-}
-
-/// A small file that others depend on: the skeleton of a motion.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SkeletonFile {
-    /// The file's name.
-    pub name: String,
-    /// SHA-256 of the file's bytes, lower-case hexadecimal.
-    pub sha256: String,
-    /// Its bytes; for a body model those that its joints need.
-    pub bytes: Arc<[u8]>,
-    /// Whether it is a body model, not the skeleton of an ASF file.
-    #[serde(default)]
-    pub is_model: bool,
 }
 
 /// The result of reading a file: one part for a motion file, several for an archive.
@@ -344,31 +333,6 @@ fn converted(file: ReadFile, convert: Option<Convert<'_>>) -> Vec<ReadFile> {
     }
 }
 
-/// The skeleton files that can be read.
-struct Skeletons<'a> {
-    /// Those of AMC files.
-    acclaim: Vec<(&'a SkeletonFile, AcclaimSkeleton)>,
-    /// Those of `NumPy` files.
-    models: Vec<(&'a SkeletonFile, SmplModel)>,
-}
-
-impl<'a> Skeletons<'a> {
-    fn of(skeleton_files: &'a [SkeletonFile], options: &ImportOptions) -> Self {
-        let (models, others): (Vec<_>, Vec<_>) =
-            skeleton_files.iter().partition(|skeleton_file| skeleton_file.is_model);
-        let acclaim = |own: &'a SkeletonFile| {
-            Some((own, acclaim::read_skeleton(&own.name, &own.bytes, options).ok()?))
-        };
-        let model = |own: &'a SkeletonFile| {
-            Some((own, numpy::read_model(&own.name, &own.bytes, options).ok()?))
-        };
-        Self {
-            acclaim: others.into_iter().filter_map(acclaim).collect(),
-            models: models.into_iter().filter_map(model).collect(),
-        }
-    }
-}
-
 /// A file that is not an archive.
 struct SingleFile<'a> {
     name: &'a str,
@@ -474,23 +438,6 @@ impl SingleFile<'_> {
     }
 }
 
-/// Returns the error for a motion whose skeleton is not among those given, about the most similar
-/// one.
-fn mismatch(
-    name: &str,
-    bytes: &[u8],
-    skeletons: &[(&SkeletonFile, AcclaimSkeleton)],
-) -> Option<Message> {
-    let fits =
-        skeletons.iter().map(|(own, skeleton)| (own, acclaim::matching_bones(bytes, skeleton)));
-    let (own, (fitting, bones)) =
-        fits.max_by_key(|(own, (fitting, _))| (acclaim::goes_by_name(name, &own.name), *fitting))?;
-    Some(msg!(
-        "the skeleton of {file} does not fit: {fitting} of {bones} bones have its names and degrees of freedom",
-        file = own.name
-    ))
-}
-
 impl ReadClips {
     fn of(imported: ImportedFile, setup: &ReadSetup) -> Self {
         Self {
@@ -502,33 +449,6 @@ impl ReadClips {
                 .collect(),
             ..Self::default()
         }
-    }
-}
-
-impl SkeletonFile {
-    /// Returns the report on a file that was just read.
-    #[must_use]
-    pub fn new(name: &str, bytes: &[u8]) -> Self {
-        let name = name.to_owned();
-        Self { name, sha256: sha256_hex(bytes), bytes: Arc::from(bytes), is_model: false }
-    }
-
-    /// Returns a body model without its mesh: a few KB of 100 MB.
-    ///
-    /// # Errors
-    /// [`ImportError`] when it cannot be read.
-    pub fn of_model(
-        name: &str,
-        bytes: &[u8],
-        options: &ImportOptions,
-    ) -> Result<Self, ImportError> {
-        let model = numpy::read_model(name, bytes, options)?;
-        Ok(Self::of_joints(name, sha256_hex(bytes), &model))
-    }
-
-    fn of_joints(name: &str, sha256: String, model: &SmplModel) -> Self {
-        let (name, bytes) = (name.to_owned(), Arc::from(model.to_bytes()));
-        Self { name, sha256, bytes, is_model: true }
     }
 }
 
