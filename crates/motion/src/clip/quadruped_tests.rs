@@ -52,22 +52,39 @@ fn body_on_four_legs_is_recognised_by_rest_or_by_motion() {
     }
 }
 
-/// As in captures of dogs: a rest pose that shows nothing, and a walk at the end.
-#[test]
-fn body_that_sits_most_of_the_time_is_a_quadruped() {
+/// Returns a take of which a walk on four legs is the last fifth. Before, the trunk is raised by an
+/// angle, with the legs, or without the hind legs, which then stand below it. The rest pose shows
+/// nothing.
+fn raised(radians: f32, stands: bool) -> Clip {
     let made = QuadrupedWalk { axis: Some(Vec3::X), ..QuadrupedWalk::default() };
     let walk = made.clip();
-    let sitting = Quat::from_rotation_x(-1.0);
+    let roles = Roles::by_name(walk.skeleton());
+    let thighs = Side::BOTH.map(|side| roles.get(Role::thigh(side)).unwrap());
+    let raise = Quat::from_rotation_x(-radians);
     let poses = (0..made.frames).map(|frame| {
         let mut rotations = walk.rotations(frame).to_vec();
         if frame < 4 * made.frames / 5 {
-            rotations[0] = sitting * rotations[0];
+            rotations[0] = raise * rotations[0];
+            let hips = rotations[0];
+            for thigh in thighs.into_iter().filter(|_| stands) {
+                rotations[thigh] = hips.conjugate() * raise.conjugate() * hips * rotations[thigh];
+            }
         }
         let root_translation = walk.root_translations()[frame];
         Pose { root_translation, rotations, translations: Vec::new() }
     });
-    let clip = Clip::from_poses("sit", Arc::clone(walk.skeleton()), made.fps, poses).unwrap();
-    assert!(Motion::analyze(clip).roles().is_quadruped());
+    Clip::from_poses("raised", Arc::clone(walk.skeleton()), made.fps, poses).unwrap()
+}
+
+#[test]
+fn body_that_sits_for_most_of_a_take_is_a_quadruped() {
+    assert!(Motion::analyze(raised(1.0, false)).roles().is_quadruped());
+}
+
+/// Such as a figure with short legs that crawls at the end.
+#[test]
+fn body_that_stands_on_two_legs_for_most_of_a_take_is_a_biped() {
+    assert!(!Motion::analyze(raised(FRAC_PI_2, true)).roles().is_quadruped());
 }
 
 #[test]
