@@ -7,30 +7,23 @@ mod report;
 
 #[cfg(target_arch = "wasm32")]
 mod worker {
-    use super::report;
-    use js_sys::Function;
+    use super::report::{Receiver, answer};
     use segue_session::reading::read;
     use wasm_bindgen::JsValue;
     use wasm_bindgen::prelude::wasm_bindgen;
 
-    /// Reads a file and hands over its report, first the head, then the pieces. `sha256` is that of
-    /// the browser, where it has one. `progress` gets the number of bytes read; an exception in it
-    /// stops the reading.
+    /// Reads a file and hands its report to the receiver. `setup` has the options as JSON; `sha256`
+    /// is that of the browser, where it has one.
     #[wasm_bindgen(js_name = readFile)]
     #[expect(unreachable_pub, reason = "called from JavaScript")]
     pub fn read_file(
+        receiver: &Receiver,
         name: &str,
         bytes: Vec<u8>,
         setup: &str,
         sha256: Option<String>,
-        progress: &Function,
-        head: &Function,
-        piece: &Function,
     ) -> Result<(), JsValue> {
-        let setup = report::setup(setup, sha256)?;
-        let report = read(name, &bytes, &setup, &mut |done| report::goes_on(progress, done));
-        drop(bytes);
-        report::hand_over(report, head, piece)
+        answer(receiver, setup, sha256, move |setup, progress| read(name, &bytes, setup, progress))
     }
 }
 

@@ -71,7 +71,7 @@ function readOne(page) {
       await run();
       return Number(((performance.now() - start) / 1e3).toFixed(2));
     };
-    const reading = await seconds(() => readFile(file.name, new Uint8Array(buffer), setup, "0".repeat(64), () => {}, () => {}, () => {}));
+    const reading = await seconds(() => readFile({ progress() {}, head() {}, piece() {} }, file.name, new Uint8Array(buffer), setup, "0".repeat(64)));
     const whole = await seconds(() => window.segue.load(file.name, new Uint8Array(buffer)));
     return {
       "MB": Number((file.size / 1e6).toFixed(1)),
@@ -106,7 +106,8 @@ function compare(page) {
     const { default: init, readFile } = await import(new URL("./read/reader.js", document.querySelector("link[rel=modulepreload][href$='boot.js']").href));
     await init();
     const bytes = new Uint8Array(buffer);
-    const ours = () => readFile("speed.bvh", bytes, setup, "0".repeat(64), () => {}, () => {}, () => {});
+    const receiver = { progress() {}, head() {}, piece() {} };
+    const ours = () => readFile(receiver, "speed.bvh", bytes, setup, "0".repeat(64));
     const first = await best(1, ours);
     const warm = await best(4, ours);
     const whole = await best(3, (time) => window.segue.load(`speed${time}.bvh`, new Uint8Array(buffer)));

@@ -30,14 +30,17 @@ self.onmessage = async ({ data: { task, name, setup, convert, file, stored, retu
     const sha256 = await digest(buffer);
     const bytes = new Uint8Array(buffer);
     let told = performance.now();
-    const progress = (done) => {
-      if (performance.now() - told < PROGRESS_MS) return;
-      told = performance.now();
-      post({ progress: done });
+    const receiver = {
+      progress: (done) => {
+        if (performance.now() - told < PROGRESS_MS) return;
+        told = performance.now();
+        post({ progress: done });
+      },
+      head: (head) => post({ head }),
+      piece: (piece) => post({ piece }, [piece.buffer]),
     };
-    const answers = [progress, (head) => post({ head }), (piece) => post({ piece }, [piece.buffer])];
-    if (converter) converter.convertFile(name, bytes, setup, convert, sha256, ...answers);
-    else readFile(name, bytes, setup, sha256, ...answers);
+    if (converter) converter.convertFile(receiver, name, bytes, setup, convert, sha256);
+    else readFile(receiver, name, bytes, setup, sha256);
     if (returnsBytes) post({ end: true, bytes }, [buffer]);
     else post({ end: true });
   } catch (reason) {
