@@ -9,6 +9,7 @@ use segue_formats::gltf::{GlbOptions, read, write_character_glb, write_glb};
 use segue_formats::{ImportOptions, ImportedFile};
 use segue_motion::clip::Clip;
 use segue_motion::skin::SkinnedMesh;
+use segue_fuzz::assert_textured;
 use std::sync::Arc;
 
 fuzz_target!(|bytes: &[u8]| {
@@ -50,6 +51,7 @@ fn is_whole(mesh: &SkinnedMesh, clip: &Clip) {
     let vertices = mesh.positions.len();
     assert_eq!([mesh.normals.len(), mesh.joints.len(), mesh.weights.len()], [vertices; 3]);
     assert!(mesh.colors.is_empty() || mesh.colors.len() == vertices);
+    assert_textured(mesh);
     assert!(mesh.positions.iter().chain(&mesh.normals).all(|v| v.is_finite()));
     assert!(mesh.triangles.iter().flatten().all(|&vertex| (vertex as usize) < vertices));
     let joints = mesh.bind.len();

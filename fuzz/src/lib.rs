@@ -22,10 +22,25 @@ pub fn assert_valid(clips: &[ImportedClip], most: usize) {
     }
 }
 
+/// Panics unless the textures of a mesh lie on its triangles.
+pub fn assert_textured(mesh: &SkinnedMesh) {
+    let places = &mesh.coordinates;
+    assert!(places.is_empty() || places.len() == mesh.positions.len());
+    assert!(places.iter().flatten().all(|value| value.is_finite()));
+    assert!(mesh.textured.is_empty() || !places.is_empty());
+    let mut end = 0;
+    for part in &mesh.textured {
+        assert!(part.triangles.start >= end && !part.triangles.is_empty());
+        end = part.triangles.end;
+    }
+    assert!(end <= mesh.triangles.len());
+}
+
 fn assert_consistent(mesh: &SkinnedMesh, joints: usize) {
     let vertices = mesh.positions.len();
     assert_eq!([mesh.normals.len(), mesh.joints.len(), mesh.weights.len()], [vertices; 3]);
     assert!(mesh.colors.is_empty() || mesh.colors.len() == vertices);
+    assert_textured(mesh);
     assert!(mesh.positions.iter().chain(&mesh.normals).all(|v| v.is_finite()));
     assert!(mesh.triangles.iter().flatten().all(|&vertex| (vertex as usize) < vertices));
     assert_eq!(mesh.bind.len(), joints);

@@ -22,6 +22,8 @@ pub struct Texture {
     pub factor: f32,
     /// Whether the edge goes on beyond the image, across and down; otherwise the image repeats.
     pub clamps: [bool; 2],
+    /// Whether the same image is the material's opacity: its transparent parts are holes.
+    pub cuts_out: bool,
 }
 
 /// An image that materials show.
@@ -56,6 +58,10 @@ impl Material {
                 .map(|file| file.file_index as usize),
             factor: factor as f32,
             clamps: [texture.wrap_u, texture.wrap_v].map(|wrap| wrap == WrapMode::Clamp),
+            cuts_out: opacity_texture(material).and_then(file).is_some_and(|of_opacity| {
+                let own = file(texture).filter(|own| own.has_file && of_opacity.has_file);
+                own.is_some_and(|own| own.file_index == of_opacity.file_index)
+            }),
         });
         Self { color, texture }
     }
@@ -73,6 +79,13 @@ fn base_color(material: &ufbx::Material) -> (&MaterialMap, &MaterialMap) {
 /// Returns the texture of a material's base colour.
 fn texture(material: &ufbx::Material) -> Option<&ufbx::Texture> {
     let maps = [&material.pbr.base_color, &material.fbx.diffuse_color];
+    let mut enabled = maps.into_iter().filter(|map| map.texture_enabled);
+    enabled.find_map(|map| map.texture.as_deref())
+}
+
+/// Returns the texture of a material's opacity.
+fn opacity_texture(material: &ufbx::Material) -> Option<&ufbx::Texture> {
+    let maps = [&material.pbr.opacity, &material.fbx.transparency_color];
     let mut enabled = maps.into_iter().filter(|map| map.texture_enabled);
     enabled.find_map(|map| map.texture.as_deref())
 }

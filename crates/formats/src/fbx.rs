@@ -16,8 +16,8 @@
 //! a joint whose distance from its parent changes gets a track of translations. Positions in the
 //! world are therefore exact also where scales are uneven or animated.
 //!
-//! A skinned mesh keeps the base colours of its materials. Of a texture in PNG or JPEG, in the file
-//! or beside it, each vertex has the colour at its place.
+//! A skinned mesh keeps the base colours of its materials, with textures in PNG, JPEG and WebP, in
+//! the file or beside it.
 
 mod joints;
 mod mesh;

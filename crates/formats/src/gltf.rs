@@ -8,10 +8,10 @@
 //! The reader takes motion and skinned meshes. The joints are the nodes that skins name, or that
 //! animations move where there is no skin. Joints get new axes, so that in the rest pose every
 //! rotation is the identity and offsets are those of the rest pose, as everywhere in Segue; scales
-//! of nodes go into offsets. World positions do not change. A skinned mesh keeps its base colour
-//! (of a texture in PNG or JPEG the colour at each vertex), and the shape that the weights of its
-//! morph targets give it at rest. A mesh without a skin follows the joint that it hangs from; all
-//! others are ignored, and so are other images.
+//! of nodes go into offsets. World positions do not change. A skinned mesh keeps its base colours,
+//! with textures in PNG, JPEG and WebP, and the shape that the weights of its morph targets give it
+//! at rest. A mesh without a skin follows the joint that it hangs from; all others are ignored, and
+//! so are other images.
 //!
 //! VRM 0.x, VRM 1.0 and VRM animations (VRMA) are glTF files with a bone map, which gives the roles
 //! of the joints. Bones without a role (chest, neck, shoulders, eyes, jaw, fingers) are joints with

@@ -269,8 +269,6 @@ pub enum WarningKind {
         /// The name of the first of them.
         name: String,
     },
-    /// Images of materials of which each vertex has the colour at its place.
-    TextureAtVertices,
     /// Meshes with morph targets: they keep the shape that the file's weights give them.
     MorphTargets,
     /// Meshes that are compressed by Draco: left out.

@@ -21,7 +21,7 @@ use segue_formats::{ImportOptions, import};
 use segue_motion::clip::{Clip, Motion, UpAxis};
 use segue_motion::retarget::{RetargetOptions, TargetBody, retarget_motion};
 use segue_motion::skeleton::Roles;
-use segue_motion::skin::{Character, SkinnedMesh};
+use segue_motion::skin::{AlphaMode, Character, Sampler, SkinnedMesh, Texture, TexturedPart, Wrap};
 use segue_motion::synth::{Action, Params, humanoid, synthesize};
 use std::fmt::Write as _;
 use std::fs;
@@ -153,7 +153,18 @@ fn fbx_options(options: &WriteOptions) -> FbxOptions {
     FbxOptions { metres_per_unit: options.metres_per_unit, up, fps: options.fps }
 }
 
-/// Returns a child of two colours that walks as an adult does: its motion, and its mesh.
+/// Returns a PNG of two by two pixels.
+fn image() -> Arc<[u8]> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, 2, 2);
+    encoder.set_color(png::ColorType::Rgb);
+    let mut writer = encoder.write_header().unwrap();
+    writer.write_image_data(&[200, 30, 30, 30, 200, 30, 30, 30, 200, 90, 90, 90]).unwrap();
+    drop(writer);
+    bytes.into()
+}
+
+/// Returns a child of two colours, with a texture on some triangles, that walks as an adult does: its motion, and its mesh.
 fn character() -> (Clip, SkinnedMesh) {
     let walk = synthesize(&Params::new(Action::Walk)).unwrap().clip;
     let skeleton = humanoid(1.5).unwrap();
@@ -161,6 +172,14 @@ fn character() -> (Clip, SkinnedMesh) {
     let mut mesh = SkinnedMesh::around(&skeleton, &roles, 1.0);
     let colors = [[0.1, 0.2, 0.8, 1.0], [0.8, 0.3, 0.2, 1.0]];
     mesh.colors = mesh.positions.iter().map(|at| colors[usize::from(at.y > 0.0)]).collect();
+    mesh.coordinates = mesh.positions.iter().map(|at| [4.0 * at.x, 1.0 - at.y]).collect();
+    let texture = Texture {
+        image: image(),
+        sampler: Sampler { wraps: [Wrap::Mirror, Wrap::Clamp], is_nearest: true },
+        alpha: AlphaMode::Mask(0.25),
+    };
+    let triangles = 0..mesh.triangles.len() / 3;
+    mesh.textured = vec![TexturedPart { triangles, texture }];
     let child = Character { skeleton, roles, mesh: Arc::new(mesh.clone()) };
     let body = TargetBody::at_rest(&child.skeleton, &child.roles);
     let options = RetargetOptions::default();

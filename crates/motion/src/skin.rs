@@ -55,16 +55,20 @@ mod field;
 mod placed_shape;
 pub mod shapes;
 mod sheets;
+mod texture;
 mod weights;
 
 pub use around::{ProceduralSkin, SkinBuilder};
 pub use character::{Character, Drive};
 pub use deform::{RigidTransform, dual_quaternion, linear_blend};
+pub use texture::{AlphaMode, Sampler, Texture, TexturedPart, Wrap};
 pub use weights::normals;
 
 use crate::clip::{Clip, reference_pose};
 use crate::skeleton::{Roles, Skeleton, WorldPose};
 use glam::{Quat, Vec3};
+use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// A mesh bound to a skeleton, in its bind pose. All per-vertex lists have the same length.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -81,8 +85,14 @@ pub struct SkinnedMesh {
     /// Three vertices each, counter-clockwise from outside.
     pub triangles: Vec<[u32; 3]>,
     /// Base colour of each vertex, red, green, blue and alpha in 0–1 as written in a palette
-    /// (sRGB-encoded, straight alpha). Empty where the mesh has no colours of its own.
+    /// (sRGB-encoded, straight alpha). Empty where the mesh has no colours of its own, or all are
+    /// white below a texture.
     pub colors: Vec<[f32; 4]>,
+    /// The place of each vertex in the image of its texture: (0, 0) is the upper left corner, (1, 1)
+    /// the lower right one. Empty where the mesh has no textures.
+    pub coordinates: Vec<[f32; 2]>,
+    /// The parts with a texture, in the order of their triangles. No vertex is on two parts.
+    pub textured: Vec<TexturedPart>,
     /// `joint_from_bind` of every joint of the skeleton: the bind pose in the joint's frame.
     pub bind: Vec<RigidTransform>,
 }
@@ -111,6 +121,27 @@ impl SkinnedMesh {
                 return procedural_skin.with_girth(girth);
             }
         }
+    }
+
+    /// Returns whether it has colours of its own: of its vertices, or of textures.
+    #[must_use]
+    pub fn has_own_colors(&self) -> bool {
+        !self.colors.is_empty() || !self.textured.is_empty()
+    }
+
+    /// Returns the memory of the mesh, bytes.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        let per_vertex = 2 * size_of::<Vec3>() + size_of::<([u16; 4], [f32; 4])>();
+        let arrays = per_vertex * self.positions.len()
+            + size_of_val(&self.colors[..])
+            + size_of_val(&self.coordinates[..])
+            + size_of_val(&self.triangles[..])
+            + size_of_val(&self.bind[..]);
+        let images: BTreeMap<usize, usize> = (self.textured.iter())
+            .map(|part| (Arc::as_ptr(&part.texture.image).addr(), part.texture.image.len()))
+            .collect();
+        (arrays + images.values().sum::<usize>()) as u64
     }
 
     /// Returns `world_from_bind` of every joint for a pose of the skeleton: the transform of a

@@ -4,9 +4,11 @@ use super::texture::PaintedMesh;
 use crate::gltf::characters::Character;
 use crate::gltf::node::Nodes;
 use crate::gltf::skin::{Binding, Part, WHITE};
+use crate::texture::coordinate;
 use crate::warning::{Tally, WarningKind};
 use glam::{DMat3, DMat4, DVec3, Vec3};
 use segue_motion::skin::SkinnedMesh;
+use std::mem::take;
 
 /// Returns the mesh of a character at rest, in the file's unit; `None` if it has none. Parts that
 /// cannot be read are left out with a warning.
@@ -42,12 +44,12 @@ pub(super) fn mesh(
             is_rigid: false,
         };
         // The last one that needs a mesh has it without a copy.
-        let PaintedMesh { mesh, colors, notes } =
-            if is_last { std::mem::take(painted) } else { painted.clone() };
+        let mut painted = if is_last { take(painted) } else { painted.clone() };
+        let mesh = &mut painted.mesh;
         let mut part = Part {
-            positions: mesh.positions.into_iter().map(Vec3::from_array).collect(),
-            normals: mesh.normals.into_iter().map(Vec3::from_array).collect(),
-            triangles: mesh.triangles,
+            positions: take(&mut mesh.positions).into_iter().map(Vec3::from_array).collect(),
+            normals: take(&mut mesh.normals).into_iter().map(Vec3::from_array).collect(),
+            triangles: take(&mut mesh.triangles),
             joints: Vec::with_capacity(mesh.point_of.len()),
             weights: Vec::with_capacity(mesh.point_of.len()),
             ..Part::default()
@@ -60,7 +62,12 @@ pub(super) fn mesh(
         });
         match part.rest(&binding, influences) {
             Ok(()) => {
-                part.colors = colors;
+                part.textured = painted.textured(&part.triangles);
+                if !part.textured.is_empty() {
+                    let places = painted.mesh.coordinates.into_iter();
+                    part.coordinates = places.map(|place| place.map(coordinate)).collect();
+                }
+                part.colors = painted.colors;
                 part.join(&mut whole);
             }
             Err(why) => {
@@ -68,10 +75,10 @@ pub(super) fn mesh(
                 continue;
             }
         }
-        for note in notes {
+        for note in painted.notes {
             tally.add(note, None);
         }
-        if mesh.has_shapes {
+        if painted.mesh.has_shapes {
             tally.add(WarningKind::MorphTargets, None);
         }
     }
@@ -81,6 +88,7 @@ pub(super) fn mesh(
     if whole.colors.iter().all(|color| *color == WHITE) {
         whole.colors = Vec::new();
     }
+    whole.join_textured_parts();
     whole.bind = character.bind(nodes);
     Some(whole)
 }

@@ -1,16 +1,14 @@
-//! Colours of vertices: base colours of materials, and base colour textures, of which each vertex
-//! takes the colour at its place.
+//! Base colours of materials, and their textures.
 
 use crate::encoding::encoded;
 use crate::gltf::skin::WHITE;
 use crate::text::short;
-use crate::texture::{Image as DecodedImage, Images, Sampler, Wrap};
+use crate::texture::{ImageBytes, Images};
 use crate::warning::WarningKind;
 use crate::{Resolve, stem};
-use segue_fbx::{Image, Mesh, Scene, Texture};
-use std::borrow::Cow;
+use segue_fbx::{Image, Mesh, Scene};
+use segue_motion::skin::{AlphaMode, Sampler, Texture, TexturedPart, Wrap};
 use std::collections::{BTreeMap, BTreeSet};
-use std::rc::Rc;
 
 /// A mesh with the colours of its vertices.
 #[derive(Clone, Debug, Default)]
@@ -18,8 +16,27 @@ pub(super) struct PaintedMesh {
     pub(super) mesh: Mesh,
     /// `sRGB`-encoded, with straight alpha.
     pub(super) colors: Vec<[f32; 4]>,
+    /// The texture of each material.
+    textures: Vec<Option<Texture>>,
     /// What became of its textures.
     pub(super) notes: Vec<WarningKind>,
+}
+
+impl PaintedMesh {
+    /// Returns the parts of `triangles`, those of the mesh or some of them, with their textures.
+    pub(super) fn textured(&self, triangles: &[[u32; 3]]) -> Vec<TexturedPart> {
+        let material = |[corner, ..]: &[u32; 3]| self.mesh.material_of.get(*corner as usize);
+        let mut parts = Vec::new();
+        let mut start = 0;
+        for run in triangles.chunk_by(|one, next| material(one) == material(next)) {
+            let range = start..start + run.len();
+            start = range.end;
+            let material = run.first().and_then(material);
+            let texture = material.and_then(|own| self.textures.get(*own as usize)?.clone());
+            parts.extend(texture.map(|texture| TexturedPart { triangles: range, texture }));
+        }
+        parts
+    }
 }
 
 /// The images of a file: those in it, and those beside it.
@@ -28,11 +45,9 @@ pub(super) struct Textures<'a> {
     /// The folder beside the file in which programs put its images: `body.fbm` for `body.fbx`.
     folder: String,
     resolve: Resolve<'a>,
-    decoded: Images,
+    images: Images,
     /// The images that are neither in the file nor beside it.
     missing: BTreeSet<usize>,
-    /// The greatest memory for decoding one of them, bytes.
-    max_bytes: usize,
 }
 
 impl<'a> Textures<'a> {
@@ -47,53 +62,54 @@ impl<'a> Textures<'a> {
             scene,
             folder: format!("{}.fbm", stem(name)),
             resolve,
-            decoded: Images::default(),
+            images: Images::new(max_bytes),
             missing: BTreeSet::new(),
-            max_bytes,
         }
     }
 
-    /// Returns a mesh with the colours of its vertices.
+    /// Returns a mesh with the colours of its vertices, and its textures.
     pub(super) fn painted(&mut self, mesh: Mesh) -> PaintedMesh {
         let mut notes = Vec::new();
-        let colors = self.colors(&mesh, &mut notes);
-        PaintedMesh { mesh, colors, notes }
-    }
-
-    fn colors(&mut self, mesh: &Mesh, notes: &mut Vec<WarningKind>) -> Vec<[f32; 4]> {
-        let mut colors = vec![WHITE; mesh.positions.len()];
-        let mut vertices: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-        for (vertex, &material) in (0..).zip(&mesh.material_of) {
-            vertices.entry(material).or_default().push(vertex);
-        }
-        // Material by material, so that one image is in use at a time.
-        for (material, vertices) in vertices {
-            let Some(material) = mesh.materials.get(material as usize) else { continue };
-            let [r, g, b, alpha] = material.color;
-            let alpha = if alpha.is_finite() { alpha.clamp(0.0, 1.0) } else { 1.0 };
-            let shown = material.texture.as_ref().and_then(|texture| self.shown(texture, notes));
-            for vertex in vertices {
-                let [r, g, b] = match &shown {
-                    Some(shown) => shown.color(mesh.coordinates.get(vertex as usize)),
-                    None => [r, g, b],
-                };
-                if let Some(color) = colors.get_mut(vertex as usize) {
-                    *color = [encoded(r), encoded(g), encoded(b), alpha];
-                }
+        let used: BTreeSet<u32> = mesh.material_of.iter().copied().collect();
+        let mut textures = vec![None; mesh.materials.len()];
+        for (number, (material, texture)) in (0..).zip(mesh.materials.iter().zip(&mut textures)) {
+            if used.contains(&number) {
+                *texture = material.texture.as_ref().and_then(|own| self.texture(own, &mut notes));
             }
         }
-        colors
+        let color = |material: &u32| {
+            let number = *material as usize;
+            let Some(material) = mesh.materials.get(number) else { return WHITE };
+            let [r, g, b, alpha] = material.color;
+            let alpha = if alpha.is_finite() { alpha.clamp(0.0, 1.0) } else { 1.0 };
+            // The texture takes the place of the colour.
+            let [r, g, b] = match (&material.texture, textures.get(number)) {
+                (Some(texture), Some(Some(_))) => [texture.factor; 3],
+                _ => [r, g, b],
+            };
+            [encoded(r), encoded(g), encoded(b), alpha]
+        };
+        let of_materials: BTreeMap<u32, [f32; 4]> =
+            used.iter().map(|material| (*material, color(material))).collect();
+        let of_vertex = |material: &u32| of_materials.get(material).copied().unwrap_or(WHITE);
+        let mut colors: Vec<[f32; 4]> = mesh.material_of.iter().map(of_vertex).collect();
+        colors.resize(mesh.positions.len(), WHITE);
+        PaintedMesh { mesh, colors, textures, notes }
     }
 
-    /// Returns a texture that can be shown, and notes what becomes of it.
-    fn shown(&mut self, texture: &Texture, notes: &mut Vec<WarningKind>) -> Option<Shown> {
+    /// Returns a texture that can be shown, and notes one that cannot.
+    fn texture(
+        &mut self,
+        texture: &segue_fbx::Texture,
+        notes: &mut Vec<WarningKind>,
+    ) -> Option<Texture> {
         let number = texture.image;
         let image = number.and_then(|number| Some((number, self.scene.image(number)?)));
         let Some((number, file)) = image else {
             notes.push(WarningKind::Textures);
             return None;
         };
-        let Self { folder, resolve, missing, max_bytes, .. } = self;
+        let Self { folder, resolve, missing, images, .. } = self;
         let content = || {
             let content = content(&file, folder, *resolve);
             if content.is_none() {
@@ -101,41 +117,28 @@ impl<'a> Textures<'a> {
             }
             content
         };
-        let decoded = self.decoded.get(number, content, |bytes| bytes <= *max_bytes);
-        let kind = match &decoded {
-            Some(_) => WarningKind::TextureAtVertices,
-            None if self.missing.contains(&number) => {
+        let Some(image) = images.get(number, content) else {
+            notes.push(if missing.contains(&number) {
                 WarningKind::MissingImage { name: short(base_name(path(&file)).as_bytes()) }
-            }
-            None => WarningKind::Textures,
+            } else {
+                WarningKind::Textures
+            });
+            return None;
         };
-        notes.push(kind);
         let wraps = texture.clamps.map(|clamps| if clamps { Wrap::Clamp } else { Wrap::Repeat });
-        let sampler = Sampler { wraps, is_nearest: false };
-        decoded.map(|image| Shown { image, sampler, factor: texture.factor })
+        let alpha = if texture.cuts_out { AlphaMode::Mask(CUTOFF) } else { AlphaMode::Opaque };
+        Some(Texture { image, sampler: Sampler { wraps, is_nearest: false }, alpha })
     }
 }
 
-/// A texture with its image.
-struct Shown {
-    image: Rc<DecodedImage>,
-    sampler: Sampler,
-    factor: f32,
-}
-
-impl Shown {
-    /// Returns the linear colour at a place of the image; white where none is given.
-    fn color(&self, place: Option<&[f32; 2]>) -> [f32; 3] {
-        let texel = place.map_or([1.0; 3], |place| self.sampler.color(&self.image, *place));
-        texel.map(|channel| channel * self.factor)
-    }
-}
+/// The opacity below which a point of a texture that cuts out is left out.
+const CUTOFF: f32 = 0.5;
 
 /// Returns the image file: of the scene, or else beside it. There it may lie under its relative
 /// path, in the folder of the scene's images, or in that of the scene.
-fn content<'a>(image: &Image<'a>, folder: &str, resolve: Resolve<'_>) -> Option<Cow<'a, [u8]>> {
+fn content<'a>(image: &Image<'a>, folder: &str, resolve: Resolve<'_>) -> Option<ImageBytes<'a>> {
     if !image.content.is_empty() {
-        return Some(Cow::Borrowed(image.content));
+        return Some(ImageBytes::Inside(image.content));
     }
     // What is above the folder of the scene is not beside it.
     let relative = image.relative_path.replace('\\', "/");
@@ -145,7 +148,7 @@ fn content<'a>(image: &Image<'a>, folder: &str, resolve: Resolve<'_>) -> Option<
         return None;
     }
     let paths = [relative, &format!("{folder}/{name}"), name];
-    paths.into_iter().find_map(resolve).map(|bytes| Cow::Owned(bytes.to_vec()))
+    paths.into_iter().find_map(resolve).map(ImageBytes::Beside)
 }
 
 /// Returns the path that an image file had.

@@ -63,7 +63,7 @@ impl Bones {
             bind: positions.iter().map(bind).collect(),
             positions: self.positions,
             normals: self.normals,
-            colors: Vec::new(),
+            ..SkinnedMesh::default()
         }
     }
 

@@ -1,14 +1,15 @@
 //! The JSON of a file and the binary buffers that it refers to.
 
 use super::humanoid::Humanoid;
+use super::texture::WebpTextures;
 use crate::text::{decode, short};
+use crate::texture::ImageBytes;
 use crate::{ImportError, Resolve};
 use base64::Engine as _;
 use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use gltf::json::{Root, Value};
 use segue_text::{Message, msg};
-use std::borrow::Cow;
 use std::cell::Cell;
 use std::sync::Arc;
 
@@ -24,6 +25,8 @@ pub(super) struct Document<'a> {
     pub(super) humanoid: Option<Humanoid>,
     /// The error of a bone map that cannot be read.
     pub(super) broken_humanoid: Option<serde_json::Error>,
+    /// The images in WebP of its textures.
+    pub(super) webp: WebpTextures,
     resolve: Resolve<'a>,
     /// The number of bytes that may still be allocated for this file.
     left: Cell<usize>,
@@ -84,6 +87,7 @@ impl<'a> Document<'a> {
             root,
             humanoid,
             broken_humanoid,
+            webp: WebpTextures::read(&json),
             resolve,
             left: Cell::new(most),
         })
@@ -121,19 +125,19 @@ impl<'a> Document<'a> {
 
     /// Returns the bytes of an image, in whatever format: in a buffer, in the JSON, or in a file
     /// beside this one.
-    pub(super) fn image(&self, index: usize) -> Option<Cow<'_, [u8]>> {
+    pub(super) fn image(&self, index: usize) -> Option<ImageBytes<'_>> {
         let image = self.root.images.get(index)?;
         if let Some(view) = image.buffer_view {
             let view = self.root.get(view)?;
             let start = usize::try_from(view.byte_offset.unwrap_or_default().0).ok()?;
             let length = usize::try_from(view.byte_length.0).ok()?;
             let buffer = self.buffer(view.buffer.value()).ok()?;
-            return Some(buffer.get(start..)?.get(..length)?.into());
+            return Some(ImageBytes::Inside(buffer.get(start..)?.get(..length)?));
         }
         let uri = image.uri.as_deref()?;
         match uri.strip_prefix("data:") {
-            Some(data) => embedded(data).map(Cow::Owned),
-            None => external(uri, self.resolve).map(|bytes| Cow::Owned(bytes.to_vec())),
+            Some(data) => embedded(data).map(ImageBytes::Decoded),
+            None => external(uri, self.resolve).map(ImageBytes::Beside),
         }
     }
 
@@ -147,11 +151,6 @@ impl<'a> Document<'a> {
         (0..self.buffers.len())
             .filter_map(|index| self.buffer(index).ok())
             .fold(0, |sum, bytes| sum.saturating_add(bytes.len()))
-    }
-
-    /// Returns whether there is room for bytes that are needed for a moment only.
-    pub(super) fn has_room(&self, bytes: usize) -> bool {
-        bytes <= self.left.get()
     }
 
     /// Checks and counts memory before it is allocated.

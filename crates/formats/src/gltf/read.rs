@@ -11,6 +11,7 @@ use super::write::{GENERATOR, MADE_BODY};
 use crate::measure::measure;
 use crate::raw::{RawMotion, Y_UP_FROM_Z_UP};
 use crate::t_pose::first_frame_is_t_pose;
+use crate::texture::Images;
 use crate::warning::{Tally, WarningKind};
 use crate::{ImportError, ImportOptions, ImportedClip, ImportedFile, Resolve, check_size, stem};
 use glam::{DMat3, DVec3, Quat, Vec3};
@@ -77,10 +78,11 @@ pub fn read(
             .with_hint("export the skeleton and its animations, too"));
     }
     let mut imported = ImportedFile::default();
+    let mut images = Images::new(options.max_bytes);
     for character in &characters {
         let context =
             Context { document: &document, nodes: &nodes, options, several: characters.len() > 1 };
-        context.clips(character, &motions, &mut imported.clips, &mut tally)?;
+        context.clips(character, &motions, &mut images, &mut imported.clips, &mut tally)?;
     }
     imported.warnings = tally.into_warnings(b"");
     Ok(imported)
@@ -217,6 +219,7 @@ impl Context<'_> {
         &self,
         character: &Character,
         motions: &[Motion],
+        images: &mut Images,
         clips: &mut Vec<ImportedClip>,
         tally: &mut Tally,
     ) -> Result<(), ImportError> {
@@ -225,7 +228,7 @@ impl Context<'_> {
         let mut skin = if self.is_own() || is_animation {
             None
         } else {
-            mesh(self.document, self.nodes, character, tally)
+            mesh(self.document, self.nodes, character, images, tally)
         };
         for _ in 0..character.uneven {
             tally.add(WarningKind::UnevenScale, None);

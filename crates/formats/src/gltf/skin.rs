@@ -6,16 +6,16 @@ use super::characters::Character;
 use super::document::Document;
 use super::morph;
 use super::node::{Node, Nodes};
-use super::texture::colors;
+use super::texture::{PlacedTexture, colors};
 use crate::ImportError;
-use crate::texture::{Images, TextureUse};
+use crate::texture::Images;
 use crate::warning::{Tally, WarningKind};
 use glam::{DMat3, DMat4, DVec3, Vec3};
 use gltf::json::accessor::Type;
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, Skin};
-use segue_motion::skin::SkinnedMesh;
+use segue_motion::skin::{SkinnedMesh, TexturedPart};
 use segue_text::{Message, msg};
 
 /// The greatest number of vertices of a character; beyond it the mesh is left out.
@@ -35,6 +35,7 @@ pub(super) fn mesh(
     document: &Document<'_>,
     nodes: &Nodes,
     character: &Character,
+    images: &mut Images,
     tally: &mut Tally,
 ) -> Option<SkinnedMesh> {
     let mut joint_of = vec![None; nodes.all.len()];
@@ -49,7 +50,6 @@ pub(super) fn mesh(
     }
     let mut mesh = SkinnedMesh::default();
     let mut is_colored = false;
-    let mut images = Images::default();
     for (index, node) in document.root.nodes.iter().enumerate() {
         let Some(shape) = node.mesh else {
             continue;
@@ -72,16 +72,15 @@ pub(super) fn mesh(
                 continue;
             }
             let before = mesh.positions.len() as u64;
-            let read = skin.as_ref().map_err(Clone::clone).and_then(|skin| {
-                Part::read(document, primitive, weights, skin, before, &mut images)
-            });
+            let read = skin
+                .as_ref()
+                .map_err(Clone::clone)
+                .and_then(|skin| Part::read(document, primitive, weights, skin, before, images));
             match read {
                 Ok(Some(part)) => {
                     is_colored |= part.colors.iter().any(|color| *color != WHITE);
-                    match part.texture {
-                        TextureUse::None => {}
-                        TextureUse::AtVertices => tally.add(WarningKind::TextureAtVertices, None),
-                        TextureUse::Missing => tally.add(WarningKind::Textures, None),
+                    if part.lacks_texture {
+                        tally.add(WarningKind::Textures, None);
                     }
                     part.join(&mut mesh);
                 }
@@ -99,6 +98,7 @@ pub(super) fn mesh(
     if !is_colored {
         mesh.colors = Vec::new();
     }
+    mesh.join_textured_parts();
     mesh.bind = character.bind(nodes);
     Some(mesh)
 }
@@ -191,7 +191,12 @@ pub(crate) struct Part {
     pub(crate) triangles: Vec<[u32; 3]>,
     /// One for each vertex.
     pub(crate) colors: Vec<[f32; 4]>,
-    pub(crate) texture: TextureUse,
+    /// The place of each vertex in its texture; empty without textures.
+    pub(crate) coordinates: Vec<[f32; 2]>,
+    /// The triangles with textures.
+    pub(crate) textured: Vec<TexturedPart>,
+    /// Whether it has a texture that cannot be read.
+    pub(crate) lacks_texture: bool,
 }
 
 impl Part {
@@ -271,14 +276,19 @@ impl Part {
         let mut part = Self {
             triangles: triangles(&indices, mode),
             colors: colors.of_vertices,
-            texture: colors.texture,
+            lacks_texture: matches!(colors.texture, PlacedTexture::Missing),
             positions,
             normals,
             joints: Vec::with_capacity(count),
             weights: Vec::with_capacity(count),
+            ..Self::default()
         };
         part.rest(binding, influences)
             .map_err(|found| document.error(found, "joints of the skin"))?;
+        if let PlacedTexture::Placed(texture, coordinates) = colors.texture {
+            part.coordinates = coordinates;
+            part.textured = vec![TexturedPart { triangles: 0..part.triangles.len(), texture }];
+        }
         Ok(Some(part))
     }
 
@@ -349,6 +359,19 @@ impl Part {
     pub(crate) fn join(self, mesh: &mut SkinnedMesh) {
         let before = mesh.positions.len() as u32;
         append(&mut mesh.colors, self.colors);
+        if !self.coordinates.is_empty() || !mesh.coordinates.is_empty() {
+            // Vertices without a texture have the coordinates (0, 0), which nothing uses.
+            mesh.coordinates.resize(mesh.positions.len(), [0.0; 2]);
+            append(&mut mesh.coordinates, self.coordinates);
+            mesh.coordinates.resize(mesh.positions.len() + self.positions.len(), [0.0; 2]);
+        }
+        let start = mesh.triangles.len();
+        mesh.textured.extend(self.textured.into_iter().map(
+            |TexturedPart { triangles, texture }| TexturedPart {
+                triangles: triangles.start + start..triangles.end + start,
+                texture,
+            },
+        ));
         append(&mut mesh.positions, self.positions);
         append(&mut mesh.normals, self.normals);
         append(&mut mesh.joints, self.joints);

@@ -1,25 +1,39 @@
-//! Colours of vertices: base colour factors, colours in the file, and base colour textures, of
-//! which each vertex takes the colour at its place.
+//! Base colours of primitives: factors, colours of vertices, and textures.
 
 use super::document::Document;
 use crate::encoding::encoded;
-use crate::texture::{Images, Sampler, TextureUse, Wrap};
+use crate::texture::{Images, coordinate};
 use gltf::json::Material;
 use gltf::json::accessor::Type;
-use gltf::json::material::PbrBaseColorFactor;
+use gltf::json::material::{AlphaMode as GltfAlphaMode, PbrBaseColorFactor};
 use gltf::json::mesh::{Primitive, Semantic};
 use gltf::json::texture::{Info, MagFilter, WrappingMode};
 use gltf::json::validation::Checked;
+use segue_motion::skin::{AlphaMode, Sampler, Texture, Wrap};
+use serde::Deserialize;
 
-/// The colours of a primitive, and what became of its texture.
+/// The opacity below which a point of a mask is left out, where the file states none.
+const DEFAULT_CUTOFF: f32 = 0.5;
+
+/// The colours of a primitive.
 pub(super) struct Colors {
-    /// One for each vertex: `sRGB`-encoded, with straight alpha.
+    /// One for each vertex: `sRGB`-encoded, with straight alpha. A texture is multiplied by them.
     pub(super) of_vertices: Vec<[f32; 4]>,
-    pub(super) texture: TextureUse,
+    pub(super) texture: PlacedTexture,
 }
 
-/// Returns the colours of a primitive's `count` vertices: the product of factor, texture and
-/// colours in the file (section 3.9.2 of the specification), in linear light.
+/// The texture of a primitive.
+pub(super) enum PlacedTexture {
+    /// It has none.
+    None,
+    /// The texture, and the place of each vertex in it.
+    Placed(Texture, Vec<[f32; 2]>),
+    /// It cannot be read.
+    Missing,
+}
+
+/// Returns the colours of a primitive's `count` vertices: the product of factor and colours in the
+/// file (section 3.9.2 of the specification), in linear light; and its texture.
 pub(super) fn colors(
     document: &Document<'_>,
     primitive: &Primitive,
@@ -30,33 +44,25 @@ pub(super) fn colors(
     let surface = material.map(|material| &material.pbr_metallic_roughness);
     let PbrBaseColorFactor(factor) =
         surface.map_or_else(PbrBaseColorFactor::default, |surface| surface.base_color_factor);
-    let info = surface.and_then(|surface| surface.base_color_texture.as_ref());
-    let sampled = info.map(|info| sampled(document, primitive, info, count, images));
     let own = vertex_colors(document, primitive, count);
     let of_vertex = |vertex: usize| {
-        let texel = match &sampled {
-            Some(Some(texels)) => texels.get(vertex).copied().unwrap_or([1.0; 3]),
-            _ => [1.0; 3],
-        };
         let [r, g, b, a] =
             own.as_ref().and_then(|own| own.get(vertex)).copied().unwrap_or([1.0; 4]);
-        let color = [r * texel[0], g * texel[1], b * texel[2]];
         let alpha = a * factor[3];
         [
-            encoded(color[0] * factor[0]),
-            encoded(color[1] * factor[1]),
-            encoded(color[2] * factor[2]),
+            encoded(r * factor[0]),
+            encoded(g * factor[1]),
+            encoded(b * factor[2]),
             if alpha.is_finite() { alpha.clamp(0.0, 1.0) } else { 1.0 },
         ]
     };
-    Colors {
-        of_vertices: (0..count).map(of_vertex).collect(),
-        texture: match sampled {
-            None => TextureUse::None,
-            Some(Some(_)) => TextureUse::AtVertices,
-            Some(None) => TextureUse::Missing,
-        },
-    }
+    let info = surface.and_then(|surface| surface.base_color_texture.as_ref());
+    let texture = match info.zip(material) {
+        None => PlacedTexture::None,
+        Some((info, material)) => placed(document, primitive, (info, material), count, images)
+            .unwrap_or(PlacedTexture::Missing),
+    };
+    Colors { of_vertices: (0..count).map(of_vertex).collect(), texture }
 }
 
 /// Returns the colours that a primitive has itself (`COLOR_0`), with alpha 1 where it has none.
@@ -76,50 +82,96 @@ fn vertex_colors(
     (colors.len() == count).then_some(colors)
 }
 
-/// Returns the linear colour of a texture at each vertex; `None` where image or coordinates cannot
-/// be read.
-fn sampled(
+/// Returns the texture of a material, placed on a primitive; `None` where image or coordinates
+/// cannot be read.
+fn placed(
     document: &Document<'_>,
     primitive: &Primitive,
-    info: &Info,
+    (info, material): (&Info, &Material),
     count: usize,
     images: &mut Images,
-) -> Option<Vec<[f32; 3]>> {
+) -> Option<PlacedTexture> {
     let transform = info.extensions.as_ref().and_then(|own| own.texture_transform.as_ref());
     let set = transform.and_then(|own| own.tex_coord).unwrap_or(info.tex_coord);
     let index = *primitive.attributes.get(&Checked::Valid(Semantic::TexCoords(set)))?;
     // Not normalised integers are plain values (`KHR_mesh_quantization`).
     let coordinates = document.lengths(index, Type::Vec2).ok()?;
+    let coordinates = coordinates.as_chunks::<2>().0;
+    if coordinates.len() != count {
+        return None;
+    }
     let texture = document.root.get(info.index)?;
-    let source = texture.source.value();
-    let image = images.get(source, || document.image(source), |bytes| document.has_room(bytes))?;
-    let sampler = texture.sampler.and_then(|index| document.root.get(index));
-    let sampler = sampler.map_or_else(Sampler::default, sampler_of);
+    // An image in WebP comes before the other one.
+    let webp = document.webp.source_of(info.index.value());
+    let mut image = |source: usize| images.get(source, || document.image(source));
+    let image = webp.and_then(&mut image).or_else(|| image(texture.source.value()))?;
     let (cos, sin, [du, dv], [su, sv]) = match transform {
         Some(own) => {
             (libm::cosf(own.rotation.0), libm::sinf(own.rotation.0), own.offset.0, own.scale.0)
         }
         None => (1.0, 0.0, [0.0; 2], [1.0; 2]),
     };
-    let coordinates = coordinates.as_chunks::<2>().0;
-    (coordinates.len() == count).then(|| {
-        let texel = |&[u, v]: &[f32; 2]| {
-            // Offset · rotation · scale; v points down.
-            let (u, v) = (su * u, sv * v);
-            sampler.color(&image, [du + cos * u + sin * v, dv - sin * u + cos * v])
-        };
-        coordinates.iter().map(texel).collect()
-    })
+    let place = |&[u, v]: &[f32; 2]| {
+        // Offset · rotation · scale; v points down.
+        let (u, v) = (su * u, sv * v);
+        [du + cos * u + sin * v, dv - sin * u + cos * v].map(coordinate)
+    };
+    let sampler = texture.sampler.and_then(|index| document.root.get(index));
+    let wrap = |mode: Option<Checked<WrappingMode>>| match mode {
+        Some(Checked::Valid(WrappingMode::ClampToEdge)) => Wrap::Clamp,
+        Some(Checked::Valid(WrappingMode::MirroredRepeat)) => Wrap::Mirror,
+        _ => Wrap::Repeat,
+    };
+    let magnified = sampler.and_then(|sampler| sampler.mag_filter);
+    let cutoff = material.alpha_cutoff.map_or(DEFAULT_CUTOFF, |cutoff| cutoff.0);
+    let texture = Texture {
+        image,
+        sampler: Sampler {
+            wraps: [sampler.map(|own| own.wrap_s), sampler.map(|own| own.wrap_t)].map(wrap),
+            is_nearest: magnified == Some(Checked::Valid(MagFilter::Nearest)),
+        },
+        alpha: match material.alpha_mode {
+            Checked::Valid(GltfAlphaMode::Mask) => AlphaMode::Mask(cutoff.max(0.0)),
+            Checked::Valid(GltfAlphaMode::Blend) => AlphaMode::Blend,
+            Checked::Valid(GltfAlphaMode::Opaque) | Checked::Invalid => AlphaMode::Opaque,
+        },
+    };
+    Some(PlacedTexture::Placed(texture, coordinates.iter().map(place).collect()))
 }
 
-fn sampler_of(sampler: &gltf::json::texture::Sampler) -> Sampler {
-    let wrap = |mode: Checked<WrappingMode>| match mode {
-        Checked::Valid(WrappingMode::ClampToEdge) => Wrap::Clamp,
-        Checked::Valid(WrappingMode::MirroredRepeat) => Wrap::Mirror,
-        Checked::Valid(WrappingMode::Repeat) | Checked::Invalid => Wrap::Repeat,
-    };
-    Sampler {
-        wraps: [wrap(sampler.wrap_s), wrap(sampler.wrap_t)],
-        is_nearest: sampler.mag_filter == Some(Checked::Valid(MagFilter::Nearest)),
+/// The images in WebP of a file's textures (`EXT_texture_webp`).
+#[derive(Default, Deserialize)]
+pub(super) struct WebpTextures {
+    #[serde(default)]
+    textures: Vec<WebpTexture>,
+}
+
+#[derive(Default, Deserialize)]
+struct WebpTexture {
+    #[serde(default)]
+    extensions: WebpExtensions,
+}
+
+#[derive(Default, Deserialize)]
+struct WebpExtensions {
+    #[serde(rename = "EXT_texture_webp")]
+    webp: Option<WebpSource>,
+}
+
+#[derive(Deserialize)]
+struct WebpSource {
+    source: usize,
+}
+
+impl WebpTextures {
+    /// Returns those of a file, from its JSON; none where they are not as specified.
+    pub(super) fn read(json: &[u8]) -> Self {
+        let has_any = memchr::memmem::find(json, b"EXT_texture_webp").is_some();
+        has_any.then(|| serde_json::from_slice(json).ok()).flatten().unwrap_or_default()
+    }
+
+    /// Returns the image of a texture.
+    fn source_of(&self, texture: usize) -> Option<usize> {
+        Some(self.textures.get(texture)?.extensions.webp.as_ref()?.source)
     }
 }

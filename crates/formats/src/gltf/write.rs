@@ -1,5 +1,10 @@
 //! Writing of GLB files.
 
+mod file;
+mod surface;
+
+pub(super) use file::File;
+
 use super::bones::Bones;
 use crate::takes::unique_names;
 use glam::{Mat4, Quat, Vec3};
@@ -8,6 +13,7 @@ use segue_motion::skeleton::{Joint, Roles, Skeleton};
 use segue_motion::skin::{RigidTransform, SkinnedMesh};
 use serde_json::{Value, json};
 use std::borrow::Cow;
+use surface::{material, primitive, surfaces};
 
 /// The beginning of the generator's name in files that Segue wrote.
 pub(super) const GENERATOR: &str = "Segue ";
@@ -18,8 +24,6 @@ pub(super) const MADE_BODY: &str = "Body";
 const CHARACTER: &str = "Character";
 /// The number of joints that 16-bit indices can address.
 const MAX_JOINTS: usize = 1 << 16;
-/// The colour of a body without one, linear.
-const CLAY: [f32; 4] = [0.7, 0.7, 0.7, 1.0];
 
 /// Options of writing a `.glb` file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -72,8 +76,8 @@ pub fn write_glb(clip: &Clip, options: &GlbOptions) -> Result<Vec<u8>, GlbError>
 }
 
 /// Writes a motion of a character as a `.glb` file, as [`write_glb`] does, with the character's own
-/// mesh. `clip` is on the skeleton that `mesh` is bound to. Each colour of the mesh becomes a
-/// material.
+/// mesh. `clip` is on the skeleton that `mesh` is bound to. Each texture of the mesh becomes a
+/// material, with its image as it is, and so does each colour, unless there are very many.
 ///
 /// # Errors
 /// [`GlbError`] when the clip is too large for the format.
@@ -171,9 +175,9 @@ fn scene(
         .collect();
     let inverse_bind = file.floats(&inverse_bind, "MAT4", None);
     let (mut primitives, mut materials) = (Vec::new(), Vec::new());
-    for (part, color) in parts(&mesh) {
-        primitives.push(primitive(file, &part, rest.len(), materials.len()));
-        materials.push(material(&color, name, materials.len()));
+    for surface in surfaces(&mesh) {
+        primitives.push(primitive(file, &surface, rest.len(), materials.len()));
+        materials.push(material(file, &surface, name, materials.len()));
     }
     Ok(json!({
         "asset": { "version": "2.0", "generator": format!("{GENERATOR}{}", env!("CARGO_PKG_VERSION")) },
@@ -217,137 +221,6 @@ pub(super) fn nodes(skeleton: &Skeleton) -> Vec<Value> {
         node
     };
     joints.iter().zip(children).map(node).chain(ends).collect()
-}
-
-/// Splits a mesh into parts of one colour (linear) each, in the order in which the colours occur. A
-/// triangle has the colour of its first corner.
-fn parts(mesh: &SkinnedMesh) -> Vec<(Cow<'_, SkinnedMesh>, [f32; 4])> {
-    let color_of = |triangle: &[u32; 3]| {
-        mesh.colors.get(triangle[0] as usize).map(|color| color.map(f32::to_bits))
-    };
-    let mut colors: Vec<Option<[u32; 4]>> = Vec::new();
-    let mut triangles: Vec<Vec<[u32; 3]>> = Vec::new();
-    let mut last = 0;
-    for triangle in &mesh.triangles {
-        let color = color_of(triangle);
-        if colors.get(last) != Some(&color) {
-            last = colors.iter().position(|known| *known == color).unwrap_or(colors.len());
-        }
-        if last == colors.len() {
-            colors.push(color);
-            triangles.push(Vec::new());
-        }
-        triangles[last].push(*triangle);
-    }
-    let linear = |color: Option<[u32; 4]>| {
-        color.map_or(CLAY, |color| {
-            let [r, g, b, a] = color.map(f32::from_bits);
-            [decoded(r), decoded(g), decoded(b), a]
-        })
-    };
-    if colors.len() <= 1 {
-        return vec![(Cow::Borrowed(mesh), linear(colors.first().copied().flatten()))];
-    }
-    let parts = triangles.into_iter().zip(colors);
-    parts.map(|(triangles, color)| (Cow::Owned(part(mesh, &triangles)), linear(color))).collect()
-}
-
-/// Returns a mesh of some triangles, with their vertices in order.
-fn part(mesh: &SkinnedMesh, triangles: &[[u32; 3]]) -> SkinnedMesh {
-    let mut vertices: Vec<u32> = triangles.as_flattened().to_vec();
-    vertices.sort_unstable();
-    vertices.dedup();
-    let index = |vertex: u32| vertices.partition_point(|known| *known < vertex) as u32;
-    SkinnedMesh {
-        triangles: triangles.iter().map(|triangle| triangle.map(index)).collect(),
-        positions: picked(&mesh.positions, &vertices),
-        normals: picked(&mesh.normals, &vertices),
-        joints: picked(&mesh.joints, &vertices),
-        weights: picked(&mesh.weights, &vertices),
-        ..SkinnedMesh::default()
-    }
-}
-
-fn picked<T: Copy + Default>(values: &[T], vertices: &[u32]) -> Vec<T> {
-    let value = |&vertex: &u32| values.get(vertex as usize).copied().unwrap_or_default();
-    vertices.iter().map(value).collect()
-}
-
-/// Converts a channel of an `sRGB` colour to linear (IEC 61966-2-1).
-fn decoded(encoded: f32) -> f32 {
-    if encoded <= 0.040_45 { encoded / 12.92 } else { libm::powf((encoded + 0.055) / 1.055, 2.4) }
-}
-
-/// Returns a material: clay for a generated body; for a character, whose surfaces may be open, the
-/// colour on both sides.
-fn material(color: &[f32; 4], name: &str, index: usize) -> Value {
-    let surface =
-        json!({ "baseColorFactor": color, "metallicFactor": 0.0, "roughnessFactor": 0.8 });
-    if name == MADE_BODY {
-        return json!({ "name": "Clay", "pbrMetallicRoughness": surface });
-    }
-    json!({
-        "name": format!("{name} {}", index + 1), "pbrMetallicRoughness": surface,
-        "doubleSided": true
-    })
-}
-
-fn primitive(file: &mut File, mesh: &SkinnedMesh, joints: usize, material: usize) -> Value {
-    let vectors = |vectors: &[Vec3]| vectors.iter().flat_map(Vec3::to_array).collect::<Vec<f32>>();
-    let low = mesh.positions.iter().copied().reduce(Vec3::min).unwrap_or_default();
-    let high = mesh.positions.iter().copied().reduce(Vec3::max).unwrap_or_default();
-    let position =
-        file.floats(&vectors(&mesh.positions), "VEC3", Some((&low.to_array(), &high.to_array())));
-    let normal = file.floats(&vectors(&mesh.normals), "VEC3", None);
-    let count = mesh.positions.len();
-    let weights: Vec<[u8; 4]> = mesh.weights.iter().map(bytes_of).collect();
-    // Joints without weight must be joint 0 in the format.
-    let followed = mesh.joints.iter().zip(&weights).flat_map(|(joints, weights)| {
-        let pairs = joints.iter().zip(weights);
-        pairs.map(|(&joint, &weight)| if weight > 0 { joint } else { 0 })
-    });
-    let (component, followed): (u32, Vec<u8>) = if joints <= 1 << 8 {
-        (UNSIGNED_BYTE, followed.map(|joint| joint as u8).collect())
-    } else {
-        (UNSIGNED_SHORT, followed.flat_map(u16::to_le_bytes).collect())
-    };
-    let followed = file
-        .accessor(&followed, json!({ "componentType": component, "count": count, "type": "VEC4" }));
-    let weights = file.accessor(
-        weights.as_flattened(),
-        json!({
-            "componentType": UNSIGNED_BYTE, "normalized": true, "count": count, "type": "VEC4"
-        }),
-    );
-    let corners = mesh.triangles.as_flattened();
-    let (component, indices): (u32, Vec<u8>) = if u16::try_from(count).is_ok() {
-        (UNSIGNED_SHORT, corners.iter().flat_map(|&corner| (corner as u16).to_le_bytes()).collect())
-    } else {
-        (UNSIGNED_INT, corners.iter().flat_map(|corner| corner.to_le_bytes()).collect())
-    };
-    let indices = file.accessor(
-        &indices,
-        json!({ "componentType": component, "count": corners.len(), "type": "SCALAR" }),
-    );
-    for accessor in [position, normal, followed, weights] {
-        // ARRAY_BUFFER: vertices.
-        file.views[accessor]["target"] = json!(34962);
-    }
-    // ELEMENT_ARRAY_BUFFER.
-    file.views[indices]["target"] = json!(34963);
-    json!({
-        "attributes": { "POSITION": position, "NORMAL": normal, "JOINTS_0": followed, "WEIGHTS_0": weights },
-        "indices": indices,
-        "material": material,
-    })
-}
-
-/// Quantises weights to bytes whose sum is exactly 255.
-fn bytes_of(weights: &[f32; 4]) -> [u8; 4] {
-    let mut bytes = weights.map(|weight| (weight * 255.0).round() as u8);
-    let [first, rest @ ..] = &mut bytes;
-    *first = rest.iter().fold(255, |left, byte| left.saturating_sub(*byte));
-    bytes
 }
 
 /// Returns the animation of a clip. Joints are moved to where the clip's skeleton has them, if that
@@ -396,77 +269,5 @@ fn unit(q: Quat) -> Quat {
         (q * length.recip()).as_quat()
     } else {
         Quat::IDENTITY
-    }
-}
-
-const UNSIGNED_BYTE: u32 = 5121;
-const UNSIGNED_SHORT: u32 = 5123;
-const UNSIGNED_INT: u32 = 5125;
-const FLOAT: u32 = 5126;
-
-/// A file under construction: its binary part, and the JSON that describes it. Each accessor has a
-/// view of its own with the same index.
-#[derive(Default)]
-pub(super) struct File {
-    binary: Vec<u8>,
-    views: Vec<Value>,
-    accessors: Vec<Value>,
-}
-
-impl File {
-    /// Adds numbers, and returns the index of their accessor.
-    fn floats(&mut self, values: &[f32], kind: &str, bounds: Option<(&[f32], &[f32])>) -> usize {
-        let width = match kind {
-            "SCALAR" => 1,
-            "VEC3" => 3,
-            "VEC4" => 4,
-            _ => 16,
-        };
-        let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
-        let mut accessor =
-            json!({ "componentType": FLOAT, "count": values.len() / width, "type": kind });
-        if let Some((low, high)) = bounds {
-            accessor["min"] = json!(low);
-            accessor["max"] = json!(high);
-        }
-        self.accessor(&bytes, accessor)
-    }
-
-    /// Adds bytes, padded to a multiple of four.
-    fn accessor(&mut self, bytes: &[u8], mut accessor: Value) -> usize {
-        let index = self.accessors.len();
-        accessor["bufferView"] = json!(index);
-        self.accessors.push(accessor);
-        self.views.push(
-            json!({ "buffer": 0, "byteOffset": self.binary.len(), "byteLength": bytes.len() }),
-        );
-        self.binary.extend_from_slice(bytes);
-        self.binary.resize(self.binary.len().next_multiple_of(4), 0);
-        index
-    }
-
-    /// Returns the whole file: header, JSON and binary part, each padded to a multiple of four.
-    pub(super) fn finish(self, mut root: Value) -> Result<Vec<u8>, GlbError> {
-        root["accessors"] = Value::Array(self.accessors);
-        root["bufferViews"] = Value::Array(self.views);
-        root["buffers"] = json!([{ "byteLength": self.binary.len() }]);
-        let mut json = root.to_string().into_bytes();
-        json.resize(json.len().next_multiple_of(4), b' ');
-        let length = 12 + 8 + json.len() + 8 + self.binary.len();
-        let word = |length: usize| {
-            u32::try_from(length)
-                .map(u32::to_le_bytes)
-                .map_err(|_| GlbError::TooLarge(length as u64))
-        };
-        let mut bytes = Vec::with_capacity(length);
-        bytes.extend_from_slice(b"glTF");
-        bytes.extend_from_slice(&2_u32.to_le_bytes());
-        bytes.extend_from_slice(&word(length)?);
-        for (kind, chunk) in [(b"JSON", json), (b"BIN\0", self.binary)] {
-            bytes.extend_from_slice(&word(chunk.len())?);
-            bytes.extend_from_slice(kind);
-            bytes.extend_from_slice(&chunk);
-        }
-        Ok(bytes)
     }
 }

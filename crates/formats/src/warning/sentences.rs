@@ -227,9 +227,6 @@ impl ToMessage for ImportWarning {
             WarningKind::MissingImage { name } => msg!(
                 "imported without {count, plural, one {# texture} other {# textures}} whose image is not in the file, such as `{name}`: open them together; the plain colour is used"
             ),
-            WarningKind::TextureAtVertices => msg!(
-                "{count, plural, one {# texture is} other {# textures are}} shown by the colour at each vertex"
-            ),
             WarningKind::MorphTargets => {
                 msg!(
                     "{count, plural, one {# mesh keeps} other {# meshes keep}} one shape: morph targets stay at the weights of the file"

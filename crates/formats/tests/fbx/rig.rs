@@ -78,6 +78,8 @@ pub(crate) struct Texture {
     pub(crate) content: Vec<u8>,
     /// Further properties.
     pub(crate) more: Vec<Element>,
+    /// Whether it is that of the opacity, too.
+    pub(crate) is_opacity: bool,
 }
 
 /// A file.
@@ -415,4 +417,7 @@ fn texture(
     }
     objects.push(object("Video", video, "Image", "Clip", more));
     links.extend([link(own, material, Some("DiffuseColor")), link(video, own, None)]);
+    if texture.is_opacity {
+        links.push(link(own, material, Some("TransparentColor")));
+    }
 }

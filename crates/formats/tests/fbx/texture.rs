@@ -5,6 +5,7 @@ use crate::examples;
 use crate::rig::{File, Material, Paint, Texture};
 use png::{ColorType, Encoder};
 use segue_formats::{ImportOptions, ImportedFile, fbx};
+use segue_motion::skin::{AlphaMode, TexturedPart, Wrap};
 use std::sync::Arc;
 
 const RED: [u8; 3] = [255, 0, 0];
@@ -42,6 +43,7 @@ fn inside() -> Texture {
         absolute_path: "C:\\work\\images\\skin.png",
         content: image(),
         more: Vec::new(),
+        is_opacity: false,
     }
 }
 
@@ -69,11 +71,48 @@ fn read(file: &File) -> ImportedFile {
     read_beside(&document::binary(&file.document()), &|_| None)
 }
 
-/// Returns the colours of the vertices, in the order in which faces have them.
+/// Returns the colours of the vertices, in the order in which faces have them: where they have a
+/// texture, its pixel there, which must be the one of [`image`], times their own.
 fn colors(found: &ImportedFile) -> Vec<[u8; 3]> {
     let mesh = found.clips[0].mesh.as_ref().expect("a mesh");
     let byte = |channel: f32| (channel * 255.0).round() as u8;
-    mesh.colors.iter().map(|&[r, g, b, _]| [r, g, b].map(byte)).collect()
+    let own =
+        |vertex: usize| mesh.colors.get(vertex).map_or([255; 3], |c| [c[0], c[1], c[2]].map(byte));
+    let mut colors: Vec<[u8; 3]> = (0..mesh.positions.len()).map(own).collect();
+    for TexturedPart { triangles, texture } in &mesh.textured {
+        assert_eq!(texture.image[..], image());
+        for &corner in mesh.triangles[triangles.clone()].as_flattened() {
+            let place = mesh.coordinates[corner as usize];
+            let [column, row] = [0, 1].map(|axis| {
+                let texel = (2.0 * place[axis]).floor() as i32;
+                match texture.sampler.wraps[axis] {
+                    Wrap::Clamp => texel.clamp(0, 1),
+                    Wrap::Repeat => texel.rem_euclid(2),
+                    Wrap::Mirror => panic!("FBX has none"),
+                }
+            });
+            let pixel = [RED, GREEN, BLUE, GRAY][(2 * row + column) as usize];
+            let factor = own(corner as usize);
+            colors[corner as usize] =
+                std::array::from_fn(|channel| product(pixel[channel], factor[channel]));
+        }
+    }
+    colors
+}
+
+/// Returns the product of two `sRGB`-encoded channels in linear light (IEC 61966-2-1).
+fn product(one: u8, other: u8) -> u8 {
+    let linear = |byte: u8| {
+        let encoded = f64::from(byte) / 255.0;
+        if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+    };
+    let product = linear(one) * linear(other);
+    let encoded = if product <= 0.003_130_8 {
+        12.92 * product
+    } else {
+        1.055 * product.powf(1.0 / 2.4) - 0.055
+    };
+    (encoded * 255.0).round() as u8
 }
 
 fn sentences(found: &ImportedFile) -> Vec<String> {
@@ -81,14 +120,20 @@ fn sentences(found: &ImportedFile) -> Vec<String> {
 }
 
 #[test]
-fn vertices_have_the_colour_of_an_embedded_texture_at_their_place() {
+fn embedded_texture_is_read_with_its_coordinates() {
     let document = textured(inside()).document();
     for bytes in [document::binary(&document), document::text(7500, &document)] {
         let found = read_beside(&bytes, &|_| None);
         let colors = colors(&found);
         assert!([RED, GREEN, BLUE, GRAY].iter().all(|color| colors.contains(color)), "{colors:?}");
-        assert_eq!(sentences(&found), ["1 texture is shown by the colour at each vertex"]);
+        assert_eq!(sentences(&found), [""; 0]);
+        let [part] = &found.clips[0].mesh.as_ref().unwrap().textured[..] else { panic!("one") };
+        assert_eq!((part.triangles.clone(), part.texture.alpha), (0..3, AlphaMode::Opaque));
     }
+    // One that is that of the opacity, too, cuts out what it shows.
+    let found = read(&textured(Texture { is_opacity: true, ..inside() }));
+    let mesh = found.clips[0].mesh.as_ref().unwrap();
+    assert_eq!(mesh.textured[0].texture.alpha, AlphaMode::Mask(0.5));
     // Corners of one vertex with two places in the image are two vertices.
     let found = read(&textured(inside()));
     assert_eq!(found.clips[0].mesh.as_ref().unwrap().positions.len(), 7);
@@ -137,12 +182,13 @@ fn each_material_has_its_own_colour_or_texture() {
     let found = read(&painted(vec![plain, half], [1, 0]));
     let mesh = found.clips[0].mesh.as_ref().unwrap();
     let of_triangle = |place: usize| mesh.triangles[place].map(|v| colors(&found)[v as usize]);
-    let quad: Vec<_> = [of_triangle(0), of_triangle(1)].concat();
-    // Half of 1 and of 0.503 in linear light.
-    for color in [[188, 0, 0], [0, 188, 0], [0, 0, 188], [137; 3]] {
+    // Triangles without a texture come first.
+    let quad: Vec<_> = [of_triangle(1), of_triangle(2)].concat();
+    // Half of 1 and of 0.503 in linear light, the factor in eight bits.
+    for color in [[188, 0, 0], [0, 188, 0], [0, 0, 188], [138; 3]] {
         assert!(quad.contains(&color), "{color:?} {quad:?}");
     }
-    assert_eq!(of_triangle(2), [[0, 188, 0]; 3]);
+    assert_eq!(of_triangle(0), [[0, 188, 0]; 3]);
 }
 
 #[test]

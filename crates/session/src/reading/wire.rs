@@ -13,8 +13,10 @@ use crate::convert::ConvertedClip;
 use segue_formats::{FileKind, ImportError};
 use segue_motion::clip::{ClipError, Provenance};
 use segue_motion::skeleton::{FoldedChain, Joint, Roles, SkeletonError};
+use segue_motion::skin::{AlphaMode, Sampler};
 use segue_text::Message;
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// The reason why pieces do not form a report.
 #[derive(Debug, thiserror::Error, segue_text::ToMessage)]
@@ -68,6 +70,9 @@ struct ClipsHead {
     clips: Vec<ClipHead>,
     #[serde(default)]
     meshes: Vec<MeshHead>,
+    /// The sizes of the images of its meshes, bytes.
+    #[serde(default)]
+    images: Vec<usize>,
     warnings: Vec<Message>,
     skeleton_file: Option<Box<SkeletonFile>>,
     awaits_skeleton: bool,
@@ -95,13 +100,27 @@ struct ClipHead {
 }
 
 /// A mesh without its arrays.
-#[derive(Clone, Copy, Serialize, Deserialize)]
+#[derive(Serialize, Deserialize)]
 struct MeshHead {
     vertices: usize,
     triangles: usize,
     joints: usize,
     /// The number of vertex colours: all vertices or none.
     colors: usize,
+    /// The number of texture coordinates: all vertices or none.
+    #[serde(default)]
+    coordinates: usize,
+    #[serde(default)]
+    textured: Vec<TexturedHead>,
+}
+
+/// A textured part of a mesh, whose image is one of those of the file.
+#[derive(Serialize, Deserialize)]
+struct TexturedHead {
+    triangles: Range<usize>,
+    image: usize,
+    sampler: Sampler,
+    alpha: AlphaMode,
 }
 
 impl FileHead {
@@ -113,12 +132,18 @@ impl FileHead {
         self.result.as_ref().map_or(&[], |read| &read.meshes)
     }
 
+    fn images(&self) -> &[usize] {
+        self.result.as_ref().map_or(&[], |read| &read.images)
+    }
+
     /// Returns the number of bytes of its arrays.
     fn bytes(&self) -> usize {
         let clips: usize = self.clips().iter().map(ClipHead::bytes).sum();
         let meshes =
             self.meshes().iter().fold(0usize, |sum, mesh| sum.saturating_add(mesh.bytes()));
-        clips.saturating_add(meshes).saturating_add(self.unpacked.unwrap_or(0))
+        let images = self.images().iter().fold(0usize, |sum, size| sum.saturating_add(*size));
+        let arrays = clips.saturating_add(meshes).saturating_add(images);
+        arrays.saturating_add(self.unpacked.unwrap_or(0))
     }
 }
 
@@ -136,7 +161,8 @@ impl MeshHead {
         let vertices = self
             .vertices
             .saturating_mul(12 + 12 + 8 + 16)
-            .saturating_add(self.colors.saturating_mul(16));
+            .saturating_add(self.colors.saturating_mul(16))
+            .saturating_add(self.coordinates.saturating_mul(8));
         vertices
             .saturating_add(self.triangles.saturating_mul(12))
             .saturating_add(self.joints.saturating_mul(28))

@@ -1,11 +1,11 @@
 //! The sending side: a report as a header and pieces.
 
-use super::{ClipHead, ClipsHead, FileHead, Head, MeshHead, WireError};
-use crate::reading::{ReadClip, ReadFile, ReadReport};
+use super::{ClipHead, ClipsHead, FileHead, Head, MeshHead, TexturedHead, WireError};
+use crate::reading::{ReadClip, ReadClips, ReadFile, ReadReport};
 use bytemuck::NoUninit;
 use segue_motion::clip::Motion;
 use segue_motion::skeleton::{Foot, FootPair, Side};
-use segue_motion::skin::{RigidTransform, SkinnedMesh};
+use segue_motion::skin::{RigidTransform, SkinnedMesh, TexturedPart};
 use std::sync::Arc;
 
 /// The length of a piece, bytes: a multiple of the size of every value below, and copied in well
@@ -48,8 +48,12 @@ impl Parcel {
             for clip in clips {
                 put_motion(&mut piece, &clip.motion);
             }
-            for mesh in meshes(clips) {
+            let meshes = meshes(clips);
+            for mesh in &meshes {
                 put_mesh(&mut piece, mesh);
+            }
+            for image in images(&meshes) {
+                piece.put(image);
             }
         }
         piece.flush();
@@ -90,6 +94,17 @@ fn meshes(clips: &[ReadClip]) -> Vec<&Arc<SkinnedMesh>> {
     meshes
 }
 
+/// Returns the images of meshes, each once.
+fn images<'a>(meshes: &[&'a Arc<SkinnedMesh>]) -> Vec<&'a Arc<[u8]>> {
+    let mut images: Vec<&Arc<[u8]>> = Vec::new();
+    for TexturedPart { texture, .. } in meshes.iter().flat_map(|mesh| &mesh.textured) {
+        if !images.iter().any(|known| Arc::ptr_eq(known, &texture.image)) {
+            images.push(&texture.image);
+        }
+    }
+    images
+}
+
 fn put_mesh(piece: &mut Piece<'_>, mesh: &SkinnedMesh) {
     piece.put(&mesh.positions);
     piece.put(&mesh.normals);
@@ -101,6 +116,7 @@ fn put_mesh(piece: &mut Piece<'_>, mesh: &SkinnedMesh) {
         let ([x, y, z, w], [dx, dy, dz]) = (rotation.to_array(), translation.to_array());
         piece.put(&[[x, y, z, w, dx, dy, dz]]);
     }
+    piece.put(&mesh.coordinates);
 }
 
 /// A buffer for the values of one piece; no value is split.
@@ -141,22 +157,24 @@ impl FileHead {
             unpacked: file.unpacked.as_ref().map(Vec::len),
             converted: file.converted.clone(),
             result: match &file.result {
-                Ok(read) => Ok(ClipsHead {
-                    clips: read
-                        .clips
-                        .iter()
-                        .map(|clip| ClipHead::of(clip, &meshes(&read.clips)))
-                        .collect(),
-                    meshes: meshes(&read.clips)
-                        .into_iter()
-                        .map(|mesh| MeshHead::of(mesh))
-                        .collect(),
-                    warnings: read.warnings.clone(),
-                    skeleton_file: read.skeleton_file.clone(),
-                    awaits_skeleton: read.awaits_skeleton,
-                }),
+                Ok(read) => Ok(ClipsHead::of(read)),
                 Err(error) => Err(error.clone()),
             },
+        }
+    }
+}
+
+impl ClipsHead {
+    fn of(read: &ReadClips) -> Self {
+        let meshes = meshes(&read.clips);
+        let images = images(&meshes);
+        Self {
+            clips: read.clips.iter().map(|clip| ClipHead::of(clip, &meshes)).collect(),
+            meshes: meshes.iter().map(|mesh| MeshHead::of(mesh, &images)).collect(),
+            images: images.iter().map(|image| image.len()).collect(),
+            warnings: read.warnings.clone(),
+            skeleton_file: read.skeleton_file.clone(),
+            awaits_skeleton: read.awaits_skeleton,
         }
     }
 }
@@ -184,12 +202,23 @@ impl ClipHead {
 }
 
 impl MeshHead {
-    fn of(mesh: &SkinnedMesh) -> Self {
+    /// Returns that of a mesh; `images` are those of the file.
+    fn of(mesh: &SkinnedMesh, images: &[&Arc<[u8]>]) -> Self {
+        let textured = mesh.textured.iter().filter_map(|TexturedPart { triangles, texture }| {
+            Some(TexturedHead {
+                triangles: triangles.clone(),
+                image: images.iter().position(|known| Arc::ptr_eq(known, &texture.image))?,
+                sampler: texture.sampler,
+                alpha: texture.alpha,
+            })
+        });
         Self {
             vertices: mesh.positions.len(),
             triangles: mesh.triangles.len(),
             joints: mesh.bind.len(),
             colors: mesh.colors.len(),
+            coordinates: mesh.coordinates.len(),
+            textured: textured.collect(),
         }
     }
 }

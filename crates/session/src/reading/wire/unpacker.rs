@@ -1,13 +1,13 @@
 //! The receiving side: pieces assembled to a report.
 
-use super::{ClipHead, FileHead, Head, MeshHead, WireError};
+use super::{ClipHead, FileHead, Head, MeshHead, TexturedHead, WireError};
 use crate::reading::{ReadClip, ReadClips, ReadFile, ReadReport};
 use bytemuck::{AnyBitPattern, pod_read_unaligned};
 use glam::{DVec2, Quat, Vec3};
 use segue_motion::clip::{Clip, Contacts, JointTranslations, Motion};
 use segue_motion::math::Planar;
 use segue_motion::skeleton::{Foot, FootPair, Skeleton};
-use segue_motion::skin::{RigidTransform, SkinnedMesh};
+use segue_motion::skin::{RigidTransform, SkinnedMesh, Texture, TexturedPart};
 use std::collections::TryReserveError;
 use std::sync::Arc;
 
@@ -22,6 +22,7 @@ impl MeshHead {
         mesh.colors.try_reserve_exact(self.colors)?;
         mesh.triangles.try_reserve_exact(self.triangles)?;
         mesh.bind.try_reserve_exact(self.joints)?;
+        mesh.coordinates.try_reserve_exact(self.coordinates)?;
         Ok(mesh)
     }
 
@@ -39,6 +40,17 @@ impl MeshHead {
                 translation: Vec3::new(dx, dy, dz),
             }
         });
+        fill(&mut mesh.coordinates, self.coordinates, bytes, |place| place);
+    }
+
+    /// Returns the textured parts of the mesh; `images` are those of the file.
+    fn textured(&self, images: &[Arc<[u8]>]) -> Vec<TexturedPart> {
+        let part = |part: &TexturedHead| {
+            let image = Arc::clone(images.get(part.image)?);
+            let texture = Texture { image, sampler: part.sampler, alpha: part.alpha };
+            Some(TexturedPart { triangles: part.triangles.clone(), texture })
+        };
+        self.textured.iter().filter_map(part).collect()
     }
 }
 
@@ -150,6 +162,7 @@ struct Incoming {
     unpacked: Vec<u8>,
     clips: Vec<Arrays>,
     meshes: Vec<SkinnedMesh>,
+    images: Vec<Vec<u8>>,
 }
 
 impl std::fmt::Debug for Unpacker {
@@ -228,7 +241,11 @@ impl Incoming {
             head.clips().iter().map(Arrays::with_room_for).collect();
         let meshes: Result<Vec<SkinnedMesh>, TryReserveError> =
             head.meshes().iter().map(MeshHead::room).collect();
-        Ok(Self { unpacked, clips: clips?, meshes: meshes? })
+        let mut images = vec![Vec::new(); head.images().len()];
+        for (image, size) in images.iter_mut().zip(head.images()) {
+            image.try_reserve_exact(*size)?;
+        }
+        Ok(Self { unpacked, clips: clips?, meshes: meshes?, images })
     }
 
     fn take(&mut self, head: &FileHead, bytes: &mut &[u8]) {
@@ -239,13 +256,22 @@ impl Incoming {
         for (head, mesh) in head.meshes().iter().zip(&mut self.meshes) {
             head.take(mesh, bytes);
         }
+        for (size, image) in head.images().iter().zip(&mut self.images) {
+            fill(image, *size, bytes, |byte| byte);
+        }
     }
 
     fn into_file(self, head: FileHead) -> Result<ReadFile, WireError> {
         let result = match head.result {
             Ok(read) => {
                 let clips = read.clips.into_iter().zip(self.clips);
-                let meshes: Vec<Arc<SkinnedMesh>> = self.meshes.into_iter().map(Arc::new).collect();
+                let images: Vec<Arc<[u8]>> = self.images.into_iter().map(Arc::from).collect();
+                let meshes = self.meshes.into_iter().zip(&read.meshes);
+                let meshes: Vec<Arc<SkinnedMesh>> = meshes
+                    .map(|(mesh, head)| {
+                        Arc::new(SkinnedMesh { textured: head.textured(&images), ..mesh })
+                    })
+                    .collect();
                 let clips: Result<Vec<ReadClip>, WireError> =
                     clips.map(|(head, arrays)| arrays.into_clip(head, &meshes)).collect();
                 Ok(ReadClips {

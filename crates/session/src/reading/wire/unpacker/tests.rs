@@ -5,7 +5,9 @@ use crate::reading::{Parcel, ReadSetup, read};
 use segue_formats::bvh;
 use segue_motion::clip::fixtures::QuadrupedWalk;
 use segue_motion::skeleton::Roles;
+use segue_motion::skin::{AlphaMode, Sampler, Wrap};
 use segue_motion::synth::{Action, Params, synthesize};
+use std::ops::Range;
 
 impl Unpacker {
     /// Returns the capacities of its arrays.
@@ -20,12 +22,19 @@ impl Unpacker {
                 + mesh.normals.capacity()
                 + mesh.joints.capacity()
                 + mesh.weights.capacity();
-            [vertices, mesh.colors.capacity(), mesh.triangles.capacity(), mesh.bind.capacity()]
+            [
+                vertices,
+                mesh.colors.capacity(),
+                mesh.triangles.capacity(),
+                mesh.bind.capacity(),
+                mesh.coordinates.capacity(),
+            ]
         };
         let of_file = |file: &Incoming| {
             let clips = file.clips.iter().flat_map(of_clip);
             clips
                 .chain(file.meshes.iter().flat_map(of_mesh))
+                .chain(file.images.iter().map(Vec::capacity))
                 .chain([file.unpacked.capacity()])
                 .collect::<Vec<_>>()
         };
@@ -79,8 +88,21 @@ fn unpacker_returns_the_report_as_sent() {
     long.files
         .push(ReadFile { unpacked: Some((0..=255).collect()), ..report(1.0).files.remove(0) });
     let skeleton = long.files[0].result.as_ref().unwrap().clips[0].motion.clip().skeleton().clone();
+    let skin = Texture {
+        // Longer than a piece.
+        image: (0..3 << 20).map(|byte| byte as u8).collect(),
+        sampler: Sampler { wraps: [Wrap::Clamp, Wrap::Mirror], is_nearest: true },
+        alpha: AlphaMode::Mask(0.25),
+    };
+    let hair = Texture { image: [7].into(), alpha: AlphaMode::Blend, ..skin.clone() };
+    let part = |(triangles, texture): (Range<usize>, &Texture)| TexturedPart {
+        triangles,
+        texture: texture.clone(),
+    };
     let mesh = Arc::new(SkinnedMesh {
         colors: vec![[0.5, 0.25, 1.0, 1.0]; 3],
+        coordinates: vec![[0.5, 2.0]; 7],
+        textured: [(0..4, &skin), (5..6, &hair), (6..9, &skin)].map(part).into(),
         ..SkinnedMesh::around(&skeleton, &Roles::detect(&skeleton), 1.0)
     });
     for file in &mut long.files {
@@ -95,7 +117,10 @@ fn unpacker_returns_the_report_as_sent() {
     let arrived = sent(&long);
     assert_eq!(arrived, long);
     let clips = &arrived.files[0].result.as_ref().unwrap().clips;
-    assert!(Arc::ptr_eq(clips[0].mesh.as_ref().unwrap(), clips[1].mesh.as_ref().unwrap()));
+    let [first, second] = [0, 1].map(|clip| clips[clip].mesh.as_ref().unwrap());
+    assert!(Arc::ptr_eq(first, second));
+    let image = |part: usize| &first.textured[part].texture.image;
+    assert!(Arc::ptr_eq(image(0), image(2)));
     let on_four = report_on_four_legs();
     assert_eq!(sent(&on_four), on_four);
     let clip = &on_four.files[0].result.as_ref().unwrap().clips[0];
