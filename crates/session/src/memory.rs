@@ -7,6 +7,8 @@ use segue_motion::clip::Clip;
 use segue_motion::math::sort::sort_by_key;
 use segue_text::{Message, msg};
 use std::cmp::Reverse;
+use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// The memory of a page, bytes. The memory of a WebAssembly instance grows and never shrinks: freed
 /// memory is used again.
@@ -104,9 +106,25 @@ pub(super) fn expected_bytes(name: &str, size: u64) -> u64 {
 
 /// Returns the memory of a library, bytes.
 pub(super) fn library_bytes(library: &Library) -> u64 {
-    library.entries().iter().map(|entry| entry_bytes(entry)).sum()
+    let mut meshes = MeshesOnce::default();
+    let bytes = |entry: &Arc<Entry>| entry_bytes(entry) + meshes.bytes(entry);
+    library.entries().iter().map(bytes).sum()
 }
 
+/// The meshes that were counted: the clips of a file share one.
+#[derive(Default)]
+pub(crate) struct MeshesOnce(BTreeSet<usize>);
+
+impl MeshesOnce {
+    /// Returns the memory of a clip's mesh, bytes; 0 for one that was counted with another clip.
+    pub(crate) fn bytes(&mut self, entry: &Entry) -> u64 {
+        let mesh = entry.mesh.as_ref();
+        let new = mesh.filter(|mesh| self.0.insert(Arc::as_ptr(mesh).addr()));
+        new.map_or(0, |mesh| mesh.bytes())
+    }
+}
+
+/// Returns the memory of a clip without its mesh, bytes.
 fn entry_bytes(entry: &Entry) -> u64 {
     let motion = entry.motion.as_ref().map_or(0, |motion| clip_bytes(motion.clip()));
     let file = match &entry.origin {
@@ -141,7 +159,7 @@ pub(super) fn refusal(
     let mut large: Vec<(&str, u64)> = library
         .entries()
         .iter()
-        .map(|entry| (entry.name.as_str(), entry_bytes(entry)))
+        .map(|entry| (entry.name.as_str(), entry_bytes(entry) + MeshesOnce::default().bytes(entry)))
         .filter(|(_, bytes)| *bytes >= MIN_REMOVABLE_BYTES)
         .collect();
     sort_by_key(&mut large, |(_, bytes)| Reverse(*bytes));
@@ -172,7 +190,9 @@ pub(super) fn refusal(
 mod tests {
     use super::*;
     use crate::library::SourceFile;
+    use glam::Vec3;
     use segue_formats::{FileKind, ImportOptions};
+    use segue_motion::skin::SkinnedMesh;
 
     const GB: u64 = 1 << 30;
 
@@ -240,6 +260,16 @@ mod tests {
         let expected = ["a.bvh", "A.AMC", "b.GLB", "c.zip", "c.bvh.gz", "none"]
             .map(|name| expected_bytes(name, 4000));
         assert_eq!(expected, [3000, 3000, 4000, 28_000, 28_000, 3000]);
+    }
+
+    #[test]
+    fn mesh_that_clips_share_is_counted_once() {
+        let mesh = Arc::new(SkinnedMesh { positions: vec![Vec3::ZERO; 10], ..Default::default() });
+        let with_mesh =
+            |entry: &Arc<Entry>| Entry { mesh: Some(Arc::clone(&mesh)), ..Entry::clone(entry) };
+        let files = library_of([("a", 1000), ("b", 2000)]);
+        let library: Library = files.entries().iter().map(with_mesh).collect();
+        assert_eq!(library_bytes(&library), 3000 + mesh.bytes());
     }
 
     #[test]

@@ -5,6 +5,7 @@ use super::intake::FileIntake;
 use crate::command::CommandError;
 use crate::document::Document;
 use crate::library::{Entry, Origin};
+use crate::memory::MeshesOnce;
 use segue_motion::math::sort::sort_by_key;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -54,11 +55,16 @@ impl FileIntake {
                 idle.push((used, facts.motion_bytes(), entry));
             }
         }
+        sort_by_key(&mut idle, |(used, ..)| *used);
+        // The last clip with a mesh is the one whose end frees it.
+        let mut meshes = MeshesOnce::default();
+        for (_, bytes, entry) in idle.iter_mut().rev() {
+            *bytes += meshes.bytes(entry);
+        }
         let mut held: u64 = idle.iter().map(|(_, bytes, _)| bytes).sum();
         if held <= max_bytes {
             return false;
         }
-        sort_by_key(&mut idle, |(used, ..)| *used);
         let left = (max_bytes as f64 * LEFT_OVER) as u64;
         let mut newer = BTreeMap::new();
         for (_, bytes, entry) in idle {
