@@ -23,10 +23,11 @@ mod skins;
 mod targets;
 #[cfg(test)]
 mod tests;
+mod textures;
 mod view;
 mod view_uniform;
 
-pub(crate) use callback::{install, paint_callback, stage_pixels};
+pub(crate) use callback::{install, is_stage_complete, paint_callback, stage_pixels};
 #[cfg(test)]
 use image::{Image, render_to_image};
 #[cfg(test)]

@@ -5,7 +5,7 @@ use super::layout::ViewUniform;
 use super::light::LightMap;
 use super::mesh::ConeBuffers;
 use super::pipelines::{PipelineKind, Pipelines};
-use super::skins::SkinStore;
+use super::skins::{SkinBuffers, SkinStore, Triangles};
 use super::view::{PictureState, View};
 use eframe::wgpu;
 use std::cell::Cell;
@@ -27,7 +27,7 @@ pub(super) struct StageEncoder<'a> {
 }
 
 impl StageEncoder<'_> {
-    /// Draws the light map. Returns `false` where something is left out because its pipeline is not
+    /// Draws the light map, in which parts that are cut out are whole. Returns `false` where something is left out because its pipeline is not
     /// made yet.
     fn encode_light(&self, light: &LightMap, encoder: &mut wgpu::CommandEncoder) -> bool {
         let view = self.view;
@@ -88,6 +88,7 @@ impl StageEncoder<'_> {
                 complete &= pipeline.is_some();
                 if let Some(pipeline) = pipeline {
                     pass.set_pipeline(pipeline);
+                    self.set_white(&mut pass);
                     skins.for_each(|skin| self.draw_skin(&mut pass, skin));
                 }
             }
@@ -95,8 +96,8 @@ impl StageEncoder<'_> {
         complete
     }
 
-    /// Draws all panes. Returns `false` where something is left out because its pipeline is not
-    /// made yet.
+    /// Draws all panes. Returns `false` where something is missing because its pipeline is not made
+    /// yet, or its texture not decoded.
     pub(super) fn encode(&self, encoder: &mut wgpu::CommandEncoder) -> bool {
         let view = self.view;
         let is_lit = view.drawn.panes.iter().any(|pane| pane.lit.is_some());
@@ -154,8 +155,8 @@ impl StageEncoder<'_> {
         complete
     }
 
-    /// Draws one pane. Returns `false` where something is left out because its pipeline is not made
-    /// yet.
+    /// Draws one pane. Returns `false` where something is missing because its pipeline is not made
+    /// yet, or its texture not decoded.
     fn encode_pane(&self, pass: &mut wgpu::RenderPass<'_>, pane: &PaneDraw) -> bool {
         let view = self.view;
         let (Some(limbs), Some(strokes), Some(rings)) =
@@ -238,15 +239,25 @@ impl StageEncoder<'_> {
             }
         }
         let solid_skins = view.drawn.solid_skins.get(pane.solid_skins.clone()).unwrap_or_default();
-        for (kind, wanted) in [(PipelineKind::Skin, true), (PipelineKind::SkinEdge, has_edges)] {
-            if wanted && !solid_skins.is_empty() && set(pass, kind) {
+        for (kind, cuts_out, wanted) in [
+            (PipelineKind::Skin, false, true),
+            (PipelineKind::SkinCutOut, true, true),
+            (PipelineKind::SkinEdge, false, has_edges),
+            (PipelineKind::SkinEdgeCutOut, true, has_edges),
+        ] {
+            let has_any = || {
+                let mut meshes = solid_skins.iter().filter_map(|skin| self.mesh(skin));
+                meshes.any(|mesh| mesh.surfaces.iter().any(|surface| surface.cuts_out == cuts_out))
+            };
+            if wanted && has_any() && set(pass, kind) {
                 for skin in solid_skins {
-                    self.draw_skin(pass, skin);
+                    complete.set(complete.get() & self.draw_surfaces(pass, skin, cuts_out));
                 }
             }
         }
         quads(pass, PipelineKind::SpaceLine, strokes, &pane.strokes[1]);
         // The depths of a ghost's front are drawn before its colours. Far ghosts come first.
+        self.set_white(pass);
         for (number, figure) in figures().filter(|figure| figure.ghost).enumerate() {
             pass.set_stencil_reference(number as u32 % 255 + 1);
             if let Some(skin) = &figure.skin {
@@ -274,19 +285,75 @@ impl StageEncoder<'_> {
         complete.get()
     }
 
-    /// Draws figures in a skin with the current pipeline.
-    fn draw_skin(&self, pass: &mut wgpu::RenderPass<'_>, skin: &SkinDraw) {
-        let view = self.view;
-        let mesh = view.drawn.meshes.get(skin.mesh).and_then(|mesh| self.skins.get(&mesh.0));
-        if let (Some(mesh), Some(instances)) = (mesh, &view.skins.buffer) {
-            pass.set_bind_group(2, view.joints.bound.as_ref(), &[]);
-            pass.set_vertex_buffer(0, mesh.vertices.slice(..));
-            pass.set_vertex_buffer(1, instances.slice(..));
-            let coarse = mesh.coarse.as_ref().filter(|_| view.shown == PictureState::Coarse);
-            let triangles = coarse.unwrap_or(&mesh.fine);
-            pass.set_index_buffer(triangles.indices.slice(..), wgpu::IndexFormat::Uint32);
-            pass.draw_indexed(0..triangles.index_count, 0, skin.instances.clone());
+    /// Returns the mesh of figures in a skin.
+    fn mesh(&self, skin: &SkinDraw) -> Option<&SkinBuffers> {
+        let mesh = self.view.drawn.meshes.get(skin.mesh)?;
+        self.skins.get(&mesh.0)
+    }
+
+    /// Sets the texture of everything without one.
+    fn set_white(&self, pass: &mut wgpu::RenderPass<'_>) {
+        if let Some(white) = self.skins.textures.white() {
+            pass.set_bind_group(3, white, &[]);
         }
+    }
+
+    /// Prepares the drawing of a mesh, and returns its triangles.
+    fn set_mesh<'a>(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        mesh: &'a SkinBuffers,
+    ) -> Option<&'a Triangles> {
+        let view = self.view;
+        let instances = view.skins.buffer.as_ref()?;
+        pass.set_bind_group(2, view.joints.bound.as_ref(), &[]);
+        pass.set_vertex_buffer(0, mesh.vertices.slice(..));
+        pass.set_vertex_buffer(1, instances.slice(..));
+        let coarse = mesh.coarse.as_ref().filter(|_| view.shown == PictureState::Coarse);
+        let triangles = coarse.unwrap_or(&mesh.fine);
+        pass.set_index_buffer(triangles.indices.slice(..), wgpu::IndexFormat::Uint32);
+        Some(triangles)
+    }
+
+    /// Draws figures in a skin with the current pipeline, and with the current texture all over.
+    fn draw_skin(&self, pass: &mut wgpu::RenderPass<'_>, skin: &SkinDraw) {
+        let triangles = self.mesh(skin).and_then(|mesh| self.set_mesh(pass, mesh));
+        if let Some(triangles) = triangles {
+            pass.draw_indexed(triangles.all(), 0, skin.instances.clone());
+        }
+    }
+
+    /// Draws the parts of figures in a skin that are cut out, or those that are not, with their
+    /// textures and the current pipeline. Returns `false` where a texture is not decoded yet.
+    fn draw_surfaces(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        skin: &SkinDraw,
+        cuts_out: bool,
+    ) -> bool {
+        let mut complete = true;
+        let Some(mesh) = self.mesh(skin) else { return complete };
+        let Some(triangles) = self.set_mesh(pass, mesh) else { return complete };
+        for (surface, part) in mesh.surfaces.iter().zip(&triangles.parts) {
+            if surface.cuts_out != cuts_out || part.is_empty() {
+                continue;
+            }
+            match &surface.texture {
+                None => self.set_white(pass),
+                Some(texture) => match texture.get() {
+                    Some(bound) => pass.set_bind_group(3, bound, &[]),
+                    None => {
+                        complete = false;
+                        if cuts_out {
+                            continue;
+                        }
+                        self.set_white(pass);
+                    }
+                },
+            }
+            pass.draw_indexed(part.clone(), 0, skin.instances.clone());
+        }
+        complete
     }
 
     /// Draws the limbs of a figure with the current pipeline.

@@ -192,7 +192,7 @@ impl Frame {
                 (*rotation, *shift) = ([0.0, 0.0, 0.0, 1.0], [0.0; 4]);
             }
         }
-        let color_from = match (skin.colored, ghost || skin.mesh.colors.is_empty()) {
+        let color_from = match (skin.colored, ghost || !skin.mesh.has_own_colors()) {
             (true, _) => 1,
             (false, true) => 0,
             (false, false) => 2,

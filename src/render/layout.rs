@@ -108,4 +108,6 @@ pub(super) struct SkinVertex {
     pub(super) joints: [u16; 4],
     pub(super) weights: [u16; 4],
     pub(super) tint: [u8; 4],
+    /// The place in the image of its texture, and the opacity below which a point is left out.
+    pub(super) texture: [f32; 3],
 }

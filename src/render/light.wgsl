@@ -93,12 +93,11 @@ struct Shade {
     rim: f32,
 }
 
-// Shades clay. `sky_seen` and `key_seen` are the shares of the sky and of the main light that reach
-// the point.
-fn shade(albedo: vec3f, world: vec3f, normal: vec3f, sky_seen: f32, key_seen: f32) -> Shade {
+// Shades clay of a linear colour. `sky_seen` and `key_seen` are the shares of the sky and of the
+// main light that reach the point.
+fn shade(base: vec3f, world: vec3f, normal: vec3f, sky_seen: f32, key_seen: f32) -> Shade {
     let to_eye = towards_eye(world);
     let facing = clamp(dot(normal, to_eye), 0.0, 1.0);
-    let base = to_linear(albedo);
     var out: Shade;
     let rim = 1.0 - facing;
     out.rim = rim * rim;
@@ -150,8 +149,9 @@ fn edge_color(world: vec3f) -> vec4f {
 
 // Returns the colour of a ghost, which is denser at the rim, like a shell of tinted glass.
 fn ghost_color(color: vec4f, world: vec3f, normal: vec3f) -> vec4f {
-    let lit = shade(color.rgb, world, normal, 1.0, 1.0);
-    let tinted = mix(to_linear(color.rgb), lit.linear * 1.15, 0.45);
+    let base = to_linear(color.rgb);
+    let lit = shade(base, world, normal, 1.0, 1.0);
+    let tinted = mix(base, lit.linear * 1.15, 0.45);
     let density = clamp(color.a * (0.80 + 0.75 * lit.rim * lit.rim), 0.0, 1.0);
     let over_ground = mix(0.45, 1.0, smoothstep(-0.02, 0.0, world.y));
     return vec4f(to_srgb(tinted), density * over_ground);

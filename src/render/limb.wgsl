@@ -186,7 +186,7 @@ fn look_around(in: Surface) -> Around {
 fn fs_solid(in: Surface) -> @location(0) vec4f {
     let around = look_around(in);
     let key = key_on_body(in.world, around.normal, in.clip.xy);
-    return solid_color(shade(in.color.rgb, in.world, around.normal, around.sky, key), in.world, in.clip.xy);
+    return solid_color(shade(to_linear(in.color.rgb), in.world, around.normal, around.sky, key), in.world, in.clip.xy);
 }
 
 @fragment

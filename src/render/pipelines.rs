@@ -8,7 +8,7 @@ mod stage;
 use super::layout::{FigureUniform, ViewUniform};
 use composite::composite_pipeline;
 use eframe::wgpu;
-use layouts::{light_layout, texture_entry, uniform_layout};
+use layouts::{body_texture_layout, light_layout, texture_entry, uniform_layout};
 use shaders::{GROUND, KEY_SHADOW, LIMB, LINE, RING, SHADOW, SKIN, Shader};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -36,6 +36,9 @@ pub(super) enum PipelineKind {
     /// Solid bodies in skins.
     Skin,
     SkinEdge,
+    /// Parts of solid bodies of which a texture cuts out something.
+    SkinCutOut,
+    SkinEdgeCutOut,
     SkinFront,
     SkinGhost,
     /// Bodies in skins in the light map.
@@ -44,11 +47,12 @@ pub(super) enum PipelineKind {
 
 impl PipelineKind {
     /// All pipelines, in order of importance.
-    const ALL: [Self; 17] = [
+    const ALL: [Self; 19] = [
         Self::Ground,
         Self::Skin,
         Self::Front,
         Self::Solid,
+        Self::SkinCutOut,
         Self::Shadow,
         Self::Shade,
         Self::SkinCast,
@@ -59,6 +63,7 @@ impl PipelineKind {
         Self::SkinGhost,
         Self::Ghost,
         Self::SkinEdge,
+        Self::SkinEdgeCutOut,
         Self::Edge,
         Self::SpaceLine,
         Self::Ring,
@@ -79,6 +84,7 @@ pub(super) struct Pipelines {
     pub(super) figure_layout: wgpu::BindGroupLayout,
     pub(super) joints_layout: wgpu::BindGroupLayout,
     pub(super) light_layout: wgpu::BindGroupLayout,
+    pub(super) texture_layout: wgpu::BindGroupLayout,
     pub(super) light_compare: wgpu::Sampler,
     pub(super) light_exactly: wgpu::Sampler,
     pub(super) composite_layout: wgpu::BindGroupLayout,
@@ -121,6 +127,7 @@ impl Pipelines {
             })
         };
         let light_layout = light_layout(device);
+        let texture_layout = body_texture_layout(device);
         let joints_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("joints"),
             entries: &[texture_entry(
@@ -139,7 +146,12 @@ impl Pipelines {
             ),
             skinned: layout(
                 "stage skins",
-                &[Some(&view_layout), Some(&light_layout), Some(&joints_layout)],
+                &[
+                    Some(&view_layout),
+                    Some(&light_layout),
+                    Some(&joints_layout),
+                    Some(&texture_layout),
+                ],
             ),
             limb: Shader::new("limb", LIMB),
             skin: Shader::new("skin", SKIN),
@@ -154,6 +166,7 @@ impl Pipelines {
             figure_layout,
             joints_layout,
             light_layout,
+            texture_layout,
             light_compare: device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some("light map"),
                 mag_filter: wgpu::FilterMode::Linear,

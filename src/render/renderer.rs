@@ -247,7 +247,7 @@ impl StageRenderer {
             figures_bound,
             ..
         } = view;
-        self.skins.load(device, queue, &drawn.meshes, self.quality);
+        self.skins.load(device, queue, &self.pipelines, &drawn.meshes, self.quality);
         if !drawn.skins.is_empty() {
             joints.write(device, queue, &self.pipelines, &drawn.joints);
         }
@@ -277,8 +277,8 @@ impl StageRenderer {
         }
     }
 
-    /// Draws a stage whose buffers are filled. Returns `false` where something is left out because
-    /// its pipeline is not made yet.
+    /// Draws a stage whose buffers are filled. Returns `false` where something is missing because
+    /// its pipeline is not made yet, or its texture not decoded.
     fn encode(&self, encoder: &mut wgpu::CommandEncoder, view: &View) -> bool {
         let stage = StageEncoder {
             pipelines: &self.pipelines,

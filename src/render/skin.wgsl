@@ -3,6 +3,9 @@
 // Two texels for each joint, 512 joints in a row: the rotation (quaternion, w last); the
 // translation in metres, and the joint's colour as red + 256 green + 65,536 blue, each 0 to 255.
 @group(2) @binding(0) var joints: texture_2d<f32>;
+// The base colour texture of a part of the mesh; white where it has none.
+@group(3) @binding(0) var skin_image: texture_2d<f32>;
+@group(3) @binding(1) var skin_sampler: sampler;
 
 struct Vertex {
     // Position in the bind pose, metres.
@@ -16,6 +19,8 @@ struct Vertex {
     // mesh.
     @location(5) figure: vec2u,
     @location(6) color: vec4f,
+    // The place in the texture, and the opacity below which a point is left out.
+    @location(7) texture: vec3f,
 }
 
 struct Surface {
@@ -23,6 +28,9 @@ struct Surface {
     @location(0) world: vec3f,
     @location(1) normal: vec3f,
     @location(2) color: vec4f,
+    // As that of the vertex; and its own opacity, or -1 where the mesh's own colours do not show. At
+    // edges it is that of a point on the triangle: beyond a seam lies another part of the image.
+    @location(3) @interpolate(perspective, centroid) texture: vec4f,
 }
 
 struct Moved {
@@ -102,6 +110,10 @@ fn skinned(vertex: Vertex) -> Moved {
     return out;
 }
 
+fn on_texture(vertex: Vertex) -> vec4f {
+    return vec4f(vertex.texture, select(-1.0, vertex.tint.a, vertex.figure.y == 2u));
+}
+
 @vertex
 fn vs_skin(vertex: Vertex) -> Surface {
     let moved = skinned(vertex);
@@ -110,6 +122,7 @@ fn vs_skin(vertex: Vertex) -> Surface {
     out.normal = moved.normal;
     out.clip = view.clip_from_world * vec4f(moved.world, 1.0);
     out.color = vec4f(moved.color, vertex.color.a);
+    out.texture = on_texture(vertex);
     return out;
 }
 
@@ -125,6 +138,7 @@ fn vs_skin_edge(vertex: Vertex) -> Surface {
     let deeper = view.clip_from_world * vec4f(out.world - towards_eye(out.world) * 0.03, 1.0);
     out.clip.z = deeper.z / deeper.w * out.clip.w;
     out.color = vec4f(moved.color, vertex.color.a);
+    out.texture = on_texture(vertex);
     return out;
 }
 
@@ -141,15 +155,48 @@ fn sky_on_skin(world: vec3f, normal: vec3f) -> f32 {
     return 1.0 - 0.35 * low;
 }
 
-@fragment
-fn fs_skin(in: Surface) -> @location(0) vec4f {
+// Returns the linear colour of the texture at a point, and the opacity of the point; white where the
+// mesh's own colours do not show. `dx` and `dy` are the derivatives of the place: inside of the
+// branch, which neighbouring pixels may not take, there are none.
+fn texel_at(place: vec4f, dx: vec2f, dy: vec2f) -> vec4f {
+    if place.w < 0.0 {
+        return vec4f(1.0);
+    }
+    return textureSampleGrad(skin_image, skin_sampler, place.xy, dx, dy) * vec4f(1.0, 1.0, 1.0, place.w);
+}
+
+fn solid_skin(in: Surface, texel: vec3f) -> vec4f {
     let normal = normalize(in.normal);
     let key = key_on_body(in.world, normal, in.clip.xy);
-    return solid_color(shade(in.color.rgb, in.world, normal, sky_on_skin(in.world, normal), key), in.world, in.clip.xy);
+    let base = to_linear(in.color.rgb) * texel;
+    return solid_color(shade(base, in.world, normal, sky_on_skin(in.world, normal), key), in.world, in.clip.xy);
+}
+
+@fragment
+fn fs_skin(in: Surface) -> @location(0) vec4f {
+    return solid_skin(in, texel_at(in.texture, dpdx(in.texture.xy), dpdy(in.texture.xy)).rgb);
+}
+
+@fragment
+fn fs_skin_cut_out(in: Surface) -> @location(0) vec4f {
+    let texel = texel_at(in.texture, dpdx(in.texture.xy), dpdy(in.texture.xy));
+    if texel.a < in.texture.z {
+        discard;
+    }
+    return solid_skin(in, texel.rgb);
 }
 
 @fragment
 fn fs_skin_edge(in: Surface) -> @location(0) vec4f {
+    return edge_color(in.world);
+}
+
+@fragment
+fn fs_skin_edge_cut_out(in: Surface) -> @location(0) vec4f {
+    let texel = texel_at(in.texture, dpdx(in.texture.xy), dpdy(in.texture.xy));
+    if texel.a < in.texture.z {
+        discard;
+    }
     return edge_color(in.world);
 }
 

@@ -2,13 +2,16 @@
 //! texture.
 
 use super::buffers::filled_buffer;
-use super::coarse_mesh::coarse_triangles;
+use super::coarse_mesh::Clusters;
 use super::frame::SharedMesh;
 use super::layout::{JointTexels, SkinVertex};
 use super::pipelines::Pipelines;
 use super::quality::Quality;
+use super::textures::{BoundTexture, TextureStore};
 use eframe::wgpu;
-use segue_motion::skin::SkinnedMesh;
+use segue_motion::skin::{AlphaMode, SkinnedMesh, Texture};
+use std::collections::BTreeSet;
+use std::ops::Range;
 use std::sync::{Arc, Weak};
 
 /// The number of joints in a row of their texture, as in skin.wgsl.
@@ -21,16 +24,43 @@ pub(super) struct SkinBuffers {
     pub(super) fine: Triangles,
     /// Fewer triangles, for pictures in motion without a graphics card; `None` with one.
     pub(super) coarse: Option<Triangles>,
+    /// The textures of the parts of these triangles, and whether something is cut out of them.
+    pub(super) surfaces: Vec<Surface>,
 }
 
 /// Triangles between the vertices of a mesh.
 pub(super) struct Triangles {
     pub(super) indices: wgpu::Buffer,
-    pub(super) index_count: u32,
+    /// The indices of each part of the mesh.
+    pub(super) parts: Vec<Range<u32>>,
+}
+
+impl Triangles {
+    /// Returns the indices of the whole mesh.
+    pub(super) fn all(&self) -> Range<u32> {
+        0..self.parts.last().map_or(0, |part| part.end)
+    }
+}
+
+/// What covers a part of a mesh.
+pub(super) struct Surface {
+    /// Its texture, if it has one.
+    pub(super) texture: Option<BoundTexture>,
+    /// Whether the texture cuts out something.
+    pub(super) cuts_out: bool,
 }
 
 fn vertices(mesh: &SkinnedMesh) -> Vec<SkinVertex> {
     let last_joint = mesh.bind.len().saturating_sub(1) as u16;
+    let mut cutoffs = vec![0.0; mesh.positions.len()];
+    for (triangles, texture) in mesh.parts() {
+        let cutoff = texture.map_or(0.0, |texture| texture.alpha.cutoff());
+        for corner in mesh.triangles[triangles].as_flattened() {
+            if let Some(of_vertex) = cutoffs.get_mut(*corner as usize) {
+                *of_vertex = cutoff;
+            }
+        }
+    }
     let vertex = |index: usize| {
         let normal = mesh.normals.get(index).copied().unwrap_or_default();
         let joints = mesh.joints.get(index).copied().unwrap_or_default();
@@ -51,6 +81,10 @@ fn vertices(mesh: &SkinnedMesh) -> Vec<SkinVertex> {
             joints: joints.map(|joint| joint.min(last_joint)),
             weights: weights.map(|weight| (weight.clamp(0.0, 1.0) * 65_535.0 + 0.5) as u16),
             tint: tint.map(|part| (part.clamp(0.0, 1.0) * 255.0 + 0.5) as u8),
+            texture: {
+                let [u, v] = mesh.coordinates.get(index).copied().unwrap_or_default();
+                [u, v, cutoffs[index]]
+            },
         }
     };
     (0..mesh.positions.len()).map(vertex).collect()
@@ -62,30 +96,50 @@ impl SkinBuffers {
         queue: &wgpu::Queue,
         mesh: &Arc<SkinnedMesh>,
         quality: Quality,
+        mut texture_of: impl FnMut(&Texture) -> BoundTexture,
     ) -> Self {
         let buffer = |contents: &[u8], usage| filled_buffer(device, queue, "skin", contents, usage);
         let vertices = vertices(mesh);
-        let uploaded = |triangles: &[[u32; 3]]| Triangles {
-            indices: buffer(bytemuck::cast_slice(triangles), wgpu::BufferUsages::INDEX),
-            index_count: 3 * triangles.len() as u32,
+        let parts = mesh.parts();
+        let uploaded = |select: &dyn Fn(&[[u32; 3]]) -> Vec<[u32; 3]>| {
+            let mut triangles: Vec<[u32; 3]> = Vec::new();
+            let ranges = parts.iter().map(|(range, _)| {
+                let start = triangles.len() as u32;
+                triangles.extend(select(&mesh.triangles[range.clone()]));
+                3 * start..3 * triangles.len() as u32
+            });
+            let parts = ranges.collect();
+            let indices = buffer(bytemuck::cast_slice(&triangles), wgpu::BufferUsages::INDEX);
+            Triangles { indices, parts }
         };
         // A triangle with an invalid corner is left out.
         let inside = |triangle: &&[u32; 3]| {
             triangle.iter().all(|&corner| (corner as usize) < vertices.len())
         };
-        let triangles: Vec<[u32; 3]> = mesh.triangles.iter().filter(inside).copied().collect();
+        let fine = |triangles: &[[u32; 3]]| triangles.iter().filter(inside).copied().collect();
+        let surface = |texture: Option<&Texture>| Surface {
+            cuts_out: texture.is_some_and(|texture| texture.alpha != AlphaMode::Opaque),
+            texture: texture.map(&mut texture_of),
+        };
         Self {
             mesh: Arc::downgrade(mesh),
             vertices: buffer(bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX),
-            fine: uploaded(&triangles),
-            coarse: (quality == Quality::Plain).then(|| uploaded(&coarse_triangles(mesh))),
+            fine: uploaded(&fine),
+            coarse: (quality == Quality::Plain).then(|| {
+                let clusters = Clusters::of(mesh);
+                uploaded(&|triangles| clusters.coarse(triangles))
+            }),
+            surfaces: parts.iter().map(|(_, texture)| *texture).map(surface).collect(),
         }
     }
 }
 
 /// The meshes of all stages on the device, while their originals exist.
 #[derive(Default)]
-pub(super) struct SkinStore(Vec<SkinBuffers>);
+pub(super) struct SkinStore {
+    meshes: Vec<SkinBuffers>,
+    pub(super) textures: TextureStore,
+}
 
 impl SkinStore {
     /// Uploads new meshes to the device, and drops those whose originals no longer exist.
@@ -93,20 +147,27 @@ impl SkinStore {
         &mut self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
+        pipelines: &Pipelines,
         meshes: &[SharedMesh],
         quality: Quality,
     ) {
-        self.0.retain(|buffers| buffers.mesh.strong_count() > 0);
+        self.meshes.retain(|buffers| buffers.mesh.strong_count() > 0);
+        self.textures.prepare(device, queue, pipelines);
         for SharedMesh(mesh) in meshes {
             if self.get(mesh).is_none() {
-                self.0.push(SkinBuffers::new(device, queue, mesh, quality));
+                let images =
+                    mesh.textured.iter().map(|part| Arc::as_ptr(&part.texture.image).addr());
+                let count = images.collect::<BTreeSet<_>>().len();
+                let texture =
+                    |own: &Texture| self.textures.load(device, queue, pipelines, own, count);
+                self.meshes.push(SkinBuffers::new(device, queue, mesh, quality, texture));
             }
         }
     }
 
     /// Returns the buffers of a loaded mesh.
     pub(super) fn get(&self, mesh: &Arc<SkinnedMesh>) -> Option<&SkinBuffers> {
-        self.0.iter().find(|buffers| buffers.mesh.as_ptr() == Arc::as_ptr(mesh))
+        self.meshes.iter().find(|buffers| buffers.mesh.as_ptr() == Arc::as_ptr(mesh))
     }
 }
 

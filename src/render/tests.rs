@@ -7,6 +7,7 @@ mod pictures;
 mod sessions;
 mod shaders;
 mod skins;
+mod textures;
 
 use super::{Image, Quality, StageRenderer, render_to_image};
 use eframe::wgpu;

@@ -37,6 +37,18 @@ pub(super) fn light_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     })
 }
 
+/// Returns the layout of a texture of a body.
+pub(super) fn body_texture_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let stage = wgpu::ShaderStages::FRAGMENT;
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("texture"),
+        entries: &[
+            texture_entry(0, stage, wgpu::TextureSampleType::Float { filterable: true }),
+            sampler_entry(1, wgpu::SamplerBindingType::Filtering),
+        ],
+    })
+}
+
 /// Returns the entry of a texture.
 pub(super) fn texture_entry(
     binding: u32,

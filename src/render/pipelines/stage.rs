@@ -94,7 +94,7 @@ impl Pipelines {
         let shadow_attributes = [place_a, place_b, flat, strength];
         let shadow_buffers =
             [Some(wgpu::VertexBufferLayout { attributes: &shadow_attributes, ..limb_buffer })];
-        let skin_attributes = wgpu::vertex_attr_array![0 => Float32x3, 1 => Snorm16x4, 2 => Uint16x4, 3 => Unorm16x4, 4 => Unorm8x4];
+        let skin_attributes = wgpu::vertex_attr_array![0 => Float32x3, 1 => Snorm16x4, 2 => Uint16x4, 3 => Unorm16x4, 4 => Unorm8x4, 7 => Float32x3];
         let skin_figure_attributes = wgpu::vertex_attr_array![5 => Uint32x2, 6 => Unorm8x4];
         let skin_buffers = [
             Some(wgpu::VertexBufferLayout {
@@ -208,6 +208,20 @@ impl Pipelines {
             PipelineKind::SkinEdge => skin_settings(
                 "skin edge",
                 ["vs_skin_edge", "fs_skin_edge"],
+                (Less, true),
+                Some(OVER),
+                Front,
+            ),
+            PipelineKind::SkinCutOut => skin_settings(
+                "cut-out skin",
+                ["vs_skin", "fs_skin_cut_out"],
+                (Less, true),
+                None,
+                Back,
+            ),
+            PipelineKind::SkinEdgeCutOut => skin_settings(
+                "cut-out skin edge",
+                ["vs_skin_edge", "fs_skin_edge_cut_out"],
                 (Less, true),
                 Some(OVER),
                 Front,

@@ -1,7 +1,7 @@
 //! Tests of bodies in skins.
 
 use super::{colors, gpu, options, staged};
-use crate::render::coarse_mesh::coarse_triangles;
+use crate::render::coarse_mesh::Clusters;
 use crate::render::image::read_texture;
 use crate::render::{Quality, Refinement, frame::Frame, render_to_image};
 use glam::{Quat, Vec3};
@@ -40,7 +40,15 @@ fn rod() -> SkinnedMesh {
     mesh
 }
 
-fn stage_of(mesh: &Arc<SkinnedMesh>, joints: &[RigidTransform], skinning: Skinning) -> Stage {
+fn coarse_triangles(mesh: &SkinnedMesh) -> Vec<[u32; 3]> {
+    Clusters::of(mesh).coarse(&mesh.triangles)
+}
+
+pub(super) fn stage_of(
+    mesh: &Arc<SkinnedMesh>,
+    joints: &[RigidTransform],
+    skinning: Skinning,
+) -> Stage {
     let viewport = Viewport { width: SIZE, height: SIZE, ..Viewport::default() };
     let camera = Camera {
         target: Vec3::Y,
@@ -70,7 +78,7 @@ fn stage_of(mesh: &Arc<SkinnedMesh>, joints: &[RigidTransform], skinning: Skinni
     }
 }
 
-const SIZE: u32 = 240;
+pub(super) const SIZE: u32 = 240;
 
 #[test]
 fn gpu_skinning_agrees_with_the_cpu() {
@@ -327,7 +335,7 @@ fn body_in_motion_has_fewer_triangles_in_software_and_the_same_outline() {
 #[test]
 fn coarse_triangles_are_few_and_keep_the_shape() {
     let mesh = walker();
-    let coarse = coarse_triangles(&mesh);
+    let coarse = Clusters::of(&mesh).coarse(&mesh.triangles);
     let (many, few) = (mesh.triangles.len(), coarse.len());
     assert!(few < many / 2 && few > many / 6, "{few} of {many}");
     let (fine, coarse) = (volume(&mesh, &mesh.triangles), volume(&mesh, &coarse));
@@ -362,5 +370,5 @@ fn coarse_triangles_of_a_broken_mesh_leave_out_what_is_broken() {
         ..SkinnedMesh::default()
     };
     // The corners that are not finite are at the origin, like the first.
-    assert_eq!(coarse_triangles(&mesh), [[0, 1, 2], [1, 2, 0]]);
+    assert_eq!(Clusters::of(&mesh).coarse(&mesh.triangles), [[0, 1, 2], [1, 2, 0]]);
 }
