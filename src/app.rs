@@ -18,6 +18,8 @@ mod picture;
 mod view;
 mod window;
 
+#[cfg(target_arch = "wasm32")]
+pub(crate) use crate::render::is_stage_complete;
 pub(crate) use address_bar::{link_query, link_query_for_others};
 pub(crate) use events::Event;
 pub(crate) use view::View;

@@ -4,7 +4,7 @@
 mod graphics;
 
 use crate::app::api::{self, ApiError, ExportWords};
-use crate::app::{Event, Segue, Shared};
+use crate::app::{Event, Segue, Shared, is_stage_complete};
 use crate::outline::{Deed, Outline};
 use crate::platform::{
     Area, FileBytes, Inbox, LargeFile, area_of, confirm_leaving_while, inline_picture,
@@ -387,8 +387,14 @@ impl SegueHandle {
     /// Returns the stage as a PNG.
     pub async fn snapshot(&self) -> Result<Blob, JsValue> {
         let canvas = self.canvas.borrow().clone();
-        snapshot(&canvas, || self.frames(), || self.inbox.wake_for_picture(), || self.stage_area())
-            .await
+        snapshot(
+            &canvas,
+            || self.frames(),
+            || self.inbox.wake_for_picture(),
+            || self.is_stage_complete(),
+            || self.stage_area(),
+        )
+        .await
     }
 
     /// Returns a report of the results in Markdown, with a picture of the stage in it.
@@ -398,6 +404,7 @@ impl SegueHandle {
             &canvas,
             || self.frames(),
             || self.inbox.wake_for_picture(),
+            || self.is_stage_complete(),
             || self.stage_area(),
         )
         .await?;
@@ -437,6 +444,11 @@ impl SegueHandle {
 impl SegueHandle {
     fn frames(&self) -> u64 {
         self.segue.try_borrow().map_or(0, |segue| segue.frames_drawn())
+    }
+
+    /// Returns whether nothing is missing in the stage as it is drawn.
+    fn is_stage_complete(&self) -> bool {
+        self.inbox.ctx().is_none_or(|ctx| is_stage_complete(&ctx))
     }
 
     /// Returns the area of the stage on the canvas.

@@ -2,6 +2,7 @@
 
 use super::Segue;
 use crate::platform;
+use crate::render::is_stage_complete;
 use crate::ui::{self, Action};
 use eframe::egui;
 use segue_session::Level;
@@ -43,7 +44,7 @@ impl Segue {
             }
             Action::CopyReport => {
                 if let Some(stage) = self.picture.stage_rect() {
-                    platform::take_picture(stage, &self.inbox);
+                    platform::take_picture(stage, is_stage_complete, &self.inbox);
                 }
             }
             Action::SaveText { name, mime, text } => {
@@ -65,6 +66,7 @@ impl Segue {
                     platform::save_picture(
                         &file_name(&self.stage_name(), "png"),
                         stage,
+                        is_stage_complete,
                         &self.inbox,
                     );
                 }

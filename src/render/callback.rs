@@ -45,6 +45,16 @@ pub(crate) fn stage_pixels(ctx: &egui::Context, rect: egui::Rect) -> [u32; 2] {
     in_pixels(rect, pixels_per_point, [screen.x.round() as u32, screen.y.round() as u32])
 }
 
+/// Returns whether nothing is missing in the stage that was prepared last, such as a texture that
+/// is being decoded.
+pub(crate) fn is_stage_complete(ctx: &egui::Context) -> bool {
+    !ctx.data(|data| data.get_temp(is_incomplete_id())).unwrap_or(false)
+}
+
+fn is_incomplete_id() -> egui::Id {
+    egui::Id::unique("stage is incomplete")
+}
+
 fn in_pixels(rect: egui::Rect, pixels_per_point: f32, screen: [u32; 2]) -> [u32; 2] {
     let pixels = ViewportInPixels::from_points(&rect, pixels_per_point, screen);
     [pixels.width_px.max(0) as u32, pixels.height_px.max(0) as u32]
@@ -71,6 +81,7 @@ impl CallbackTrait for StageCallback {
             let size = in_pixels(self.rect, screen.pixels_per_point, screen.size_in_pixels);
             renderer.begin_frame(self.ctx.input(|input| input.time), self.refinement);
             let prepared = renderer.prepare(device, queue, encoder, self.id, &self.stage, size);
+            self.ctx.data_mut(|data| data.insert_temp(is_incomplete_id(), !prepared.complete));
             if !prepared.complete {
                 self.ctx.request_repaint();
             } else if prepared.to_be_refined {

@@ -1,7 +1,7 @@
 //! Pictures and films of a window: none, because desktops have programs for them.
 
 use crate::platform::{Inbox, Incoming};
-use eframe::egui::Rect;
+use eframe::egui::{Context, Rect};
 use segue_text::Message;
 use std::convert::Infallible;
 
@@ -11,10 +11,16 @@ pub(crate) fn can_take_pictures() -> bool {
 }
 
 /// Does nothing, because [`can_take_pictures`] is false.
-pub(crate) fn save_picture(_file_name: &str, _stage: Rect, _inbox: &Inbox) {}
+pub(crate) fn save_picture(
+    _file_name: &str,
+    _stage: Rect,
+    _is_complete: fn(&Context) -> bool,
+    _inbox: &Inbox,
+) {
+}
 
 /// Answers that there is no picture; a report is then made without one.
-pub(crate) fn take_picture(_stage: Rect, inbox: &Inbox) {
+pub(crate) fn take_picture(_stage: Rect, _is_complete: fn(&Context) -> bool, inbox: &Inbox) {
     inbox.push(Incoming::Picture(None));
 }
 

@@ -5,7 +5,7 @@ use super::js_error_text;
 use super::page::{canvas, listen, now_ms, window};
 use super::snapshot::{area_of, inline_picture, snapshot};
 use crate::platform::{Inbox, Incoming};
-use eframe::egui::Rect;
+use eframe::egui::{Context, Rect};
 use js_sys::{Array, Error, Promise, Reflect};
 use segue_session::export::file_name;
 use segue_text::{Message, msg};
@@ -31,8 +31,14 @@ pub(crate) fn can_take_pictures() -> bool {
     true
 }
 
-/// Saves a picture of the stage, a rectangle of the page in points.
-pub(crate) fn save_picture(file_name: &str, stage: Rect, inbox: &Inbox) {
+/// Saves a picture of the stage, a rectangle of the page in points, of a frame in which it is
+/// complete.
+pub(crate) fn save_picture(
+    file_name: &str,
+    stage: Rect,
+    is_complete: fn(&Context) -> bool,
+    inbox: &Inbox,
+) {
     let (Some(canvas), Some(ctx)) = (canvas(), inbox.ctx()) else {
         return;
     };
@@ -43,6 +49,7 @@ pub(crate) fn save_picture(file_name: &str, stage: Rect, inbox: &Inbox) {
             &canvas,
             || ctx.cumulative_frame_nr(),
             || inbox.wake_for_picture(),
+            || is_complete(&ctx),
             || Some(area),
         )
         .await;
@@ -52,7 +59,7 @@ pub(crate) fn save_picture(file_name: &str, stage: Rect, inbox: &Inbox) {
 
 /// Takes a picture of the stage, a rectangle of the page in points, for a text. The answer is
 /// [`Incoming::Picture`].
-pub(crate) fn take_picture(stage: Rect, inbox: &Inbox) {
+pub(crate) fn take_picture(stage: Rect, is_complete: fn(&Context) -> bool, inbox: &Inbox) {
     let (Some(canvas), Some(ctx)) = (canvas(), inbox.ctx()) else {
         return inbox.push(Incoming::Picture(None));
     };
@@ -63,6 +70,7 @@ pub(crate) fn take_picture(stage: Rect, inbox: &Inbox) {
             &canvas,
             || ctx.cumulative_frame_nr(),
             || inbox.wake_for_picture(),
+            || is_complete(&ctx),
             || Some(area),
         )
         .await;

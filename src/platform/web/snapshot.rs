@@ -31,9 +31,10 @@ pub(crate) async fn snapshot(
     canvas: &HtmlCanvasElement,
     frames: impl Fn() -> u64,
     wake: impl Fn(),
+    is_complete: impl Fn() -> bool,
     area: impl Fn() -> Option<Area>,
 ) -> Result<Blob, JsValue> {
-    encode(&capture(canvas, frames, wake, area, f64::INFINITY).await?).await
+    encode(&capture(canvas, frames, wake, is_complete, area, f64::INFINITY).await?).await
 }
 
 /// Returns a part of the canvas as a `data:` URL (`data:image/jpeg;base64,…`). The arguments are
@@ -42,9 +43,10 @@ pub(crate) async fn inline_picture(
     canvas: &HtmlCanvasElement,
     frames: impl Fn() -> u64,
     wake: impl Fn(),
+    is_complete: impl Fn() -> bool,
     area: impl Fn() -> Option<Area>,
 ) -> Result<String, JsValue> {
-    let picture = capture(canvas, frames, wake, area, MAX_TEXT_PICTURE_WIDTH).await?;
+    let picture = capture(canvas, frames, wake, is_complete, area, MAX_TEXT_PICTURE_WIDTH).await?;
     picture.to_data_url_with_type_and_encoder_options("image/jpeg", &TEXT_PICTURE_QUALITY.into())
 }
 
@@ -52,15 +54,17 @@ pub(crate) async fn inline_picture(
 ///
 /// The pictures of WebGPU and WebGL can be read only until the frame ends. The function therefore
 /// waits for a frame in which the app draws, and copies the picture within it. `frames` counts
-/// frames, and `wake` requests one that is drawn finely.
+/// frames, `wake` requests one that is drawn finely, and `is_complete` says whether nothing is
+/// missing in it, such as a texture that is being decoded.
 async fn capture(
     canvas: &HtmlCanvasElement,
     frames: impl Fn() -> u64,
     wake: impl Fn(),
+    is_complete: impl Fn() -> bool,
     area: impl Fn() -> Option<Area>,
     max_width: f64,
 ) -> Result<HtmlCanvasElement, JsValue> {
-    for _ in 0..MAX_AWAITED_FRAMES {
+    for awaited in 1..=MAX_AWAITED_FRAMES {
         if is_hidden() {
             return Err(Error::new(
                 "snapshot: the page is hidden, so nothing is drawn; bring it to the front",
@@ -70,7 +74,7 @@ async fn capture(
         let before = frames();
         wake();
         next_frame().await;
-        if frames() != before {
+        if frames() != before && (is_complete() || awaited == MAX_AWAITED_FRAMES) {
             return copy(canvas, area(), max_width);
         }
     }
