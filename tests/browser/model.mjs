@@ -11,13 +11,14 @@ const BYTE = 5121;
 
 /**
  * Returns the files `NAME.gltf`, `NAME.bin` and `skin.png`, each a name and its bytes: a standing
- * box of one colour with a skeleton of two joints, which turns by a quarter in a second.
+ * box with a skeleton of two joints, which turns by a quarter in a second. Its left half has the
+ * first colour, its right half the second one, by the two pixels of the image.
  */
-export function boxModel(name, [red, green, blue]) {
+export function boxModel(name, colours) {
   const half = Math.SQRT1_2;
   const arrays = [
     [FLOAT, "VEC3", CORNERS.flatMap(([x, y, z]) => [0.6 * x - 0.3, 1.7 * y, 0.4 * z - 0.2])],
-    [FLOAT, "VEC2", CORNERS.flatMap(() => [0.5, 0.5])],
+    [FLOAT, "VEC2", CORNERS.flatMap(([x]) => [x, 0.5])],
     [BYTE, "VEC4", CORNERS.flatMap(([, y]) => [y, 0, 0, 0])],
     [FLOAT, "VEC4", CORNERS.flatMap(() => [1, 0, 0, 0])],
     [BYTE, "SCALAR", TRIANGLES.flat()],
@@ -36,18 +37,19 @@ export function boxModel(name, [red, green, blue]) {
     skins: [{ joints: [0, 1], inverseBindMatrices: undefined }],
     meshes: [{ primitives: [{ attributes: { POSITION: 0, TEXCOORD_0: 1, JOINTS_0: 2, WEIGHTS_0: 3 }, indices: 4, material: 0 }] }],
     materials: [{ pbrMetallicRoughness: { baseColorTexture: { index: 0 } }, doubleSided: true }],
-    textures: [{ source: 0 }],
+    samplers: [{ magFilter: 9728, wrapS: 33071 }],
+    textures: [{ source: 0, sampler: 0 }],
     images: [{ uri: "skin.png" }],
     animations: [{ channels: [{ sampler: 0, target: { node: 0, path: "rotation" } }], samplers: [{ input: 5, output: 6 }] }],
     buffers: [{ uri: `${name}.bin`, byteLength: Buffer.concat(padded).length }],
     bufferViews: parts.map((part, index) => ({ buffer: 0, byteOffset: offsets[index], byteLength: part.length })),
     accessors: arrays.map(([componentType, type, values], bufferView) => ({ bufferView, componentType, type, count: values.length / width[type], ...(bufferView === 0 && { min: [-0.3, 0, -0.2], max: [0.3, 1.7, 0.2] }) })),
   };
-  return [[`${name}.gltf`, Buffer.from(JSON.stringify(json))], [`${name}.bin`, Buffer.concat(padded)], ["skin.png", onePixel(red, green, blue)]];
+  return [[`${name}.gltf`, Buffer.from(JSON.stringify(json))], [`${name}.bin`, Buffer.concat(padded)], ["skin.png", rowOfPixels(colours)]];
 }
 
-/** Returns a PNG of one pixel. */
-function onePixel(...colour) {
+/** Returns a PNG of one row of pixels. */
+function rowOfPixels(colours) {
   const chunk = (type, data) => {
     const body = Buffer.concat([Buffer.from(type), data]);
     const [length, sum] = [Buffer.alloc(4), Buffer.alloc(4)];
@@ -55,9 +57,9 @@ function onePixel(...colour) {
     sum.writeUInt32BE(crc32(body));
     return Buffer.concat([length, body, sum]);
   };
-  const header = Buffer.from([0, 0, 0, 1, 0, 0, 0, 1, 8, 2, 0, 0, 0]);
+  const header = Buffer.from([0, 0, 0, colours.length, 0, 0, 0, 1, 8, 2, 0, 0, 0]);
   const signature = Buffer.from([0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a]);
-  return Buffer.concat([signature, chunk("IHDR", header), chunk("IDAT", deflateSync(Buffer.from([0, ...colour]))), chunk("IEND", Buffer.alloc(0))]);
+  return Buffer.concat([signature, chunk("IHDR", header), chunk("IDAT", deflateSync(Buffer.from([0, ...colours.flat()]))), chunk("IEND", Buffer.alloc(0))]);
 }
 
 function crc32(bytes) {
