@@ -27,6 +27,9 @@ pub(crate) struct Series<'a> {
     pub(crate) points: &'a [[f64; 2]],
 }
 
+/// The least range of values that is shown, in units of the last digit of a value.
+const LEAST_DIGITS: f64 = 5.0;
+
 /// Curves over one axis of values.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Curves<'a> {
@@ -86,11 +89,18 @@ impl Curves<'_> {
         if low > high {
             return (0.0, 1.0);
         }
-        let margin = if high - low > 1e-9 * high.abs().max(1e-9) {
-            0.08 * (high - low)
-        } else {
-            0.5 * high.abs().max(1.0)
-        };
+        // What reads as one value is a level line: the noise of a foot that stands is no curve.
+        let missing = LEAST_DIGITS * 0.1_f64.powi(self.decimals as i32) - (high - low);
+        if missing > 0.0 {
+            if self.include == Some(low) {
+                high += missing;
+            } else if self.include == Some(high) {
+                low -= missing;
+            } else {
+                (low, high) = (low - 0.5 * missing, high + 0.5 * missing);
+            }
+        }
+        let margin = 0.08 * (high - low);
         // A limit, such as the speed 0, needs no margin beyond it.
         let floor =
             if self.include == Some(low) { low - 0.02 * (high - low) } else { low - margin };
@@ -402,6 +412,12 @@ mod tests {
         let curves = Curves { include: Some(0.0), series: &series, ..Curves::default() };
         let (low, high) = curves.bounds();
         assert!(low <= 0.0 && low > -0.5 && high > 5.0 && high < 6.0);
+        // A foot that stands, with the noise of its numbers.
+        let points = [[0.0, 0.0001], [1.0, 0.0003], [2.0, 0.0]];
+        let series = [Series { points: &points, ..series[0] }];
+        let still = Curves { decimals: 2, include: Some(0.0), series: &series, ..curves };
+        let (low, high) = still.bounds();
+        assert!(low < 0.0 && low > -0.01 && high > 0.05 && high < 0.06, "{low} {high}");
         let flat = [[0.0, 2.0], [1.0, 2.0]];
         let series = [Series { points: &flat, ..series[0] }];
         let (low, high) = Curves { series: &series, ..Curves::default() }.bounds();
