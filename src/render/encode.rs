@@ -338,18 +338,14 @@ impl StageEncoder<'_> {
             if surface.cuts_out != cuts_out || part.is_empty() {
                 continue;
             }
-            match &surface.texture {
+            let is_waiting = surface.texture.as_ref().is_some_and(|own| own.get().is_none());
+            complete &= !is_waiting;
+            if is_waiting && cuts_out {
+                continue;
+            }
+            match surface.texture.as_ref().and_then(|own| own.get()) {
+                Some(bound) => pass.set_bind_group(3, bound, &[]),
                 None => self.set_white(pass),
-                Some(texture) => match texture.get() {
-                    Some(bound) => pass.set_bind_group(3, bound, &[]),
-                    None => {
-                        complete = false;
-                        if cuts_out {
-                            continue;
-                        }
-                        self.set_white(pass);
-                    }
-                },
             }
             pass.draw_indexed(part.clone(), 0, skin.instances.clone());
         }

@@ -90,6 +90,9 @@ fn vertices(mesh: &SkinnedMesh) -> Vec<SkinVertex> {
     (0..mesh.positions.len()).map(vertex).collect()
 }
 
+/// Selects those triangles of a part that are drawn.
+type Select<'a> = &'a dyn Fn(&[[u32; 3]]) -> Vec<[u32; 3]>;
+
 impl SkinBuffers {
     fn new(
         device: &wgpu::Device,
@@ -101,7 +104,7 @@ impl SkinBuffers {
         let buffer = |contents: &[u8], usage| filled_buffer(device, queue, "skin", contents, usage);
         let vertices = vertices(mesh);
         let parts = mesh.parts();
-        let uploaded = |select: &dyn Fn(&[[u32; 3]]) -> Vec<[u32; 3]>| {
+        let uploaded = |select: Select<'_>| {
             let mut triangles: Vec<[u32; 3]> = Vec::new();
             let ranges = parts.iter().map(|(range, _)| {
                 let start = triangles.len() as u32;

@@ -107,14 +107,13 @@ impl TextureStore {
         let (sampler, white) = (sampler(device, texture.sampler), self.white.clone());
         let (device, queue) = (device.clone(), queue.clone());
         let (layout, later) = (pipelines.texture_layout.clone(), Arc::downgrade(&bound));
-        decode(Arc::clone(&texture.image), max_side(count), move |levels| {
+        decode(&texture.image, max_side(count), move |levels| {
             let Some(bound) = later.upgrade() else { return };
-            let group = match levels {
-                Some(levels) => Some(upload(&device, &queue, (&layout, &sampler), &levels)),
-                None => {
-                    log::warn!("the image of a texture cannot be decoded");
-                    white
-                }
+            let group = if let Some(levels) = levels {
+                Some(upload(&device, &queue, (&layout, &sampler), &levels))
+            } else {
+                log::warn!("the image of a texture cannot be decoded");
+                white
             };
             if let Some(group) = group {
                 bound.get_or_init(|| group);

@@ -30,11 +30,10 @@ impl DecodedImage {
 
 /// Decodes an image with sides of at most `most` pixels, and hands it over at once; `None` for one
 /// that is damaged.
-pub(super) fn decode(image: Arc<[u8]>, most: u32, then: impl FnOnce(Option<DecodedImage>)) {
+pub(super) fn decode(image: &Arc<[u8]>, most: u32, then: impl FnOnce(Option<DecodedImage>)) {
     let formats = [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::WebP];
-    let format = image::guess_format(&image).ok().filter(|format| formats.contains(format));
-    let decoded =
-        format.and_then(|format| image::load_from_memory_with_format(&image, format).ok());
+    let format = image::guess_format(image).ok().filter(|format| formats.contains(format));
+    let decoded = format.and_then(|format| image::load_from_memory_with_format(image, format).ok());
     then(decoded.map(|decoded| {
         let decoded = decoded.into_rgba8();
         let own = decoded.dimensions().into();

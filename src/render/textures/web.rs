@@ -75,12 +75,11 @@ thread_local! {
 
 /// Runs tasks one after the other: browsers hold the whole of an image that they decode.
 fn run_in_turn(task: Task) {
-    let task = WAITING.with_borrow_mut(|waiting| match waiting {
-        Some(waiting) => {
+    let task = WAITING.with_borrow_mut(|waiting| {
+        if let Some(waiting) = waiting {
             waiting.push_back(task);
             None
-        }
-        None => {
+        } else {
             *waiting = Some(VecDeque::new());
             Some(task)
         }
@@ -105,10 +104,11 @@ fn run_in_turn(task: Task) {
 /// Decodes an image with sides of at most `most` pixels, and hands it over later; `None` for one
 /// that is damaged.
 pub(super) fn decode(
-    image: Arc<[u8]>,
+    image: &Arc<[u8]>,
     most: u32,
     then: impl FnOnce(Option<DecodedImage>) + 'static,
 ) {
+    let image = Arc::clone(image);
     run_in_turn(Box::pin(async move { then(levels(&image, most).await.ok()) }));
 }
 

@@ -179,7 +179,7 @@ mod tests {
         assert_eq!(parts(&gaps), expected);
         // Ranges that overlap, or that reach beyond the mesh.
         let wrong =
-            mesh(3, vec![(0..2, texture(&skin)), (1..9, texture(&hair)), (9..8, texture(&skin))]);
+            mesh(3, vec![(0..2, texture(&skin)), (1..9, texture(&hair)), (9..9, texture(&skin))]);
         assert_eq!(parts(&wrong), [(0..2, Some(texture(&skin))), (2..3, Some(texture(&hair)))]);
     }
 
