@@ -27,8 +27,8 @@ pub(super) struct StageEncoder<'a> {
 }
 
 impl StageEncoder<'_> {
-    /// Draws the light map, in which parts that are cut out are whole. Returns `false` where something is left out because its pipeline is not
-    /// made yet.
+    /// Draws the light map, in which parts that are cut out are whole. Returns `false` where
+    /// something is left out because its pipeline is not made yet.
     fn encode_light(&self, light: &LightMap, encoder: &mut wgpu::CommandEncoder) -> bool {
         let view = self.view;
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {

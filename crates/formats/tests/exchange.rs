@@ -164,7 +164,8 @@ fn image() -> Arc<[u8]> {
     bytes.into()
 }
 
-/// Returns a child of two colours, with a texture on some triangles, that walks as an adult does: its motion, and its mesh.
+/// Returns a child of two colours, with a texture on some triangles, that walks as an adult does:
+/// its motion, and its mesh.
 fn character() -> (Clip, SkinnedMesh) {
     let walk = synthesize(&Params::new(Action::Walk)).unwrap().clip;
     let skeleton = humanoid(1.5).unwrap();

@@ -88,8 +88,8 @@ pub struct SkinnedMesh {
     /// (sRGB-encoded, straight alpha). Empty where the mesh has no colours of its own, or all are
     /// white below a texture.
     pub colors: Vec<[f32; 4]>,
-    /// The place of each vertex in the image of its texture: (0, 0) is the upper left corner, (1, 1)
-    /// the lower right one. Empty where the mesh has no textures.
+    /// The place of each vertex in the image of its texture: (0, 0) is the upper left corner, (1,
+    /// 1) the lower right one. Empty where the mesh has no textures.
     pub coordinates: Vec<[f32; 2]>,
     /// The parts with a texture, in the order of their triangles. No vertex is on two parts.
     pub textured: Vec<TexturedPart>,
