@@ -86,8 +86,8 @@ impl TextureStore {
         self.white.as_ref()
     }
 
-    /// Returns a texture, of a mesh with `count` images, which is bound as soon as its image is decoded.
-    /// Where it cannot be, white takes its place.
+    /// Returns a texture, of a mesh with `count` images, which is bound as soon as its image is
+    /// decoded. Where it cannot be, white takes its place.
     pub(super) fn load(
         &mut self,
         device: &wgpu::Device,
