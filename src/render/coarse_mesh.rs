@@ -32,7 +32,7 @@ impl Clusters {
         let low = positions.iter().copied().reduce(Vec3::min).unwrap_or_default();
         let high = positions.iter().copied().reduce(Vec3::max).unwrap_or_default();
         let cell = ((high - low).max_element() / CELLS).max(f32::MIN_POSITIVE);
-        let parts = part_of_vertices(mesh);
+        let parts = mesh.part_of_vertices();
         let mut clusters: Vec<Cluster> = Vec::new();
         let mut known = BTreeMap::new();
         let mut of_vertices = Vec::with_capacity(positions.len());
@@ -70,19 +70,6 @@ impl Clusters {
         });
         merged.collect()
     }
-}
-
-/// Returns the number of the part of the mesh that each vertex is on.
-fn part_of_vertices(mesh: &SkinnedMesh) -> Vec<usize> {
-    let mut parts = vec![0; mesh.positions.len()];
-    for (number, (triangles, _)) in mesh.parts().into_iter().enumerate() {
-        for corner in mesh.triangles[triangles].as_flattened() {
-            if let Some(part) = parts.get_mut(*corner as usize) {
-                *part = number;
-            }
-        }
-    }
-    parts
 }
 
 /// Vertices that are taken for one.

@@ -42,7 +42,7 @@ impl Triangles {
     }
 }
 
-/// What covers a part of a mesh.
+/// The surface of a part of a mesh.
 pub(super) struct Surface {
     /// Its texture, if it has one.
     pub(super) texture: Option<BoundTexture>,
@@ -52,15 +52,9 @@ pub(super) struct Surface {
 
 fn vertices(mesh: &SkinnedMesh) -> Vec<SkinVertex> {
     let last_joint = mesh.bind.len().saturating_sub(1) as u16;
-    let mut cutoffs = vec![0.0; mesh.positions.len()];
-    for (triangles, texture) in mesh.parts() {
-        let cutoff = texture.map_or(0.0, |texture| texture.alpha.cutoff());
-        for corner in mesh.triangles[triangles].as_flattened() {
-            if let Some(of_vertex) = cutoffs.get_mut(*corner as usize) {
-                *of_vertex = cutoff;
-            }
-        }
-    }
+    let cutoff = |texture: Option<&Texture>| texture.map_or(0.0, |own| own.alpha.cutoff());
+    let cutoffs: Vec<f32> = mesh.parts().into_iter().map(|(_, own)| cutoff(own)).collect();
+    let parts = mesh.part_of_vertices();
     let vertex = |index: usize| {
         let normal = mesh.normals.get(index).copied().unwrap_or_default();
         let joints = mesh.joints.get(index).copied().unwrap_or_default();
@@ -83,7 +77,7 @@ fn vertices(mesh: &SkinnedMesh) -> Vec<SkinVertex> {
             tint: tint.map(|part| (part.clamp(0.0, 1.0) * 255.0 + 0.5) as u8),
             texture: {
                 let [u, v] = mesh.coordinates.get(index).copied().unwrap_or_default();
-                [u, v, cutoffs[index]]
+                [u, v, cutoffs.get(parts[index]).copied().unwrap_or_default()]
             },
         }
     };

@@ -31,13 +31,13 @@ pub struct Texture {
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
 )]
 pub struct Sampler {
-    /// What is beyond the edges of the image, across and down.
+    /// The wrap modes across and down.
     pub wraps: [Wrap; 2],
     /// Whether the nearest texel counts alone; otherwise those around a point are mixed.
     pub is_nearest: bool,
 }
 
-/// What is beyond the edges of an image.
+/// A wrap mode: the colours at texture coordinates outside of 0 to 1.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
 )]
@@ -99,6 +99,21 @@ impl SkinnedMesh {
             parts.push((end..self.triangles.len(), None));
         }
         parts
+    }
+
+    /// Returns the number of the part that each vertex is on, an index of [`Self::parts`]; 0 for
+    /// vertices without a triangle.
+    #[must_use]
+    pub fn part_of_vertices(&self) -> Vec<usize> {
+        let mut of_vertices = vec![0; self.positions.len()];
+        for (number, (triangles, _)) in self.parts().into_iter().enumerate() {
+            for corner in self.triangles[triangles].as_flattened() {
+                if let Some(part) = of_vertices.get_mut(*corner as usize) {
+                    *part = number;
+                }
+            }
+        }
+        of_vertices
     }
 
     /// Reorders the triangles so that those with the same texture are one part; within a part, they
@@ -181,6 +196,16 @@ mod tests {
         let wrong =
             mesh(3, vec![(0..2, texture(&skin)), (1..9, texture(&hair)), (9..9, texture(&skin))]);
         assert_eq!(parts(&wrong), [(0..2, Some(texture(&skin))), (2..3, Some(texture(&hair)))]);
+    }
+
+    #[test]
+    fn vertices_are_on_the_part_of_their_triangles() {
+        let [skin, hair]: [Arc<[u8]>; 2] = [[1].into(), [2].into()];
+        let mut mesh = mesh(5, vec![(1..2, texture(&skin)), (2..4, texture(&hair))]);
+        // One without a triangle, and a triangle without a vertex.
+        mesh.positions = vec![glam::Vec3::ZERO; 6];
+        mesh.triangles.push([9; 3]);
+        assert_eq!(mesh.part_of_vertices(), [0, 1, 2, 2, 3, 0]);
     }
 
     #[test]
