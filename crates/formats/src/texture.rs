@@ -86,7 +86,7 @@ impl Images {
 fn pixels(bytes: &[u8]) -> Option<usize> {
     let is_whole = match imagesize::image_type(bytes).ok()? {
         ImageType::Png => memchr::memmem::rfind(bytes, PNG_END).is_some(),
-        // What is missing at its end is gray.
+        // Browsers show a JPEG that is cut off, and fill the missing rows with grey.
         ImageType::Jpeg => true,
         // RIFF: four letters and the number of bytes behind them.
         ImageType::Webp => {

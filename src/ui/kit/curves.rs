@@ -89,7 +89,8 @@ impl Curves<'_> {
         if low > high {
             return (0.0, 1.0);
         }
-        // What reads as one value is a level line: the noise of a foot that stands is no curve.
+        // Values that differ by less than a few of the last digits shown make a level line.
+        // Otherwise the noise of a planted foot would fill the plot.
         let missing = LEAST_DIGITS * 0.1_f64.powi(self.decimals as i32) - (high - low);
         if missing > 0.0 {
             if self.include == Some(low) {
