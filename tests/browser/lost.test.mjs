@@ -178,6 +178,26 @@ onBackend("both", "WebGL 2 draws where a lost WebGPU device has no successor", a
   assert.deepEqual({ a, blend_window }, { a: own.id, blend_window: 23 });
 });
 
+// Fails when a start waits for ever for graphics that never answer.
+for (const what of ["requestAdapter", "requestDevice"]) {
+  onBackend("both", `WebGL 2 draws where ${what} never answers`, async ({ open }) => {
+    const hang = (page) => page.addInitScript((what) => {
+      (what === "requestAdapter" ? GPU : GPUAdapter).prototype[what] = () => {
+        window.isAsked = true;
+        return new Promise(() => {});
+      };
+    }, what);
+    const { page, segue, ready } = await open("lab=blend&blend_window=23", { ...SMALL, wait: false, prepare: (page) => Promise.all([hang(page), page.clock.install()]) });
+    await page.waitForFunction(() => window.isAsked);
+    await page.clock.fastForward(30_000);
+    await page.waitForFunction(() => !window.isAsked); // the page that follows
+    await ready();
+    assert.equal((await segue("stats")).backend, "webgl2");
+    assert.equal((await segue("params")).blend_window, 23);
+    assert.equal(await page.locator(".veil").count(), 0);
+  });
+}
+
 onBackend("both", "embedded page without WebGPU offers to go on with WebGL 2", async ({ open }) => {
   const { page, segue, ready } = await open("lab=blend&embed=1&blend_window=23", { ...SMALL, prepare });
   for (let loss = 0; loss < 2; loss++) {

@@ -29,12 +29,12 @@ const MIN_EXHAUSTED_BYTES = 1 << 30;
  * recover.
  */
 const REPLACE_AFTER_MS = [0, 100, 300, 1000, 3000];
-/** The longest time for which a new WebGPU device is awaited: a browser may never answer. */
-const MAX_REPLACE_MS = 30_000;
+/** The longest time for which a WebGPU device is awaited: a browser may never answer. */
+const MAX_DEVICE_MS = 30_000;
 
 /** The reasons why the app goes on with WebGL 2 in a new page. */
 const NEEDS_WEBGL2 = new Error("WebGPU was lost twice within 10 seconds.");
-const NO_ANSWER = new Error("The browser gives no new WebGPU device.");
+const NO_ANSWER = new Error("The browser gives no WebGPU device.");
 
 async function start() {
   // Only a cheap test precedes the start. The graphics are tested thoroughly when the start has
@@ -44,7 +44,12 @@ async function start() {
     throw new Error("Neither WebGPU nor WebGL2 is available");
   }
 
-  const chosen = await chosenModule();
+  let chosen;
+  try {
+    chosen = await chosenModule();
+  } catch (reason) {
+    return withWebgl2Instead(reason);
+  }
   let bindings;
   let memory;
   try {
@@ -68,7 +73,8 @@ async function start() {
   // Corpora have modules of their own, which come with the first call.
   const corpora = async (call, ...args) => (await import("./corpus/corpora.js"))[call](app, ...args);
   try {
-    app.handle = await Promise.race([SegueHandle.start(canvas(), newReader, newComputer, corpora), app.trapped]);
+    const started = Promise.race([SegueHandle.start(canvas(), newReader, newComputer, corpora), app.trapped]);
+    app.handle = await (chosen.hasWebgl2 ? started : answerOf(started));
     app.watch();
     await Promise.race([app.handle.firstFrame(), app.trapped]);
   } catch (reason) {
@@ -76,9 +82,7 @@ async function start() {
     if (reason instanceof WebAssembly.RuntimeError) {
       showPanic(text, app.facts());
     } else if (!chosen.hasWebgl2 && !isAsked("webgpu")) {
-      console.warn(text);
-      reloadWithWebgl2();
-      return new Promise(() => {}); // the next page settles its own
+      return withWebgl2Instead(text);
     } else if (!(await hasGraphics())) {
       showUnsupported();
     } else {
@@ -128,11 +132,12 @@ function newComputer(maxBytes) {
 
 /**
  * Returns the module that first.js downloads, or the one with WebGL 2 where that has WebGPU alone
- * and the browser has no device for it.
+ * and the browser has no device for it. Rejects where the browser does not answer: the module with
+ * WebGL 2 would ask it again.
  */
 async function chosenModule() {
   const { module: first, withWebgl2 } = window.segueDownload;
-  const module = await first;
+  const module = await answerOf(first);
   if (module.hasWebgl2 || isAsked("webgpu") || (await hasWebgpu())) return module;
   module.stop();
   return withWebgl2();
@@ -144,13 +149,30 @@ const isAsked = (backend) => new URLSearchParams(location.search).get("backend")
 /** Returns whether there is a WebGPU device. An adapter alone may have none. */
 async function hasWebgpu() {
   try {
-    const adapter = await navigator.gpu.requestAdapter();
-    const device = await adapter?.requestDevice();
+    const adapter = await answerOf(navigator.gpu.requestAdapter());
+    const device = await answerOf(adapter?.requestDevice());
     device?.destroy();
     return Boolean(device);
-  } catch {
+  } catch (reason) {
+    if (reason === NO_ANSWER) throw reason;
     return false;
   }
+}
+
+/** Waits for what needs a WebGPU device; rejects with `NO_ANSWER` where it takes too long. */
+function answerOf(promise) {
+  let timer;
+  const late = new Promise((_, reject) => {
+    timer = setTimeout(() => reject(NO_ANSWER), MAX_DEVICE_MS);
+  });
+  return Promise.race([promise, late]).finally(() => clearTimeout(timer));
+}
+
+/** Gives up WebGPU at the start of a page. */
+function withWebgl2Instead(reason) {
+  console.warn(reason);
+  reloadWithWebgl2();
+  return new Promise(() => {}); // the next page settles its own
 }
 
 /** Loads the page again with the module that has WebGL 2; the address forgets that. */
@@ -317,11 +339,7 @@ class RunningApp {
     const fresh = old.cloneNode(false);
     old.replaceWith(fresh);
     this.#watchContext(fresh);
-    let timer;
-    const late = new Promise((_, reject) => {
-      timer = setTimeout(() => reject(NO_ANSWER), MAX_REPLACE_MS);
-    });
-    const restarted = await Promise.race([this.handle.restart(fresh), late]).finally(() => clearTimeout(timer));
+    const restarted = await answerOf(this.handle.restart(fresh));
     if (restarted === false) throw NEEDS_WEBGL2;
     canvas().focus();
   }
