@@ -86,17 +86,22 @@ async function page(request) {
     waiting.postMessage("begin");
     return new Response("", { headers: { Refresh: "0", "Content-Type": "text/html" } });
   }
-  return (await (await caches.open(CACHE)).match(PAGE)) ?? fetch(request);
+  return (await ofBuild(PAGE)) ?? fetch(request);
 }
 
 async function file(request) {
-  const cache = await caches.open(CACHE);
-  const kept = await cache.match(request.url);
+  const kept = await ofBuild(request.url);
   if (kept) return kept;
   const response = await fetch(request);
-  if (response.status === 200) await cache.put(request.url, response.clone());
+  if (response.status === 200 && (await caches.has(CACHE))) await (await caches.open(CACHE)).put(request.url, response.clone());
   return response;
 }
+
+/**
+ * Returns a cached file of this build. The cache is not opened, because that would make the one
+ * that a newer worker has deleted anew.
+ */
+const ofBuild = (address) => caches.match(address, { cacheName: CACHE });
 
 /** Answers a request for a file that is not part of the build. */
 async function beside({ request, clientId }) {
