@@ -3,19 +3,25 @@
 
 import http from "node:http";
 import { setTimeout as pause } from "node:timers/promises";
-import { WAIT_TIMEOUT_MS } from "./segue.mjs";
+import { WAIT_TIMEOUT_MS, withTimeout } from "./segue.mjs";
 
 /**
  * Polls a condition until it holds, and fails with `what` where it never does. Software rendering
  * is slow, so no test depends on a time.
  */
 export async function until(what, ask, limitMs = WAIT_TIMEOUT_MS) {
-  const end = Date.now() + limitMs;
-  for (;;) {
-    const answer = await ask();
-    if (answer) return answer;
-    if (Date.now() > end) throw new Error(`not within ${limitMs / 1000} s: ${what}`);
-    await pause(60);
+  let isLate = false;
+  const poll = async () => {
+    while (!isLate) {
+      const answer = await ask();
+      if (answer) return answer;
+      await pause(60);
+    }
+  };
+  try {
+    return await withTimeout(poll(), limitMs, () => `not yet: ${what}`);
+  } finally {
+    isLate = true;
   }
 }
 

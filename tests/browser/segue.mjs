@@ -15,6 +15,8 @@ export const BACKENDS = ["webgl2", "webgpu"];
  * The time limit for a condition. Software rendering takes seconds for a frame on a busy machine.
  */
 export const WAIT_TIMEOUT_MS = 120_000;
+/** The time limit for a browser to make a graphics device, or to end. */
+const GRAPHICS_TIMEOUT_MS = 30_000;
 
 const COMMON_FLAGS = [
   "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync",
@@ -76,9 +78,9 @@ export async function openSegue(backend, query = "", options = {}) {
     log,
     problems,
     /** Resolves when the page is ready, rejects with the page's own reason. */
-    ready: async () => {
-      await page.waitForFunction(() => "segueReady" in window);
-      return page.evaluate(() => window.whenReady().then(() => true));
+    ready: () => {
+      const asked = page.waitForFunction(() => "segueReady" in window).then(() => page.evaluate(() => window.whenReady().then(() => true)));
+      return withTimeout(asked, WAIT_TIMEOUT_MS, () => `the page did not get ready; it said:\n${log.join("\n")}`);
     },
     /**
      * Calls the page's API: `segue("set", { lab: "blend" })`; a property by its name alone:
@@ -100,7 +102,7 @@ export async function openSegue(backend, query = "", options = {}) {
      */
     snapshot: async () => decodePng(await snapshot(page)),
   };
-  if (wait) await withTimeout(opened.ready(), WAIT_TIMEOUT_MS, () => `the page did not get ready; it said:\n${log.join("\n")}`);
+  if (wait) await opened.ready();
   return opened;
 }
 
@@ -199,10 +201,35 @@ async function serve() {
   throw new Error("the server did not start");
 }
 
+/**
+ * Returns whether the graphics of a browser answer, in a page without Segue. SwiftShader hangs at
+ * times, and with it everything that draws in this browser.
+ */
+export async function hasGraphics(backend) {
+  const asked = (async () => {
+    const page = await (await (await launch(backend)).newContext()).newPage();
+    await page.goto(new URL("icons/icon.svg", await address()).href);
+    return page.evaluate(async (backend) => {
+      if (backend === "webgl2") return new OffscreenCanvas(1, 1).getContext("webgl2")?.getError() === 0;
+      const device = await (await navigator.gpu.requestAdapter()).requestDevice();
+      await device.queue.onSubmittedWorkDone();
+      return true;
+    }, backend).finally(() => page.context().close());
+  })();
+  return withTimeout(asked, GRAPHICS_TIMEOUT_MS, () => "no answer").catch(() => false);
+}
+
+/** Ends a browser. The next page opens in a new one. */
+export async function endBrowser(backend) {
+  const browser = await browsers.get(backend);
+  browsers.delete(backend);
+  if (!browser) return;
+  await withTimeout(browser.close(), GRAPHICS_TIMEOUT_MS, () => `the browser for ${backend} does not end`);
+}
+
 /** Ends the browsers and the server. */
 export async function close() {
-  for (const browser of browsers.values()) await (await browser).close();
-  browsers.clear();
+  for (const backend of browsers.keys()) await endBrowser(backend);
   if (server && server.exitCode === null) {
     const ended = once(server, "exit");
     server.kill();
@@ -210,7 +237,8 @@ export async function close() {
   }
 }
 
-function withTimeout(promise, ms, message) {
+/** Waits for a promise, and rejects with a message where it takes longer than `ms`. */
+export function withTimeout(promise, ms, message) {
   let timer;
   const late = new Promise((_, reject) => {
     timer = setTimeout(() => reject(new Error(`${message()}\n(after ${ms / 1000} s)`)), ms);
