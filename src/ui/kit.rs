@@ -24,6 +24,7 @@ mod help;
 mod histogram;
 pub(crate) mod icon;
 mod keys;
+mod long_line;
 mod matrix;
 mod menu;
 mod metrics;

@@ -1,6 +1,7 @@
 //! Curves under the timeline, on the same axis of time.
 
 use super::assistive::readable_ui;
+use super::long_line::paint_long_line;
 use super::paint::{Run, line_of, put};
 use super::time_axis::{TimeAxis, hovered_time, nice_step};
 use crate::ui::language::{Text, Word, say};
@@ -140,7 +141,8 @@ pub(super) fn curves_ui(
             let runs = series.points.split(|point| !point.iter().all(|number| number.is_finite()));
             for run in runs.filter(|run| run.len() > 1) {
                 let points = run.iter().map(|&[time, value]| pos2(axis.x_of(time), y_of(value)));
-                painter.line(points.collect(), Stroke::new(stroke_width, series.color));
+                let points: Vec<_> = points.collect();
+                paint_long_line(&points, Stroke::new(stroke_width, series.color), &painter);
             }
         }
     }
