@@ -122,7 +122,7 @@ impl Plugin for OutlinePlugin {
         let Some(update) = output.platform_output.accesskit_update.take() else {
             return;
         };
-        let changes = self.outline.tree().changes(&update, f64::from(ctx.zoom_factor()));
+        let changes = self.outline.tree().changes(update, f64::from(ctx.zoom_factor()));
         let changes = changes.map(|changes| Changes { skip: ui::skip_words(ctx), ..changes });
         if let Some(changes) = changes
             && let Ok(text) = serde_json::to_string(&changes)

@@ -14,6 +14,11 @@ pub(super) struct Found<'a> {
     pub(super) numbers: &'a mut Numbers,
 }
 
+/// Returns whether the value of a node is its name.
+pub(super) fn is_text(node: &Node) -> bool {
+    matches!(node.role(), Role::Label | Role::Heading)
+}
+
 impl Found<'_> {
     /// Adds the elements in a node, and returns the numbers of its direct children. Containers
     /// without a name are replaced by their contents.
@@ -58,7 +63,7 @@ impl Found<'_> {
 
     /// Returns the element of a node, without its number; `None` for a node without information.
     fn element(&self, node: &Node, children: Vec<u32>) -> Option<Element> {
-        let is_text = matches!(node.role(), Role::Label | Role::Heading);
+        let is_text = is_text(node);
         let name = if is_text { node.value().or(node.label()) } else { node.label() };
         let name = name.map_or_else(|| self.labels(node), str::to_owned);
         // A container with nothing but a hint is replaced by its contents.

@@ -51,6 +51,48 @@ fn disabled_outline_tells_nothing() {
     assert_eq!(frame(&ctx, |ui| drop(ui.button("Play"))), None);
 }
 
+/// A panel whose texts and values change, one of them the label of another.
+fn changing_ui(value: f64, ui: &mut Ui) {
+    ui.heading("Blend");
+    ui.label(format!("{value:.1} s"));
+    let name = ui.label(if value < 5.0 { "Short" } else { "Long" });
+    let mut value = value;
+    ui.add(egui::DragValue::new(&mut value)).labelled_by(name.id);
+    ui.add(egui::Slider::new(&mut value, 0.0..=10.0));
+    ui.add(egui::ProgressBar::new(value as f32 / 10.0));
+}
+
+// Fails when elements whose values alone have changed are not as they would be made anew.
+#[test]
+fn changed_values_give_the_elements_of_a_new_tree() {
+    let (ctx, outline) = told_outline();
+    let mut told = Vec::new();
+    for value in [3.0, 3.0, 3.0, 4.0, 4.5, 4.5, 6.0, 7.0, 7.0] {
+        told.push(frame(&ctx, |ui| changing_ui(value, ui)));
+        let (other, fresh) = told_outline();
+        // egui's own widgets settle in their second frame.
+        for _ in 0..3 {
+            frame(&other, |ui| changing_ui(value, ui));
+        }
+        if told.len() > 2 {
+            let elements = |outline: &Outline| {
+                let tree = outline.tree();
+                let mut all: Vec<_> = tree.elements.values().cloned().collect();
+                all.sort_by_key(|element| element.number);
+                all
+            };
+            assert_eq!(elements(&outline), elements(&fresh), "at {value}");
+        }
+    }
+    assert_eq!(told.pop().flatten(), None, "nothing has changed");
+    let changed = told.pop().flatten().expect("new values");
+    let roles: Vec<_> = (changed["elements"].as_array().unwrap().iter())
+        .map(|element| element["role"].as_str().unwrap())
+        .collect();
+    assert_eq!(roles, ["text", "spinbutton", "slider", "spinbutton", "progressbar"]);
+    assert!(!changed["top"].as_array().unwrap().is_empty());
+}
+
 #[test]
 fn widgets_are_told_once_and_then_their_changes() {
     let (ctx, _outline) = told_outline();

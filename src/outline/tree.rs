@@ -1,12 +1,12 @@
 //! The tree of elements on the page, and its changes from frame to frame.
 
 use super::element::Element;
-use super::elements::Found;
+use super::elements::{Found, is_text};
 use super::numbers::Numbers;
 use eframe::egui::Event;
-use eframe::egui::accesskit::{Node, NodeId, TreeUpdate};
+use eframe::egui::accesskit::{Node, NodeId, Role, TreeUpdate};
 use serde::Serialize;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// The elements on the page, and the reader's events on them.
 #[derive(Default)]
@@ -16,8 +16,15 @@ pub(super) struct Tree {
     pub(super) is_enabled: bool,
     pub(super) has_keyboard: bool,
     pub(super) numbers: Numbers,
-    elements: HashMap<u32, Element>,
+    pub(super) elements: HashMap<u32, Element>,
+    /// The numbers of the outermost elements, in reading order.
+    top: Vec<u32>,
     focus: Option<u32>,
+    /// The nodes of the frame before.
+    nodes: Vec<(NodeId, Node)>,
+    /// Those of them that are labels of others.
+    labels: HashSet<NodeId>,
+    zoom: f64,
 }
 
 /// The differences from the frame before.
@@ -38,16 +45,63 @@ pub(super) struct Changes {
 impl Tree {
     /// Returns the changes for the page; `None` where it is up to date. `zoom` is the number of
     /// pixels of the page for a point.
-    pub(super) fn changes(&mut self, update: &TreeUpdate, zoom: f64) -> Option<Changes> {
+    pub(super) fn changes(&mut self, update: TreeUpdate, zoom: f64) -> Option<Changes> {
+        let changes = if let Some(elements) = self.new_values(&update.nodes, zoom) {
+            for element in &elements {
+                self.elements.insert(element.number, element.clone());
+            }
+            Changes { elements, ..Changes::default() }
+        } else {
+            self.zoom = zoom;
+            self.labels =
+                update.nodes.iter().flat_map(|(_, node)| node.labelled_by()).copied().collect();
+            self.new_elements(&update)?
+        };
+        self.nodes = update.nodes;
+
+        let focus = self.numbers.known(update.focus);
+        let focus = focus.filter(|number| self.elements.contains_key(number));
+        let is_same = changes.elements.is_empty() && changes.gone.is_empty() && focus == self.focus;
+        self.focus = focus;
+        (!is_same).then(|| Changes { focus: focus.unwrap_or(0), top: self.top.clone(), ..changes })
+    }
+
+    /// Returns the elements that are not as they were, if none of them differs in more than its
+    /// value: so it is in nearly all frames while a motion plays, and the others are left alone.
+    /// Otherwise returns `None`.
+    fn new_values(&self, nodes: &[(NodeId, Node)], zoom: f64) -> Option<Vec<Element>> {
+        if nodes.len() != self.nodes.len() || zoom.to_bits() != self.zoom.to_bits() {
+            return None;
+        }
+        let mut elements = Vec::new();
+        for ((id_before, before), (id, node)) in self.nodes.iter().zip(nodes) {
+            if id != id_before {
+                return None;
+            }
+            if node == before || node.role() == Role::TextRun && before.role() == Role::TextRun {
+                continue;
+            }
+            if self.labels.contains(id) {
+                return None;
+            }
+            let element = self.elements.get(&self.numbers.known(*id)?)?;
+            elements.push(with_value(element, before, node)?);
+        }
+        Some(elements)
+    }
+
+    /// Makes all elements anew, and returns the changes; `None` without a tree.
+    fn new_elements(&mut self, update: &TreeUpdate) -> Option<Changes> {
         let root = update.tree.as_ref()?.root;
         let all: HashMap<NodeId, &Node> =
             update.nodes.iter().map(|(id, node)| (*id, node)).collect();
-        let mut found = Found { all: &all, zoom, elements: Vec::new(), numbers: &mut self.numbers };
-        let mut top = found.children_of(root, false);
-        found.sort_parts(&mut top);
+        let mut found =
+            Found { all: &all, zoom: self.zoom, elements: Vec::new(), numbers: &mut self.numbers };
+        self.top = found.children_of(root, false);
+        found.sort_parts(&mut self.top);
         let elements = found.elements;
 
-        let mut changes = Changes { top, ..Changes::default() };
+        let mut changes = Changes::default();
         let mut now = HashMap::with_capacity(elements.len());
         for element in elements {
             if self.elements.get(&element.number) != Some(&element) {
@@ -61,11 +115,40 @@ impl Tree {
         for number in &changes.gone {
             self.numbers.forget(*number);
         }
-        let focus = self.numbers.known(update.focus).filter(|number| now.contains_key(number));
-        changes.focus = focus.unwrap_or(0);
-        let is_same = changes.elements.is_empty() && changes.gone.is_empty() && focus == self.focus;
         self.elements = now;
-        self.focus = focus;
-        (!is_same).then_some(changes)
+        Some(changes)
     }
+}
+
+/// Returns an element with the value of its node; `None` where more has changed.
+fn with_value(element: &Element, before: &Node, now: &Node) -> Option<Element> {
+    let mut others = now.clone();
+    match before.value() {
+        Some(value) => others.set_value(value),
+        None => others.clear_value(),
+    }
+    match before.numeric_value() {
+        Some(value) => others.set_numeric_value(value),
+        None => others.clear_numeric_value(),
+    }
+    if others != *before {
+        return None;
+    }
+    let mut element = element.clone();
+    let value = now.value().unwrap_or_default();
+    if is_text(now) {
+        // A text may have been left out as empty, or its description as the same.
+        if value.is_empty() || element.name.is_empty() || now.description().is_some() {
+            return None;
+        }
+        value.clone_into(&mut element.name);
+    } else {
+        value.clone_into(&mut element.value);
+    }
+    match (&mut element.range, now.numeric_value()) {
+        (Some(range), Some(now)) => range.now = now,
+        (None, None) => {}
+        _ => return None,
+    }
+    Some(element)
 }
