@@ -1,15 +1,17 @@
 // A measurement without bounds: the cost of the elements for screen readers. Pages with and without
 // them take turns and play three panes. "In the page" is the time of web/js/outline.js, with the
-// layout that it causes; the other cost is the difference between the frames of both pages. "All"
-// is what the page's thread computes for a frame by its own clock: the app, the elements, and the
-// browser. A page of another build, served at an address of its own, takes turns with them.
+// layout that it causes; the other cost is the difference between the frames of both pages.
+// "Frame" is what the page's thread computes in its callback for a frame, the elements among it,
+// and "all" everything that it computes for a frame, that of the browser too: both by the thread's
+// own clock, which stands still while others have the processor. A page of another build, served
+// at an address of its own, takes turns with them.
 //
 //   node tests/browser/outline.mjs [--size 1280x800] [--frames 240] [--rounds 3] [--other ADDRESS]
 
 import process from "node:process";
 import { parseArgs } from "node:util";
 import { computingTime } from "./help.mjs";
-import { BACKENDS, close, openSegue } from "./segue.mjs";
+import { BACKENDS, close, launch, openSegue } from "./segue.mjs";
 
 const { values } = parseArgs({
   options: { size: { type: "string", default: "1280x800" }, frames: { type: "string", default: "240" }, rounds: { type: "string", default: "3" }, other: { type: "string" } },
@@ -18,6 +20,8 @@ const viewport = values.size.split("x").map(Number);
 const [frames, rounds] = [values.frames, values.rounds].map(Number);
 /** The kinds of pages: whether they have the elements, and their address where they are not of this build. */
 const PAGES = { with: { has: true }, without: { has: false }, ...(values.other && { other: { has: true, base: values.other } }) };
+/** Callbacks that take less time have drawn nothing, milliseconds. */
+const LEAST_MS = 1.5;
 const UPDATE = "this.#update(JSON.parse(text))";
 const rows = {};
 
@@ -44,15 +48,35 @@ async function measure(backend, { has, base }) {
   });
   const { page, segue } = await openSegue(backend, "compare=blend_window:30,15,10", { viewport, prepare, base });
   await drawn(page, segue, 30); // those of the start
-  const computed = await computingTime(page);
+  const [computed, callbacks] = [await computingTime(page), await frameCallbacks(backend)];
   const found = await drawn(page, segue, frames);
-  const all = (1000 * (await computed())) / found;
-  const playing = await segue("stats");
+  const [all, inFrame] = [(1000 * (await computed())) / found, await callbacks()];
   const inPage = await page.evaluate(() => (window.outlineTimes ?? []).slice(-240));
   await page.context().close();
-  const row = { "all, mean ms": all, "p50 ms": playing.frame_ms.p50, "p95 ms": playing.frame_ms.p95 };
-  for (const [name, share] of [["in the page p50", 0.5], ["in the page p95", 0.95]]) row[name] = part(inPage, share);
+  const row = { "all, mean ms": all };
+  for (const [name, times] of [["frame", inFrame], ["in the page", inPage]]) {
+    for (const percent of [50, 95]) row[`${name} p${percent}`] = part(times, percent / 100);
+  }
   return Object.fromEntries([...Object.entries(row).map(([name, number]) => [name, Number(number.toFixed(2))]), ["updates", inPage.length], ["frames", found]]);
+}
+
+/**
+ * Starts to measure the callbacks for frames in all pages of a browser. Returns a function that
+ * ends it and returns the time of each that has drawn, in milliseconds of its thread's own clock.
+ */
+async function frameCallbacks(backend) {
+  const session = await (await launch(backend)).newBrowserCDPSession();
+  const events = [];
+  session.on("Tracing.dataCollected", ({ value }) => events.push(...value));
+  const complete = new Promise((resolve) => session.once("Tracing.tracingComplete", resolve));
+  await session.send("Tracing.start", { transferMode: "ReportEvents", traceConfig: { includedCategories: ["devtools.timeline"], excludedCategories: ["*"] } });
+  return async () => {
+    await session.send("Tracing.end");
+    await complete;
+    await session.detach();
+    const callbacks = events.filter(({ name, ph }) => name === "FireAnimationFrame" && ph === "X");
+    return callbacks.map(({ tdur }) => tdur / 1000).filter((ms) => ms > LEAST_MS);
+  };
 }
 
 /** Waits until as many more frames are drawn, and returns how many were. */
