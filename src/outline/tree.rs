@@ -52,10 +52,7 @@ impl Tree {
             }
             Changes { elements, ..Changes::default() }
         } else {
-            self.zoom = zoom;
-            self.labels =
-                update.nodes.iter().flat_map(|(_, node)| node.labelled_by()).copied().collect();
-            self.new_elements(&update)?
+            self.new_elements(&update, zoom)?
         };
         self.nodes = update.nodes;
 
@@ -69,7 +66,7 @@ impl Tree {
     /// Returns the elements that are not as they were, if none of them differs in more than its
     /// value: so it is in nearly all frames while a motion plays, and the others are left alone.
     /// Otherwise returns `None`.
-    fn new_values(&self, nodes: &[(NodeId, Node)], zoom: f64) -> Option<Vec<Element>> {
+    pub(super) fn new_values(&self, nodes: &[(NodeId, Node)], zoom: f64) -> Option<Vec<Element>> {
         if nodes.len() != self.nodes.len() || zoom.to_bits() != self.zoom.to_bits() {
             return None;
         }
@@ -81,7 +78,8 @@ impl Tree {
             if node == before || node.role() == Role::TextRun && before.role() == Role::TextRun {
                 continue;
             }
-            if self.labels.contains(id) {
+            // The name of another element.
+            if self.labels.contains(id) && node.value() != before.value() {
                 return None;
             }
             let element = self.elements.get(&self.numbers.known(*id)?)?;
@@ -91,12 +89,14 @@ impl Tree {
     }
 
     /// Makes all elements anew, and returns the changes; `None` without a tree.
-    fn new_elements(&mut self, update: &TreeUpdate) -> Option<Changes> {
+    fn new_elements(&mut self, update: &TreeUpdate, zoom: f64) -> Option<Changes> {
         let root = update.tree.as_ref()?.root;
+        self.zoom = zoom;
+        self.labels =
+            update.nodes.iter().flat_map(|(_, node)| node.labelled_by()).copied().collect();
         let all: HashMap<NodeId, &Node> =
             update.nodes.iter().map(|(id, node)| (*id, node)).collect();
-        let mut found =
-            Found { all: &all, zoom: self.zoom, elements: Vec::new(), numbers: &mut self.numbers };
+        let mut found = Found { all: &all, zoom, elements: Vec::new(), numbers: &mut self.numbers };
         self.top = found.children_of(root, false);
         found.sort_parts(&mut self.top);
         let elements = found.elements;
@@ -122,14 +122,14 @@ impl Tree {
 
 /// Returns an element with the value of its node; `None` where more has changed.
 fn with_value(element: &Element, before: &Node, now: &Node) -> Option<Element> {
+    // The values before, and all else as it is now. A value that comes or goes is more than another
+    // one.
     let mut others = now.clone();
-    match before.value() {
-        Some(value) => others.set_value(value),
-        None => others.clear_value(),
+    if let (Some(value), Some(_)) = (before.value(), now.value()) {
+        others.set_value(value);
     }
-    match before.numeric_value() {
-        Some(value) => others.set_numeric_value(value),
-        None => others.clear_numeric_value(),
+    if let (Some(value), Some(_)) = (before.numeric_value(), now.numeric_value()) {
+        others.set_numeric_value(value);
     }
     if others != *before {
         return None;
@@ -145,10 +145,8 @@ fn with_value(element: &Element, before: &Node, now: &Node) -> Option<Element> {
     } else {
         value.clone_into(&mut element.value);
     }
-    match (&mut element.range, now.numeric_value()) {
-        (Some(range), Some(now)) => range.now = now,
-        (None, None) => {}
-        _ => return None,
+    if let (Some(range), Some(now)) = (&mut element.range, now.numeric_value()) {
+        range.now = now;
     }
     Some(element)
 }
