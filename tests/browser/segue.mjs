@@ -229,7 +229,7 @@ export async function endBrowser(backend) {
 
 /** Ends the browsers and the server. */
 export async function close() {
-  for (const backend of browsers.keys()) await endBrowser(backend);
+  for (const backend of browsers.keys()) await endBrowser(backend).catch((reason) => console.warn(reason.message));
   if (server && server.exitCode === null) {
     const ended = once(server, "exit");
     server.kill();
