@@ -172,7 +172,7 @@ impl From<String> for Message {
 
 impl fmt::Display for Message {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(&table::english(self))
+        table::write_english(self, formatter)
     }
 }
 

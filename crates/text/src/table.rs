@@ -3,6 +3,7 @@
 use crate::template::{Digits, Part, names, parts};
 use crate::{Arg, Message};
 use std::collections::BTreeMap;
+use std::fmt::{self, Write};
 
 /// The templates of a language, by those of English.
 #[derive(Clone, Debug, Default)]
@@ -38,7 +39,7 @@ impl Table {
     /// Returns a message in this language. Parts without a row stay English.
     #[must_use]
     pub fn write(&self, message: &Message) -> String {
-        Writer { table: Some(self) }.message(message)
+        Writer { table: Some(self) }.text_of(message)
     }
 
     /// Checks that a translation has the same names as the English template. The translation may
@@ -58,9 +59,9 @@ impl Table {
     }
 }
 
-/// Returns a message in English.
-pub(crate) fn english(message: &Message) -> String {
-    ENGLISH.message(message)
+/// Writes a message in English.
+pub(crate) fn write_english(message: &Message, to: &mut dyn Write) -> fmt::Result {
+    ENGLISH.message(message, to)
 }
 
 #[derive(Clone, Copy)]
@@ -70,61 +71,84 @@ struct Writer<'a> {
 
 const ENGLISH: Writer<'_> = Writer { table: None };
 
+// Panels write all their messages in each frame, so nothing is collected on the way to the text.
 impl Writer<'_> {
     fn row<'a>(&'a self, english: &'a str) -> &'a str {
         self.table.and_then(|table| table.row(english)).unwrap_or(english)
     }
 
-    fn message(self, message: &Message) -> String {
-        let mut whole = String::new();
-        self.template(self.row(message.template()), message, None, &mut whole);
-        whole
+    fn text_of(self, message: &Message) -> String {
+        text(|whole| self.message(message, whole))
+    }
+
+    fn message(self, message: &Message, to: &mut dyn Write) -> fmt::Result {
+        self.template(self.row(message.template()), message, None, to)
     }
 
     /// Writes a template, or the form of one; `count` stands for `#` there.
-    fn template(self, template: &str, message: &Message, count: Option<&str>, whole: &mut String) {
+    fn template(
+        self,
+        template: &str,
+        message: &Message,
+        count: Option<&str>,
+        to: &mut dyn Write,
+    ) -> fmt::Result {
         for part in parts(template) {
             match part {
                 Part::Words(words) => match count {
-                    Some(count) => whole.push_str(&words.replace('#', count)),
-                    None => whole.push_str(words),
+                    Some(count) => to.write_str(&words.replace('#', count))?,
+                    None => to.write_str(words)?,
                 },
                 Part::Value(name, digits) => {
                     if let Some(arg) = message.arg(name) {
-                        whole.push_str(&self.arg(arg, digits));
+                        self.arg(arg, digits, to)?;
                     }
                 }
                 Part::Forms(name, forms) => {
                     let Some(arg) = message.arg(name) else { continue };
                     // A form is chosen by the English word, whatever its translation.
-                    let word = ENGLISH.arg(arg, Digits::default());
+                    let word = text(|whole| ENGLISH.arg(arg, Digits::default(), whole));
                     let exact = format!("={word}");
                     let is_one = matches!(arg, Arg::Count(1));
                     let plural = if is_one { "one" } else { "other" };
                     if let Some(form) = forms.find(&[&exact, &word, plural, "other"]) {
-                        self.template(form, message, Some(&word), whole);
+                        self.template(form, message, Some(&word), to)?;
                     }
                 }
             }
         }
+        Ok(())
     }
 
-    fn arg(self, arg: &Arg, digits: Digits) -> String {
+    fn arg(self, arg: &Arg, digits: Digits, to: &mut dyn Write) -> fmt::Result {
         match arg {
-            Arg::Text(text) => text.clone(),
-            Arg::Count(count) => format!("{count:0width$}", width = digits.least),
+            Arg::Text(text) => to.write_str(text),
+            Arg::Count(count) => write!(to, "{count:0width$}", width = digits.least),
             Arg::Number(number) => match digits.behind {
-                Some(behind) => format!("{number:.behind$}"),
-                None => format!("{number:0width$}", width = digits.least),
+                Some(behind) => write!(to, "{number:.behind$}"),
+                None => write!(to, "{number:0width$}", width = digits.least),
             },
-            Arg::Message(message) => self.message(message),
+            Arg::Message(message) => self.message(message, to),
             Arg::Joined(parts, between) => {
-                let parts: Vec<String> = parts.iter().map(|part| self.arg(part, digits)).collect();
-                parts.join(self.row(between))
+                for (index, part) in parts.iter().enumerate() {
+                    if index > 0 {
+                        to.write_str(self.row(between))?;
+                    }
+                    self.arg(part, digits, to)?;
+                }
+                Ok(())
             }
-            Arg::Note(note) => sentence(&self.message(note), self.row(".")),
+            Arg::Note(note) => to.write_str(&sentence(&self.text_of(note), self.row("."))),
         }
     }
+}
+
+/// Returns what is written into a text.
+fn text(write: impl FnOnce(&mut String) -> fmt::Result) -> String {
+    let mut whole = String::new();
+    // Only a number whose own `Display` fails could be an error, and none does.
+    drop(write(&mut whole));
+    whole
 }
 
 /// Returns a note, `the rest pose was taken`, as a sentence: `The rest pose was taken.`
