@@ -13,7 +13,7 @@ mod numbers;
 mod tests;
 mod tree;
 
-use self::tree::{Changes, Tree};
+use self::tree::Tree;
 use crate::ui;
 use eframe::egui::accesskit::{Action, ActionData, ActionRequest, TreeId};
 use eframe::egui::{Context, Event, FullOutput, Key, Modifiers, Plugin, RawInput};
@@ -122,8 +122,8 @@ impl Plugin for OutlinePlugin {
         let Some(update) = output.platform_output.accesskit_update.take() else {
             return;
         };
-        let changes = self.outline.tree().changes(update, f64::from(ctx.zoom_factor()));
-        let changes = changes.map(|changes| Changes { skip: ui::skip_words(ctx), ..changes });
+        let zoom = f64::from(ctx.zoom_factor());
+        let changes = self.outline.tree().changes(update, zoom, || ui::skip_words(ctx));
         if let Some(changes) = changes
             && let Ok(text) = serde_json::to_string(&changes)
         {

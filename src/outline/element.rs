@@ -50,6 +50,26 @@ pub(super) struct Range {
     pub(super) step: Option<f64>,
 }
 
+/// The value of an element, which changes while all else stays as it is.
+#[derive(Debug, PartialEq, Serialize)]
+pub(super) struct Value {
+    number: u32,
+    /// The text of an element that is one, or else its name, which has not changed.
+    name: String,
+    /// As in [`Element`].
+    #[serde(skip_serializing_if = "String::is_empty")]
+    value: String,
+    /// As in [`Range`].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    now: Option<f64>,
+}
+
+impl From<Element> for Value {
+    fn from(Element { number, name, value, range, .. }: Element) -> Self {
+        Self { number, name, value, now: range.map(|range| range.now) }
+    }
+}
+
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
 fn is_false(value: &bool) -> bool {
     !value

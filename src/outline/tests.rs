@@ -79,7 +79,7 @@ fn only_elements_with_new_values_are_made_anew() {
         last.expect("a tree")
     };
     let mut tree = Tree::default();
-    assert!(tree.changes(nodes_at(3.0), 1.0).is_some());
+    assert!(tree.changes(nodes_at(3.0), 1.0, String::new).is_some());
     let changed = |value: f64, zoom: f64| {
         tree.new_values(&nodes_at(value).nodes, zoom).map(|elements| elements.len())
     };
@@ -113,12 +113,27 @@ fn changed_values_give_the_elements_of_a_new_tree() {
     }
     assert_eq!(told.pop().flatten(), None, "nothing has changed");
     let changed = told.pop().flatten().expect("new values");
-    let mut roles: Vec<_> = (changed["elements"].as_array().unwrap().iter())
-        .map(|element| element["role"].as_str().unwrap())
+    let values = changed["values"].as_array().expect("values alone");
+    let mut values: Vec<_> = (values.iter())
+        .map(|value| {
+            let tree = outline.tree();
+            let number = value["number"].as_u64().and_then(|number| number.try_into().ok());
+            let element = &tree.elements[&number.expect("a number")];
+            (element.role, value["name"].as_str() == Some(&element.name), value["now"].as_f64())
+        })
         .collect();
-    roles.sort_unstable(); // the page takes them in any order
-    assert_eq!(roles, ["progressbar", "slider", "spinbutton", "spinbutton", "text"]);
-    assert!(!changed["top"].as_array().unwrap().is_empty());
+    values.sort_by_key(|(role, ..)| *role); // the page takes them in any order
+    let progress = f64::from(7.0_f32 / 10.0);
+    assert_eq!(
+        values,
+        [
+            ("progressbar", true, Some(progress)),
+            ("slider", true, Some(7.0)),
+            ("spinbutton", true, Some(7.0)),
+            ("spinbutton", true, Some(7.0)),
+            ("text", true, None),
+        ]
+    );
 }
 
 #[test]

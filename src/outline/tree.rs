@@ -1,6 +1,6 @@
 //! The tree of elements on the page, and its changes from frame to frame.
 
-use super::element::Element;
+use super::element::{Element, Value};
 use super::elements::{Found, is_text};
 use super::numbers::Numbers;
 use eframe::egui::Event;
@@ -27,9 +27,18 @@ pub(super) struct Tree {
     zoom: f64,
 }
 
+/// What the page is told of a frame.
+#[derive(Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub(super) enum Changes {
+    /// Elements differ in their values alone: so it is in nearly all frames while a motion plays.
+    Values { values: Vec<Value> },
+    Elements(ElementChanges),
+}
+
 /// The differences from the frame before.
 #[derive(Debug, Default, PartialEq, Serialize)]
-pub(super) struct Changes {
+pub(super) struct ElementChanges {
     /// Elements that are new, or not as they were.
     pub(super) elements: Vec<Element>,
     /// The numbers of those that are gone.
@@ -44,13 +53,20 @@ pub(super) struct Changes {
 
 impl Tree {
     /// Returns the changes for the page; `None` where it is up to date. `zoom` is the number of
-    /// pixels of the page for a point.
-    pub(super) fn changes(&mut self, update: TreeUpdate, zoom: f64) -> Option<Changes> {
-        let changes = if let Some(elements) = self.new_values(&update.nodes, zoom) {
+    /// pixels of the page for a point, `skip` returns the text of the link to the parameters.
+    pub(super) fn changes(
+        &mut self,
+        update: TreeUpdate,
+        zoom: f64,
+        skip: impl FnOnce() -> String,
+    ) -> Option<Changes> {
+        let with_values = self.new_values(&update.nodes, zoom);
+        let only_values = with_values.is_some();
+        let changes = if let Some(elements) = with_values {
             for element in &elements {
                 self.elements.insert(element.number, element.clone());
             }
-            Changes { elements, ..Changes::default() }
+            ElementChanges { elements, ..ElementChanges::default() }
         } else {
             self.new_elements(&update, zoom)?
         };
@@ -58,14 +74,21 @@ impl Tree {
 
         let focus = self.numbers.known(update.focus);
         let focus = focus.filter(|number| self.elements.contains_key(number));
-        let is_same = changes.elements.is_empty() && changes.gone.is_empty() && focus == self.focus;
+        let keeps_focus = focus == self.focus;
         self.focus = focus;
-        (!is_same).then(|| Changes { focus: focus.unwrap_or(0), top: self.top.clone(), ..changes })
+        if changes.elements.is_empty() && changes.gone.is_empty() && keeps_focus {
+            return None;
+        }
+        if only_values && keeps_focus {
+            let values = changes.elements.into_iter().map(Value::from).collect();
+            return Some(Changes::Values { values });
+        }
+        let (focus, top) = (focus.unwrap_or(0), self.top.clone());
+        Some(Changes::Elements(ElementChanges { focus, top, skip: skip(), ..changes }))
     }
 
     /// Returns the elements that are not as they were, if none of them differs in more than its
-    /// value: so it is in nearly all frames while a motion plays, and the others are left alone.
-    /// Otherwise returns `None`.
+    /// value; otherwise returns `None`.
     pub(super) fn new_values(&self, nodes: &[(NodeId, Node)], zoom: f64) -> Option<Vec<Element>> {
         if nodes.len() != self.nodes.len() || zoom.to_bits() != self.zoom.to_bits() {
             return None;
@@ -89,7 +112,7 @@ impl Tree {
     }
 
     /// Makes all elements anew, and returns the changes; `None` without a tree.
-    fn new_elements(&mut self, update: &TreeUpdate, zoom: f64) -> Option<Changes> {
+    fn new_elements(&mut self, update: &TreeUpdate, zoom: f64) -> Option<ElementChanges> {
         let root = update.tree.as_ref()?.root;
         self.zoom = zoom;
         self.labels =
@@ -101,7 +124,7 @@ impl Tree {
         found.sort_parts(&mut self.top);
         let elements = found.elements;
 
-        let mut changes = Changes::default();
+        let mut changes = ElementChanges::default();
         let mut now = HashMap::with_capacity(elements.len());
         for element in elements {
             if self.elements.get(&element.number) != Some(&element) {

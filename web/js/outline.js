@@ -52,7 +52,8 @@ export class Outline {
     handle.setOutline((text) => this.#update(JSON.parse(text)));
   }
 
-  #update({ elements, gone, focus, top, skip }) {
+  #update({ values, elements, gone, focus, top, skip }) {
+    if (values) return this.#setValues(values);
     const hadKeyboard = this.#root.contains(document.activeElement);
     setText(this.#skip, skip);
     for (const told of elements) this.#show(told);
@@ -71,6 +72,17 @@ export class Outline {
     this.#nameEditor();
   }
 
+  /** Takes new values of elements that are otherwise as they were: so it is in nearly all frames while a motion plays. */
+  #setValues(values) {
+    for (const { number, name, value, now } of values) {
+      const told = this.#told.get(number);
+      Object.assign(told, { name, value });
+      if (told.range) told.range.now = now;
+      showValue(this.#elements.get(number), told);
+    }
+    this.#settle(this.#focus);
+  }
+
   /** Moves the keyboard from an element that is gone, or behind a dialog, into that dialog, or else to the canvas. */
   #keepKeyboard(modal) {
     const active = document.activeElement;
@@ -81,7 +93,7 @@ export class Outline {
 
   /** Makes an element as the app tells. */
   #show(told) {
-    const { number, role, name = "", description = "", value = "", range, state, expanded, popup, level, disabled, focusable, modal, place } = told;
+    const { number, role, description, range, state, expanded, popup, level, disabled, focusable, modal, place } = told;
     let element = this.#elements.get(number);
     let before = this.#told.get(number);
     const tag = TAGS[role] ?? "div";
@@ -96,17 +108,8 @@ export class Outline {
     }
     this.#told.set(number, told);
 
-    // While a motion plays, an element or two change in each frame, each in a value. What is written again has the browser lay out
-    // the page again.
-    const set = (attribute, value) => {
-      if (value === undefined || value === "" || value === false) element.removeAttribute(attribute);
-      else if (element.getAttribute(attribute) !== String(value)) element.setAttribute(attribute, value);
-    };
-    const isText = ["text", "alert", "status"].includes(role) && !told.children;
-    if (isText) setText(element, name);
-    // A value without an attribute of its own goes into the name, such as the choice of a combo box.
-    const hasOwnValue = isText || range || role === "slider" || role === "edit";
-    set("aria-label", isText ? "" : value && !hasOwnValue ? `${name}: ${value}` : name);
+    const set = (attribute, value) => setAttribute(element, attribute, value);
+    if (isText(told)) set("aria-label", "");
     set("aria-description", description);
     set("tabindex", focusable ? 0 : undefined);
     set("aria-disabled", disabled && "true");
@@ -117,19 +120,15 @@ export class Outline {
     set("aria-modal", modal && "true");
     for (const attribute of ["aria-checked", "aria-pressed", "aria-selected"]) set(attribute, state?.[0] === attribute ? state[1] : undefined);
     if (role === "slider") {
-      const { min = 0, max = 1, now = 0, step } = range ?? {};
-      for (const [name, value] of Object.entries({ type: "range", min, max, step: step ?? "any" })) set(name, String(value));
-      element.value = now;
-      set("aria-valuetext", value);
+      const { min = 0, max = 1, step = "any" } = range ?? {};
+      for (const [name, value] of Object.entries({ type: "range", min, max, step })) set(name, String(value));
     } else if (role === "edit") {
       element.type = "text";
-      element.value = value;
     } else if (range) {
-      set("aria-valuenow", range.now.toString());
       set("aria-valuemin", range.min?.toString());
       set("aria-valuemax", range.max?.toString());
-      set("aria-valuetext", value);
     }
+    showValue(element, told);
     const [left, top, width, height] = place;
     // Not as an attribute: the page's policy forbids styles in its markup.
     if (String(before?.place) !== String(place)) {
@@ -264,6 +263,30 @@ export class Outline {
 
 /** Which roles are elements of HTML; all others are `div`s with that role. */
 const TAGS = { text: "span", slider: "input", edit: "input" };
+
+/** Whether an element is a text, which is its name. */
+function isText({ role, children }) {
+  return ["text", "alert", "status"].includes(role) && !children;
+}
+
+/** Writes what changes of an element while all else stays as it is. */
+function showValue(element, told) {
+  const { role, name = "", value = "", range } = told;
+  if (isText(told)) return setText(element, name);
+  const hasOwnValue = range || role === "slider" || role === "edit";
+  // A value without an attribute of its own goes into the name, such as the choice of a combo box.
+  setAttribute(element, "aria-label", value && !hasOwnValue ? `${name}: ${value}` : name);
+  if (role === "slider") element.value = range?.now ?? 0;
+  else if (role === "edit") element.value = value;
+  else if (range) setAttribute(element, "aria-valuenow", String(range.now));
+  if (hasOwnValue && role !== "edit") setAttribute(element, "aria-valuetext", value);
+}
+
+/** Sets an attribute, or removes it for nothing. What is written again has the browser lay out the page again. */
+function setAttribute(element, attribute, value) {
+  if (value === undefined || value === "" || value === false) element.removeAttribute(attribute);
+  else if (element.getAttribute(attribute) !== String(value)) element.setAttribute(attribute, value);
+}
 
 function setText(element, text) {
   if (element.textContent !== text) element.textContent = text;
