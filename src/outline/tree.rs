@@ -32,7 +32,9 @@ pub(super) struct Tree {
 #[serde(untagged)]
 pub(super) enum Changes {
     /// Elements differ in their values alone: so it is in nearly all frames while a motion plays.
-    Values { values: Vec<Value> },
+    Values {
+        values: Vec<Value>,
+    },
     Elements(ElementChanges),
 }
 

@@ -147,7 +147,7 @@ impl Writer<'_> {
 fn text(write: impl FnOnce(&mut String) -> fmt::Result) -> String {
     let mut whole = String::new();
     // Only a number whose own `Display` fails could be an error, and none does.
-    drop(write(&mut whole));
+    write(&mut whole).unwrap_or_default();
     whole
 }
 
