@@ -494,6 +494,35 @@ fn transport_reports_play_step_and_speed() {
     assert_eq!(*harness.state(), asked);
 }
 
+// Fails when the numbers of a playing motion push what stands behind them.
+#[test]
+fn place_of_the_position_is_that_of_every_frame() {
+    let mut harness = Harness::builder()
+        .with_size(vec2(800.0, 400.0))
+        .with_context_setup(|ctx| Theme::default().install(ctx))
+        .build_ui_state(
+            |ui, frame: &mut usize| {
+                let view = Transport {
+                    playing: true,
+                    repeat: true,
+                    speed: 1.0,
+                    now: 0.5,
+                    frame: *frame,
+                    frames: 2090,
+                    caption: Word::new("speed").into(),
+                };
+                transport_ui(&view, ui);
+            },
+            0,
+        );
+    let places = [0, 9, 10, 99, 100, 1000, 2089].map(|frame| {
+        *harness.state_mut() = frame;
+        harness.run();
+        harness.get_by_label(&format!("0.50 s, frame {frame} / 2090")).rect()
+    });
+    assert_eq!(places, [places[0]; 7]);
+}
+
 #[test]
 fn tabs_without_room_fold_into_a_menu() {
     const LABS: [(usize, Word); 4] = [

@@ -98,8 +98,12 @@ pub(crate) fn transport_ui(transport: &Transport<'_>, ui: &mut Ui) -> Option<Tra
             runs.push(Run::new(Text::Data(&frame), Type::Body, palette.muted).after(space::M));
         }
         let galley = line_of(&runs, f32::INFINITY, ui);
-        // Tabular figures keep the width, so that the widgets behind it do not move.
-        let (id, rect) = ui.allocate_space(vec2(galley.size().x, height));
+        // As wide as with the last frame: what stands behind it does not move while it plays.
+        let font = theme.font(Type::Body);
+        let figure = ui.fonts_mut(|fonts| fonts.glyph_width(&font, '0'));
+        let missing = figures(transport.frames).saturating_sub(figures(transport.frame));
+        let missing = if narrow { 0.0 } else { missing as f32 * figure };
+        let (id, rect) = ui.allocate_space(vec2((galley.size().x + missing).round(), height));
         readable_ui(&format!("{time}, {frame}"), rect, id, ui);
         put(ui.painter(), rect.left_center(), Align2::LEFT_CENTER, galley);
         rect.right()
@@ -109,6 +113,11 @@ pub(crate) fn transport_ui(transport: &Transport<'_>, ui: &mut Ui) -> Option<Tra
         line_of(&[Run::new(transport.caption, Type::Body, palette.muted)], row.right() - left, ui);
     put(ui.painter(), pos2(row.right(), row.center().y), Align2::RIGHT_CENTER, caption);
     event
+}
+
+/// Returns the number of figures of a number.
+fn figures(number: usize) -> u32 {
+    number.checked_ilog10().unwrap_or(0) + 1
 }
 
 /// Returns the height of [`transport_ui`].
