@@ -50,9 +50,9 @@ pub(super) struct Range {
     pub(super) step: Option<f64>,
 }
 
-/// The value of an element, which changes while all else stays as it is.
+/// The new value of an element, which changes while all else stays as it is.
 #[derive(Debug, PartialEq, Serialize)]
-pub(super) struct Value {
+pub(super) struct NewValue {
     number: u32,
     /// The text of an element that is one, or else its name, which has not changed.
     name: String,
@@ -64,7 +64,7 @@ pub(super) struct Value {
     now: Option<f64>,
 }
 
-impl From<Element> for Value {
+impl From<Element> for NewValue {
     fn from(Element { number, name, value, range, .. }: Element) -> Self {
         Self { number, name, value, now: range.map(|range| range.now) }
     }

@@ -1,6 +1,6 @@
 //! The tree of elements on the page, and its changes from frame to frame.
 
-use super::element::{Element, Value};
+use super::element::{Element, NewValue};
 use super::elements::{Found, is_text};
 use super::numbers::Numbers;
 use eframe::egui::Event;
@@ -33,7 +33,7 @@ pub(super) struct Tree {
 pub(super) enum Changes {
     /// Elements differ in their values alone: so it is in nearly all frames while a motion plays.
     Values {
-        values: Vec<Value>,
+        values: Vec<NewValue>,
     },
     Elements(ElementChanges),
 }
@@ -82,7 +82,7 @@ impl Tree {
             return None;
         }
         if only_values && keeps_focus {
-            let values = changes.elements.into_iter().map(Value::from).collect();
+            let values = changes.elements.into_iter().map(NewValue::from).collect();
             return Some(Changes::Values { values });
         }
         let (focus, top) = (focus.unwrap_or(0), self.top.clone());
