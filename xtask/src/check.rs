@@ -237,10 +237,10 @@ fn browser(report: &mut Report) {
         let server = server::Server::bind(0, dist::folder())?;
         let address = server.address();
         std::thread::spawn(move || server.run());
-        // Three files at a time: alone, a file leaves a quarter of two cores idle. The tests wait
-        // for what they test and measure by their threads' own clocks, so company does not matter
-        // to them.
-        let mut node = command("node", &["--test", "--test-reporter=spec", "--test-concurrency=3"]);
+        // Two files at a time: alone, a file leaves a quarter of two cores idle. The tests wait for
+        // what they test and measure by their threads' own clocks, so company does not matter to
+        // them.
+        let mut node = command("node", &["--test", "--test-reporter=spec", "--test-concurrency=2"]);
         node.current_dir(root().join("tests/browser"))
             .env("SEGUE_URL", address)
             .env("SEGUE_PROGRAM", program)
