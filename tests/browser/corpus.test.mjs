@@ -325,9 +325,12 @@ onOneBackend("hosts without ranges and damaged files are told in a sentence", as
       return expected.test(text) && text;
     });
     assert.ok(text.length < 320 && /[.。]$/.test(text.trim()), text);
+    await close();
+  });
+  const close = async () => {
     await segue("set", { corpus: "" });
     await until("it is closed", async () => (await page.locator("#corpus").count()) === 0);
-  });
+  };
   const play = async () => {
     await opened(page);
     await page.locator("#corpus .row:not(.wrong)").first().click();
@@ -359,14 +362,14 @@ onOneBackend("hosts without ranges and damaged files are told in a sentence", as
     await page.getByRole("button", { name: "Filters" }).click();
     assert.equal(await page.getByRole("radio", { name: "Hide" }).getAttribute("aria-checked"), "true");
     assert.equal((await segue("params")).corpus, `${address}#copies=hide`);
-    await segue("set", { corpus: "" });
+    await close();
   });
   // A small corpus is read whole from a host without ranges.
   await corpusServer(FOLDER, { ranges: false }, async (address) => {
     await segue("set", { corpus: address });
     await play();
     await until("it plays", async () => (await corpusClips(segue)).length > 0);
-    await segue("set", { corpus: "" });
+    await close();
   });
   // A clip of a link that is not there, and an address that is none.
   await corpusServer(FOLDER, {}, async (address) => {
