@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use std::process::Command;
 
 use crate::progress::{self, Build};
-use crate::shell::{Result, cargo, command, fail, on_path, root, run, step, target};
-use crate::{page, seal, tools};
+use crate::shell::{Result, cargo, command, fail, is_ci, on_path, root, run, step, target};
+use crate::{lint, page, seal, tools};
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Profile {
@@ -83,6 +83,9 @@ fn app(profile: Profile, others: &[&str]) -> Command {
     build.args(others);
     if profile == Profile::Release {
         build.arg("--release");
+    }
+    if is_ci() {
+        lint::while_building(&mut build);
     }
     build
 }

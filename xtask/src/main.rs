@@ -4,6 +4,7 @@ mod check;
 mod compare;
 mod dist;
 mod fuzz;
+mod lint;
 mod page;
 mod progress;
 mod quality;
@@ -27,7 +28,7 @@ cargo xtask serve --dist
 
 cargo xtask test [PART …]
     Everything that must pass. Parts: lint core oracles python app web browser; all of them unless some are named.
-    lint        rustfmt, clippy for the core alone, for the whole app and for the web
+    lint        rustfmt, and Clippy for everything, natively and for the web (in CI, the latter while `web` builds)
     core        the tests of the libraries and the command line, and documentation examples, built without any UI
     oracles     exported files, read back by npm's three and PyPI's bvhio: the same motion?
     python      `import segue`: a wheel, and its tests against NumPy, SciPy and other readers
@@ -83,6 +84,9 @@ cargo xtask help
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let args: Vec<&str> = args.iter().map(String::as_str).collect();
+    if lint::is_compiler(&args) {
+        return lint::compile(&args).unwrap_or_else(failed);
+    }
     let outcome = match args.split_first() {
         Some((&"serve", rest)) => serve(rest),
         Some((&"test", rest)) => check::run(rest),
@@ -102,13 +106,12 @@ fn main() -> ExitCode {
         }
         Some((other, _)) => fail(format!("there is no command `{other}`\n\n{HELP}")),
     };
-    match outcome {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::FAILURE
-        }
-    }
+    outcome.map_or_else(failed, |()| ExitCode::SUCCESS)
+}
+
+fn failed(error: shell::Error) -> ExitCode {
+    eprintln!("error: {error}");
+    ExitCode::FAILURE
 }
 
 /// Writes the table of parameters by running the test that compares it with the program: xtask does

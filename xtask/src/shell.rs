@@ -36,8 +36,8 @@ pub fn command(program: impl AsRef<OsStr>, args: &[&str]) -> Command {
 
 /// Returns the cargo that runs this xtask, so that a toolchain chosen for one applies to the other.
 ///
-/// Under CI it keeps nothing for a next build and no lines for a debugger: neither is used, and
-/// both take time.
+/// In CI it keeps nothing for a next build and no lines for a debugger: neither is used, and both
+/// take time.
 pub fn cargo(args: &[&str]) -> Command {
     let mut cargo = command(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()), args);
     build_as_in_ci(&mut cargo);
@@ -46,9 +46,14 @@ pub fn cargo(args: &[&str]) -> Command {
 
 /// Has a command that calls cargo build as [`cargo`] does, so that both use the same libraries.
 pub fn build_as_in_ci(command: &mut Command) {
-    if std::env::var_os("CI").is_some() {
+    if is_ci() {
         command.env("CARGO_INCREMENTAL", "0").env("CARGO_PROFILE_DEV_DEBUG", "0");
     }
+}
+
+/// Returns whether this is a machine for which everything is new, and which is used once.
+pub fn is_ci() -> bool {
+    std::env::var_os("CI").is_some()
 }
 
 /// Runs a command to the end; anything but success is an error that shows the command.
