@@ -317,6 +317,10 @@ onOneBackend("corpus in a folder plays, and no link names it", async ({ open }) 
 // Fails when a host or a file that is wrong gives no sentence that says what to do.
 onOneBackend("hosts without ranges and damaged files are told in a sentence", async ({ open }) => {
   const { page, segue } = await open("lab=view&play=off", { viewport: [1280, 800] });
+  const close = async () => {
+    await segue("set", { corpus: "" });
+    await until("it is closed", async () => (await page.locator("#corpus").count()) === 0);
+  };
   const told = async (options, expected, act) => corpusServer(FOLDER, options, async (address) => {
     await segue("set", { corpus: address });
     if (act) await act(address);
@@ -327,10 +331,6 @@ onOneBackend("hosts without ranges and damaged files are told in a sentence", as
     assert.ok(text.length < 320 && /[.。]$/.test(text.trim()), text);
     await close();
   });
-  const close = async () => {
-    await segue("set", { corpus: "" });
-    await until("it is closed", async () => (await page.locator("#corpus").count()) === 0);
-  };
   const play = async () => {
     await opened(page);
     await page.locator("#corpus .row:not(.wrong)").first().click();

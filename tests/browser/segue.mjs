@@ -237,11 +237,12 @@ export async function close() {
   }
 }
 
-/** Waits for a promise, and rejects with a message where it takes longer than `ms`. */
+/** Waits for a promise, and rejects with a `TimeoutError` where it takes longer than `ms`. */
 export function withTimeout(promise, ms, message) {
   let timer;
   const late = new Promise((_, reject) => {
-    timer = setTimeout(() => reject(new Error(`${message()}\n(after ${ms / 1000} s)`)), ms);
+    // The name of Playwright's own.
+    timer = setTimeout(() => reject(Object.assign(new Error(`${message()}\n(after ${ms / 1000} s)`), { name: "TimeoutError" })), ms);
   });
   return Promise.race([promise, late]).finally(() => clearTimeout(timer));
 }

@@ -43,7 +43,7 @@ pub fn build(profile: Profile, modules: Modules) -> Result<()> {
         || {
             // The app ends in one long link on one core: the other core builds the tool meanwhile.
             progress::run(vec![
-                Build { name: "Segue for the web", cargo: app(profile, &WORKERS) },
+                Build { name: "Segue for the web", cargo: app(profile, &WORKERS)? },
                 Build { name: "its JavaScript's writer", cargo: bindgen() },
             ])
         },
@@ -51,11 +51,11 @@ pub fn build(profile: Profile, modules: Modules) -> Result<()> {
     if modules == Modules::Two {
         step("building the module for WebGPU alone (about 3 minutes the first time)", || {
             // Both are called segue-app.wasm, and the other is built again in no time.
-            let webgpu = app(profile, &["--no-default-features", "--features=app"]);
+            let webgpu = app(profile, &["--no-default-features", "--features=app"])?;
             progress::run(vec![Build { name: "Segue for WebGPU", cargo: webgpu }])?;
             let folder = compiled(profile);
             fs::copy(folder.join("segue-app.wasm"), folder.join(format!("{}.wasm", page::WEBGPU)))?;
-            progress::run(vec![Build { name: "Segue for the web", cargo: app(profile, &[]) }])
+            progress::run(vec![Build { name: "Segue for the web", cargo: app(profile, &[])? }])
         })?;
     }
     step("putting the page together (seconds)", || assemble(profile, modules))
@@ -72,7 +72,7 @@ fn compiled(profile: Profile) -> PathBuf {
     })
 }
 
-fn app(profile: Profile, others: &[&str]) -> Command {
+fn app(profile: Profile, others: &[&str]) -> Result<Command> {
     let mut build = cargo(&[
         "build",
         "--locked",
@@ -85,9 +85,9 @@ fn app(profile: Profile, others: &[&str]) -> Command {
         build.arg("--release");
     }
     if is_ci() {
-        lint::while_building(&mut build);
+        lint::while_building(&mut build)?;
     }
-    build
+    Ok(build)
 }
 
 fn bindgen() -> Command {

@@ -10,11 +10,10 @@ use std::process::{Command, ExitCode};
 
 use crate::shell::{self, Result, fail};
 
-/// Has a command that calls cargo check by Clippy what it compiles.
-pub fn while_building(command: &mut Command) {
-    if let Ok(xtask) = std::env::current_exe() {
-        command.env("RUSTC_WORKSPACE_WRAPPER", xtask);
-    }
+/// Sets up a call of cargo so that Clippy checks what it compiles.
+pub fn while_building(cargo: &mut Command) -> Result<()> {
+    cargo.env("RUSTC_WORKSPACE_WRAPPER", std::env::current_exe()?);
+    Ok(())
 }
 
 /// Returns whether cargo has called xtask in place of a compiler, which is the first argument then.
@@ -25,22 +24,30 @@ pub fn is_compiler(args: &[&str]) -> bool {
 /// Checks by Clippy what is to be compiled, and compiles it if there is no fault.
 pub fn compile(args: &[&str]) -> Result<ExitCode> {
     let (compiler, args) = args.split_first().ok_or("there is no compiler")?;
-    // Cargo also asks for facts of the compiler.
+    // Cargo also asks the compiler for its version and its targets.
     if args.iter().any(|arg| arg.ends_with(".rs")) {
-        // `-D warnings`, as cargo hands it to Clippy.
         let mut clippy = Command::new("clippy-driver");
         clippy.arg(compiler).args(check_args(args)?);
-        let denied = "-D__CLIPPY_HACKERY__warnings__CLIPPY_HACKERY__";
-        if !clippy.env("CLIPPY_ARGS", denied).status()?.success() {
+        // `-D warnings`, in the form in which `cargo clippy` hands it on.
+        clippy.env("CLIPPY_ARGS", "-D__CLIPPY_HACKERY__warnings__CLIPPY_HACKERY__");
+        if !succeeds(&mut clippy)? {
             return Ok(ExitCode::FAILURE);
         }
     }
-    let compiled = Command::new(compiler).args(args).status()?;
-    Ok(if compiled.success() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    let compiled = succeeds(Command::new(compiler).args(args))?;
+    Ok(if compiled { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Returns the arguments that check instead of compiling. What the check writes lies beside the
-/// build, and cargo is not told of it.
+/// Runs a command, which writes its own faults.
+fn succeeds(command: &mut Command) -> Result<bool> {
+    match command.status() {
+        Ok(status) => Ok(status.success()),
+        Err(error) => fail(format!("{} did not start: {error}", command.get_program().display())),
+    }
+}
+
+/// Returns the arguments of the check. What it writes goes into a folder of its own, and cargo must
+/// not take it for a part of the build.
 fn check_args(args: &[&str]) -> Result<Vec<String>> {
     let checked = shell::target().join("checked");
     fs::create_dir_all(&checked)?;
