@@ -108,14 +108,19 @@ impl Plugin for OutlinePlugin {
 
     fn input_hook(&mut self, ctx: &Context, input: &mut RawInput) {
         let mut tree = self.outline.tree();
-        if tree.is_enabled {
-            ctx.enable_accesskit();
-        }
         if tree.has_keyboard {
             input.focused = true;
             input.events.retain(|event| !matches!(event, Event::WindowFocused(false)));
         }
         input.events.append(&mut tree.events);
+        // Panels that stand still describe nothing, and describing the rest alone would end them
+        // for the page.
+        let is_still = input.events.is_empty() && ui::still::is_expected(ctx);
+        if is_still && tree.is_known() {
+            ctx.disable_accesskit();
+        } else if tree.is_enabled {
+            ctx.enable_accesskit();
+        }
     }
 
     fn output_hook(&mut self, ctx: &Context, output: &mut FullOutput) {

@@ -20,6 +20,7 @@ mod presenter;
 mod rows;
 mod stage;
 mod state;
+pub(crate) mod still;
 #[cfg(all(test, feature = "ui-tests"))]
 mod tests;
 mod text;

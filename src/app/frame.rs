@@ -1,5 +1,6 @@
 //! A frame of the window: the panels, their commands, the picture, and the time of the next frame.
 
+use super::window::Shown;
 use super::{Segue, picture};
 use crate::platform;
 use crate::ui::{self, Filming};
@@ -49,6 +50,8 @@ impl Segue {
         self.apply_theme(ui.ctx());
         let before = self.session.revision();
         self.update_panels(ui.ctx());
+        let is_quiet = self.is_quiet(ui.ctx());
+        self.panels.stillness.begin(is_quiet, ui.ctx());
         let mut slot = picture::StageSlot::default();
         let mut reserve = |stage: egui::Rect, panes: &[(usize, egui::Rect)], ui: &mut egui::Ui| {
             slot.reserve(stage, panes, ui);
@@ -106,6 +109,25 @@ impl Segue {
     }
 
     /// Records the duration of the last frame. eframe measures all of it, up to the commands for
+    /// Returns whether nothing has happened since the last frame but that the motion played.
+    fn is_quiet(&mut self, ctx: &egui::Context) -> bool {
+        let shown = Shown {
+            revision: self.session.revision(),
+            stored: self.panels.stored,
+            theme: self.window.theme,
+            page: ctx.content_rect(),
+            has_focus: ctx.input(|input| input.focused),
+        };
+        let is_same = self.window.shown.replace(shown) == Some(shown);
+        let is_at_work = self.clock.left_work.is_some()
+            || self.pool.is_busy()
+            || self.film.is_some()
+            || !self.panels.fetching.is_empty()
+            || self.panels.convert.shown.progress.is_some();
+        let is_playing = self.session.is_playing() && !self.session.is_driven();
+        is_same && is_playing && !is_at_work && self.session.notices().next_change_secs().is_none()
+    }
+
     /// the graphics device, but only where the frame began with the screen's refresh; for a frame
     /// that was computed inside an input event, the time measured by [`Self::ui`] stands in.
     fn note_frame_time(&mut self, ctx: &egui::Context, frame: &eframe::Frame) {

@@ -6,6 +6,7 @@ use crate::platform::{self, FramePacer, Incoming};
 use crate::ui;
 use crate::ui::theme::Theme;
 use eframe::{egui, wgpu};
+use segue_session::StorageState;
 
 /// The window that draws at present.
 #[derive(Debug, Default)]
@@ -17,7 +18,9 @@ pub(super) struct Window {
     /// The pacer of frames that are drawn in software; `None` with a graphics card.
     pub(super) pacer: Option<FramePacer>,
     /// The installed theme; `None` before the first frame.
-    theme: Option<Theme>,
+    pub(super) theme: Option<Theme>,
+    /// What the panels of the last frame showed.
+    pub(super) shown: Option<Shown>,
     /// Whether a finger is the main pointer, and the size of the window for which this was asked.
     has_coarse_pointer: bool,
     pointer_of: Option<egui::Vec2>,
@@ -28,11 +31,22 @@ pub(super) struct Window {
     pub(super) within_event: bool,
 }
 
+/// What the panels show that changes without a user's event.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Shown {
+    pub(super) revision: u64,
+    pub(super) stored: Option<StorageState>,
+    pub(super) theme: Option<Theme>,
+    pub(super) page: egui::Rect,
+    pub(super) has_focus: bool,
+}
+
 impl Segue {
     /// Attaches a new window, with all that belongs to its graphics device.
     pub(super) fn attach(&mut self, cc: &eframe::CreationContext<'_>) {
         self.inbox.set_context(&cc.egui_ctx);
         self.window = Window { generation: self.window.generation + 1, ..Window::default() };
+        self.panels.stillness = ui::still::Stillness::default();
         cc.egui_ctx.add_plugin(ui::Pacing::default());
         // Fonts take effect with the next frame. Installed here, that is the first one, and the
         // work is done while the storage opens.

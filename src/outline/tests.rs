@@ -51,6 +51,33 @@ fn disabled_outline_tells_nothing() {
     assert_eq!(frame(&ctx, |ui| drop(ui.button("Play"))), None);
 }
 
+#[test]
+fn page_hears_of_still_panels_once_a_second_and_of_events_at_once() {
+    let (ctx, outline) = told_outline();
+    let mut stillness = ui::still::Stillness::default();
+    let mut number = 0;
+    let mut next = || {
+        frame(&ctx, |ui| {
+            stillness.begin(true, ui.ctx());
+            number += 1;
+            drop(ui.button("Play"));
+            ui.label(format!("frame {number}"));
+        })
+    };
+    let first = next().expect("all elements");
+    let told: Vec<_> = (0..300).map(|_| next()).collect();
+    assert!(told[..60].iter().all(Option::is_some), "until they stand still");
+    assert!((3..6).contains(&told[80..].iter().flatten().count()));
+    let ends_any = |changes: &serde_json::Value| {
+        changes["gone"].as_array().is_some_and(|gone| !gone.is_empty())
+    };
+    assert!(!told.iter().flatten().any(ends_any));
+
+    outline.request(number_of(&first, "button", "Play"), Deed::Focus);
+    let focused = next().expect("the focus");
+    assert_eq!(focused["focus"], number_of(&first, "button", "Play"));
+}
+
 /// A panel whose texts and values change, one of them the label of another.
 fn changing_ui(value: f64, ui: &mut Ui) {
     ui.heading("Blend");

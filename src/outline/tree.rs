@@ -54,6 +54,11 @@ pub(super) struct ElementChanges {
 }
 
 impl Tree {
+    /// Returns whether the page has been told of elements.
+    pub(super) fn is_known(&self) -> bool {
+        !self.nodes.is_empty()
+    }
+
     /// Returns the changes for the page; `None` where it is up to date. `zoom` is the number of
     /// pixels of the page for a point, `skip` returns the text of the link to the parameters.
     pub(super) fn changes(

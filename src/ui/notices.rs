@@ -23,7 +23,7 @@ struct Summary {
 pub(crate) fn notices_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let notices = session.notices();
     let (Some(place), Some(summary)) =
-        (state.notice_place.take(), summary_of(notices, state.seen_notices))
+        (state.notice_place, summary_of(notices, state.seen_notices))
     else {
         return;
     };

@@ -10,6 +10,7 @@ use super::overlays;
 use super::presenter::presenter_ui;
 use super::stage::{Paint, stage_panel_ui};
 use super::state::{Layout, NoticePlace, UiState};
+use super::still::still_ui;
 use super::text;
 use super::theme::{Theme, palette_of, space, theme_of};
 use super::timeline::{CurveCache, more_height, timeline_panel_ui};
@@ -28,10 +29,12 @@ pub(crate) fn show(
     ui: &mut Ui,
 ) -> Out {
     let mut out = Out::default();
-    state.joints_open = false;
-    state.library.begin_frame();
-    state.notice_place = None;
-    on_stage::begin_frame(session, state);
+    if !state.stillness.is_still() {
+        state.joints_open = false;
+        state.library.begin_frame();
+        state.notice_place = None;
+        on_stage::begin_frame(session, state);
+    }
     commands::take_keys(session, state, &mut out, ui);
     let layout = Layout::of(ui.available_width(), theme_of(ui).scale());
     state.layout = layout;
@@ -55,6 +58,7 @@ pub(crate) fn show(
     let on_stage = notices_on_stage(state.stage, is_low, theme_of(ui));
     state.notice_place.get_or_insert(on_stage);
     overlays::overlays_ui(session, state, &mut out, ui);
+    state.stillness.end(ui.ctx());
     out
 }
 
@@ -138,7 +142,9 @@ fn desk_ui(
     let frame = panel_frame(space::L, space::S);
     Panel::top("top bar").exact_size(bar_height(ui)).frame(frame).show(ui, |ui| {
         kit::set_role(Role::Banner, text::TOP_BAR, ui);
-        top_bar::top_bar_ui(session, layout, state, out, ui);
+        still_ui("bar", state, ui, |state, ui| {
+            top_bar::top_bar_ui(session, layout, state, out, ui);
+        });
     });
     let lesson = lessons_panel::is_open(session);
     // A lesson without a panel of its own shares that of the parameters, which is then as high as
@@ -169,7 +175,9 @@ fn desk_ui(
             .resizable(false)
             .show(ui, |ui| {
                 kit::set_role(Role::Complementary, text::LESSON, ui);
-                lessons_panel::lessons_panel_ui(session, false, state, out, ui);
+                still_ui("lesson", state, ui, |state, ui| {
+                    lessons_panel::lessons_panel_ui(session, false, state, out, ui);
+                });
             });
     }
     if state.library_open || !has_drawer(session, layout) {
@@ -177,7 +185,9 @@ fn desk_ui(
             ui,
             |ui| {
                 kit::set_role(Role::Complementary, text::LIBRARY, ui);
-                library_panel::library_panel_ui(session, state, out, ui);
+                still_ui("library", state, ui, |state, ui| {
+                    library_panel::library_panel_ui(session, state, out, ui);
+                });
             },
         );
     }
@@ -227,20 +237,33 @@ fn lab_side_ui(
         .resizable(false)
         .show(ui, |ui| {
             kit::set_role(Role::Form, text::PARAMETERS, ui);
-            if shared {
-                lessons_panel::lesson_or_parameters_ui(state, ui);
-                if !state.lesson_behind {
-                    lesson_with_controls_ui(session, state, out, ui);
-                    return;
-                }
-            }
-            if has_drawer(session, layout) {
-                library_panel::library_button_ui(state, ui);
-                ui.add_space(space::S);
-            }
-            footer_ui(session, state, out, ui);
-            scrolled_ui(space::L, ui, |ui| labs::lab_panel_ui(session, state, out, ui));
+            still_ui("lab", state, ui, |state, ui| {
+                lab_side_contents_ui(session, layout, shared, state, out, ui);
+            });
         });
+}
+
+fn lab_side_contents_ui(
+    session: &Session,
+    layout: Layout,
+    shared: bool,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
+    if shared {
+        lessons_panel::lesson_or_parameters_ui(state, ui);
+        if !state.lesson_behind {
+            lesson_with_controls_ui(session, state, out, ui);
+            return;
+        }
+    }
+    if has_drawer(session, layout) {
+        library_panel::library_button_ui(state, ui);
+        ui.add_space(space::S);
+    }
+    footer_ui(session, state, out, ui);
+    scrolled_ui(space::L, ui, |ui| labs::lab_panel_ui(session, state, out, ui));
 }
 
 /// Draws a lesson, and below it the controls that it mentions and those of the hidden parameters.
@@ -319,7 +342,9 @@ fn phone_ui(
     let frame = panel_frame(space::M, space::S);
     Panel::top("top bar").exact_size(bar_height(ui)).frame(frame).show(ui, |ui| {
         kit::set_role(Role::Banner, text::TOP_BAR, ui);
-        top_bar::top_bar_ui(session, Layout::Phone, state, out, ui);
+        still_ui("bar", state, ui, |state, ui| {
+            top_bar::top_bar_ui(session, Layout::Phone, state, out, ui);
+        });
     });
     let lesson = lessons_panel::is_open(session);
     let height = ui.available_height();
@@ -341,28 +366,35 @@ fn phone_ui(
             (Role::Form, text::PARAMETERS)
         };
         kit::set_role(part.0, part.1, ui);
-        if lesson && !state.library_open {
-            lessons_panel::lesson_or_parameters_ui(state, ui);
-            if !state.lesson_behind {
-                lessons_panel::lessons_panel_ui(session, true, state, out, ui);
-                return;
-            }
-        }
-        if state.library_open {
-            let margin = Margin { right: (space::L - BAR_MARGIN) as i8, ..Margin::ZERO };
-            let frame = Frame::new().inner_margin(margin);
-            library_panel::library_drawer_ui(session, frame, state, out, ui);
+        still_ui("panel", state, ui, |state, ui| {
+            phone_panel_ui(session, state, out, ui);
+        });
+    });
+}
+
+/// Draws the panel of a phone: the library, a lesson, or the parameters.
+fn phone_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    if lessons_panel::is_open(session) && !state.library_open {
+        lessons_panel::lesson_or_parameters_ui(state, ui);
+        if !state.lesson_behind {
+            lessons_panel::lessons_panel_ui(session, true, state, out, ui);
             return;
         }
-        footer_ui(session, state, out, ui);
-        scrolled_ui(space::L, ui, |ui| {
-            // On a small stage the hint would cover the motion.
-            if let Some(hint) = labs::welcome(session) {
-                kit::note_ui(hint, palette_of(ui).muted, ui);
-                ui.add_space(space::M);
-            }
-            labs::lab_panel_ui(session, state, out, ui);
-        });
+    }
+    if state.library_open {
+        let margin = Margin { right: (space::L - BAR_MARGIN) as i8, ..Margin::ZERO };
+        let frame = Frame::new().inner_margin(margin);
+        library_panel::library_drawer_ui(session, frame, state, out, ui);
+        return;
+    }
+    footer_ui(session, state, out, ui);
+    scrolled_ui(space::L, ui, |ui| {
+        // On a small stage the hint would cover the motion.
+        if let Some(hint) = labs::welcome(session) {
+            kit::note_ui(hint, palette_of(ui).muted, ui);
+            ui.add_space(space::M);
+        }
+        labs::lab_panel_ui(session, state, out, ui);
     });
 }
 

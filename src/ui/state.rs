@@ -19,6 +19,7 @@ pub(crate) use swipe::Swipe;
 use super::bone_map::BoneMapState;
 use super::labs::states::LabStates;
 use super::language::Language;
+use super::still::Stillness;
 use eframe::egui::Rect;
 use glam::{DVec2, Vec3};
 use segue_scene::Camera;
@@ -93,7 +94,7 @@ pub(crate) struct UiState {
     pub(crate) library: LibraryState,
     /// Whether the list of bundled takes is open.
     pub(crate) samples_open: bool,
-    /// The row with the chip of the notices, until it is drawn.
+    /// The row with the chip of the notices, as a panel has said.
     pub(crate) notice_place: Option<NoticePlace>,
     /// The number of the first notice that was never in the open list.
     pub(crate) seen_notices: u64,
@@ -169,6 +170,8 @@ pub(crate) struct UiState {
     pub(crate) host_reads: bool,
     /// The progress of storing the work; `None` where it is not stored at all.
     pub(crate) stored: Option<StorageState>,
+    /// The panels that stand still while the motion plays.
+    pub(crate) stillness: Stillness,
 }
 
 impl Default for UiState {
@@ -213,6 +216,7 @@ impl Default for UiState {
             shows_corpora: false,
             host_reads: false,
             stored: None,
+            stillness: Stillness::default(),
         }
     }
 }

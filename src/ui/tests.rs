@@ -43,6 +43,7 @@ mod quadruped;
 mod register;
 mod samples;
 mod screens;
+mod still;
 mod strip;
 
 const DESK: Vec2 = vec2(1440.0, 900.0);

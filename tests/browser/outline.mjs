@@ -1,5 +1,6 @@
-// A measurement without bounds: the cost of the elements for screen readers. Pages with and without
-// them take turns and play three panes. "In the page" is the time of web/js/outline.js, with the
+// A measurement without bounds: the cost of the elements for screen readers, and of a frame. Pages
+// with and without them take turns and play three panes: then panels stand still (src/ui/still.rs),
+// and the page is told of its elements once in 61 frames. "In the page" is the time of web/js/outline.js, with the
 // layout that it causes; the other cost is the difference between the frames of both pages.
 // "Frame" is what the page's thread computes in its callback for a frame, the elements among it,
 // and "all" everything that it computes for a frame, that of the browser too: both by the thread's
@@ -21,7 +22,7 @@ const [frames, rounds] = [values.frames, values.rounds].map(Number);
 /** The kinds of pages: whether they have the elements, and their address where they are not of this build. */
 const PAGES = { with: { has: true }, without: { has: false }, ...(values.other && { other: { has: true, base: values.other } }) };
 /** Callbacks that take less time have drawn nothing, milliseconds. */
-const LEAST_MS = 1.5;
+const LEAST_MS = 0.8;
 const UPDATE = "this.#update(JSON.parse(text))";
 const rows = {};
 
