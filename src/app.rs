@@ -10,6 +10,7 @@ mod autosave;
 mod converter;
 mod downloads;
 mod events;
+mod exports;
 mod frame;
 mod frame_stats;
 mod intake;
@@ -22,6 +23,8 @@ mod window;
 pub(crate) use crate::render::is_stage_complete;
 pub(crate) use address_bar::{link_query, link_query_for_others};
 pub(crate) use events::Event;
+#[cfg(target_arch = "wasm32")]
+pub(crate) use exports::{BegunExport, WrittenFile};
 pub(crate) use view::View;
 
 use crate::platform::{self, Inbox, Incoming, LargeFile, LargeFileStore, Pool, Reader, Storage};
@@ -31,6 +34,7 @@ use api::{ApiError, LoadedClips};
 use autosave::Autosave;
 use converter::Converter;
 use downloads::Downloads;
+use exports::Exports;
 use frame_stats::FrameStats;
 use language::LanguageLoader;
 use picture::Picture;
@@ -69,6 +73,7 @@ pub(crate) struct Segue {
     address: AddressBar,
     converter: Converter,
     downloads: Downloads,
+    exports: Exports,
     reader: Reader,
     pool: Pool,
     large_files: LargeFileStore,
@@ -170,6 +175,7 @@ impl Segue {
             address: AddressBar::default(),
             converter: Converter::default(),
             downloads: Downloads::default(),
+            exports: Exports::default(),
             frame_stats: FrameStats::default(),
             events: Vec::new(),
             reported: ReportedState::default(),

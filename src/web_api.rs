@@ -4,7 +4,7 @@
 mod graphics;
 
 use crate::app::api::{self, ApiError, ExportWords};
-use crate::app::{Event, Segue, Shared, is_stage_complete};
+use crate::app::{BegunExport, Event, Segue, Shared, WrittenFile, is_stage_complete};
 use crate::outline::{Deed, Outline};
 use crate::platform::{
     Area, FileBytes, Inbox, LargeFile, area_of, confirm_leaving_while, inline_picture,
@@ -352,14 +352,30 @@ impl SegueHandle {
         body: Option<String>,
         root: Option<String>,
         fps: Option<f64>,
-    ) -> Result<Vec<u8>, JsValue> {
+    ) -> Result<Uint8Array, JsValue> {
         self.read(&which).await?;
+        let refused = |reason: String| error(format!("export: {reason}"));
         let words = ExportWords { body, root, fps };
-        Ok(self
-            .borrow()?
-            .export(&which, &format, &words)
-            .map_err(|reason| error(format!("export: {reason}")))?
-            .bytes)
+        let how = words.options(&format).map_err(|reason| refused(reason.to_string()))?;
+        let begun = self.borrow_mut()?.begin_export(&which, &how, true);
+        let task = match begun.map_err(|reason| refused(reason.to_string()))? {
+            BegunExport::Done(file) => return Ok(Uint8Array::from(&file.bytes[..])),
+            BegunExport::UnderWay(task) => task,
+        };
+        loop {
+            sleep(5).await;
+            let mut segue = self.borrow_mut()?;
+            // A hidden page has no frames that would poll.
+            segue.poll();
+            match segue.take_export(task) {
+                None => {}
+                Some(Ok(WrittenFile::Here(bytes))) => return Ok(Uint8Array::from(&bytes[..])),
+                Some(Ok(WrittenFile::Large(file))) => {
+                    return file.array().ok_or_else(|| refused("the file is gone".into()));
+                }
+                Some(Err(reason)) => return Err(refused(reason.to_string())),
+            }
+        }
     }
 
     /// Returns the bone map of a motion as the JSON of its file. A clip whose motion is not in

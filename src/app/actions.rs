@@ -50,16 +50,7 @@ impl Segue {
             Action::SaveText { name, mime, text } => {
                 platform::download(name, mime, text.as_bytes(), &self.inbox);
             }
-            Action::Save { which, how } => match self.export_as(which, how) {
-                Ok(file) => platform::download(&file.name, file.mime, &file.bytes, &self.inbox),
-                Err(reason) => self.session.say(
-                    Level::Error,
-                    msg!(
-                        "The file could not be saved: {reason}.",
-                        reason = reason.to_string().trim_end_matches('.').to_owned()
-                    ),
-                ),
-            },
+            Action::Save { which, how } => self.save_motion(which, how),
             Action::Convert(action) => self.run_conversion(action),
             Action::SavePicture => {
                 if let Some(stage) = self.picture.stage_rect() {

@@ -19,8 +19,8 @@ use segue_motion::math::Planar;
 use segue_scene::pose_at;
 use segue_session::bone_map::BoneMap;
 use segue_session::export::{
-    ExportBody, ExportFormat, ExportOptions, ExportRoot, export, file_name, plotted_of_clip,
-    plotted_of_result,
+    Column, ExportBody, ExportFormat, ExportOptions, ExportRoot, export, file_name, packed,
+    plotted_of_clip, plotted_of_result,
 };
 use segue_session::metrics::MetricId;
 use segue_session::outside;
@@ -60,8 +60,10 @@ pub(crate) struct ExportWords {
 }
 
 impl ExportWords {
-    /// Returns them as options of the default format.
-    fn options(&self) -> Result<ExportOptions, ApiError> {
+    /// Returns them as options of a format, by its name.
+    pub(crate) fn options(&self, format: &str) -> Result<ExportOptions, ApiError> {
+        let format = ExportFormat::from_name(format)
+            .ok_or_else(|| ApiError::UnknownFormat(format.to_owned()))?;
         let body = self.body.as_deref().map_or(Ok(ExportBody::default()), |body| {
             ExportBody::from_name(body).ok_or_else(|| ApiError::UnknownBody(body.to_owned()))
         })?;
@@ -70,7 +72,7 @@ impl ExportWords {
         })?;
         match self.fps {
             Some(fps) if !(1.0..=1000.0).contains(&fps) => Err(ApiError::UnfitRate(fps)),
-            fps => Ok(ExportOptions { body, root, fps, ..ExportOptions::default() }),
+            fps => Ok(ExportOptions { format, body, root, fps, ..ExportOptions::default() }),
         }
     }
 }
@@ -249,7 +251,8 @@ impl Segue {
     /// Stops reading or fetching the file of that name, which may be a lesson's.
     pub(crate) fn stop(&mut self, name: &str) -> Result<(), ApiError> {
         let name = outside::file_name(name);
-        if let Some(task) = self.session.task_of(&name) {
+        if self.stop_exports(&name) {
+        } else if let Some(task) = self.session.task_of(&name) {
             self.dispatch(Command::File(FileCommand::StopReading(task)));
         } else if name == FILES && self.session.is_reading_new() {
             self.dispatch(Command::File(FileCommand::StopReadingNew));
@@ -384,19 +387,6 @@ impl Segue {
         Ok(main.outcome.metrics.iter().map(|metric| info(metric.id)).collect())
     }
 
-    /// Returns a motion as a file of that format. `which` is as in [`Self::pose`].
-    pub(crate) fn export(
-        &self,
-        which: &str,
-        format: &str,
-        words: &ExportWords,
-    ) -> Result<ExportedFile, ApiError> {
-        let format = ExportFormat::from_name(format)
-            .ok_or_else(|| ApiError::UnknownFormat(format.to_owned()))?;
-        let how = ExportOptions { format, ..words.options()? };
-        self.export_as(which, &how)
-    }
-
     /// Returns the bone map of a motion as JSON. `which` is as in [`Self::pose`].
     pub(crate) fn bone_map(&self, which: &str) -> Result<String, ApiError> {
         let motion = self.motion(which)?;
@@ -409,16 +399,48 @@ impl Segue {
         Ok(self.apply(Command::File(FileCommand::ApplyBoneMap(map)))?)
     }
 
-    /// Returns a motion as a file with the options of the export dialogue.
+    /// Returns a motion as a file. `which` is as in [`Self::pose`].
     pub(crate) fn export_as(
         &self,
         which: &str,
         how: &ExportOptions,
     ) -> Result<ExportedFile, ApiError> {
+        let (motion, curves, stem) = self.exported(which, how)?;
+        Ok(ExportedFile {
+            name: file_name(&stem, how.format.ending()),
+            mime: how.format.mime(),
+            bytes: export(motion, self.session.character().as_ref(), &curves, how)?,
+        })
+    }
+
+    /// Returns the file name of an export that takes long, and the export packed for a worker;
+    /// `None` for one that is made at once.
+    pub(super) fn long_export(
+        &self,
+        which: &str,
+        how: &ExportOptions,
+    ) -> Result<Option<(String, Vec<u8>)>, ApiError> {
+        let (motion, curves, stem) = self.exported(which, how)?;
+        if !packed::takes_long(motion, self.session.character().is_some(), how) {
+            return Ok(None);
+        }
+        let packed = packed::pack(motion, &curves, how).ok();
+        Ok(packed.map(|packed| (file_name(&stem, how.format.ending()), packed)))
+    }
+
+    /// Returns a motion, its plotted curves where the format has them, and the stem of its file's
+    /// name. `which` is as in [`Self::pose`].
+    fn exported(
+        &self,
+        which: &str,
+        how: &ExportOptions,
+    ) -> Result<(&Motion, Vec<Column>, String), ApiError> {
         let params = self.session.params();
-        let (motion, curves, stem) = match self.subject(which)? {
+        let has_curves = how.format == ExportFormat::Csv;
+        let (motion, curves, stem): (&Motion, _, _) = match self.subject(which)? {
             Subject::Clip(motion) => {
-                (motion, plotted_of_clip(motion, params), motion.clip().name().to_owned())
+                let curves = has_curves.then(|| plotted_of_clip(motion, params));
+                (motion, curves, motion.clip().name().to_owned())
             }
             Subject::Result(pane, made) => {
                 let value = pane.variant.as_ref().map(|(key, value)| {
@@ -426,14 +448,11 @@ impl Segue {
                     format!(" {} {}", param.format(value), param.unit)
                 });
                 let stem = file_stem(made.params) + &value.unwrap_or_default();
-                (&made.outcome.motion, plotted_of_result(made.outcome, params), stem)
+                let curves = has_curves.then(|| plotted_of_result(made.outcome, params));
+                (&made.outcome.motion, curves, stem)
             }
         };
-        Ok(ExportedFile {
-            name: file_name(&stem, how.format.ending()),
-            mime: how.format.mime(),
-            bytes: export(motion, self.session.character().as_ref(), &curves, how)?,
-        })
+        Ok((motion, curves.unwrap_or_default(), stem))
     }
 
     /// Returns the stem of the file name of a picture or a film of the stage.

@@ -8,7 +8,7 @@ use segue_formats::FileKind;
 use segue_session::conversion::{Conversion, ConversionRow, ConvertedFile};
 use segue_session::convert::{ConvertOptions, TargetRig};
 use segue_session::export::ExportOptions;
-use segue_session::reading::{Content, ReadReport, ReadSetup, ReadTask, SkeletonFile};
+use segue_session::reading::{Content, Product, ReadReport, ReadSetup, ReadTask, SkeletonFile};
 use segue_session::{Command, FileCommand, Level, Origin, Session, Slot};
 use segue_text::{Message, ToMessage as _, msg};
 use std::collections::VecDeque;
@@ -38,8 +38,8 @@ pub(super) struct Converter {
 struct Run {
     conversion: Conversion,
     setup: ReadSetup,
-    /// The options of converting each file as it is read.
-    convert: Option<Arc<ConvertOptions>>,
+    /// What is made of each file as it is read.
+    product: Product,
     /// The number of files and clips in all.
     all: usize,
     current: Option<Current>,
@@ -57,7 +57,7 @@ struct Current {
 impl Converter {
     /// Returns whether a task of the reader is part of a conversion.
     pub(super) fn is_own(task: u64) -> bool {
-        task >= FIRST_TASK
+        (FIRST_TASK..FIRST_TASK << 1).contains(&task)
     }
 
     /// Adds a file; allowed while a conversion is running.
@@ -146,8 +146,8 @@ impl Converter {
                     FileBytes::Large(file) => file.len(),
                 };
                 let content = Content::Outside(String::new());
-                let (setup, convert) = (run.setup.clone(), run.convert.clone());
-                let task = ReadTask { id, name: name.clone(), content, size, setup, convert };
+                let (setup, product) = (run.setup.clone(), run.product.clone());
+                let task = ReadTask { id, name: name.clone(), content, size, setup, product };
                 run.current = Some(Current { task: id, name, size, done: 0 });
                 reader.start(task, bytes);
             }
@@ -295,14 +295,15 @@ impl Segue {
         self.converter.waiting.make_contiguous().sort_by_key(|item| !item.has_name_of_model());
         let all = self.converter.waiting.len();
         // One file of all needs their motions, for the body that they share.
-        let convert = (!in_one_file).then(|| Arc::new(options.clone()));
+        let product =
+            if in_one_file { Product::Clips } else { Product::Convert(Arc::new(options.clone())) };
         let conversion = if in_one_file {
             let character = self.session.character().filter(|_| !onto_a);
             Conversion::in_one_file(options, character.as_ref())
         } else {
             Conversion::new(options)
         };
-        self.converter.run = Some(Run { conversion, setup, convert, all, current: None });
+        self.converter.run = Some(Run { conversion, setup, product, all, current: None });
         self.converter.rows = Arc::default();
     }
 

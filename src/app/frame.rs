@@ -89,7 +89,8 @@ impl Segue {
         if self.panels.presenter.is_on {
             self.panels.presenter.note_fullscreen(platform::is_fullscreen(ctx));
         }
-        self.panels.fetching = self.downloads.under_way().collect();
+        let written = self.exports.under_way().map(|name| (name.to_owned(), None));
+        self.panels.fetching = self.downloads.under_way().chain(written).collect();
         self.panels.convert.shown = self.converter.shown();
         self.panels.stored = self.autosave.progress();
         self.panels.shows_corpora = platform::SHOWS_CORPORA;
@@ -108,7 +109,6 @@ impl Segue {
         };
     }
 
-    /// Records the duration of the last frame. eframe measures all of it, up to the commands for
     /// Returns whether nothing has happened since the last frame but that the motion played.
     fn is_quiet(&mut self, ctx: &egui::Context) -> bool {
         let shown = Shown {
@@ -128,6 +128,7 @@ impl Segue {
         is_same && is_playing && !is_at_work && self.session.notices().next_change_secs().is_none()
     }
 
+    /// Records the duration of the last frame. eframe measures all of it, up to the commands for
     /// the graphics device, but only where the frame began with the screen's refresh; for a frame
     /// that was computed inside an input event, the time measured by [`Self::ui`] stands in.
     fn note_frame_time(&mut self, ctx: &egui::Context, frame: &eframe::Frame) {

@@ -3,6 +3,7 @@
 use super::api::ApiError;
 use super::converter::Converter;
 use super::downloads::lesson_file;
+use super::exports::Exports;
 use super::{Event, Segue};
 use crate::platform::{self, FileBytes, Incoming, LargeFile, ReadError, ReadEvent};
 use crate::ui;
@@ -135,6 +136,9 @@ impl Segue {
 
     /// Takes in an event of a file that is being read in the background.
     fn on_read_event(&mut self, task: u64, event: ReadEvent) {
+        if Exports::is_own(task) {
+            return self.on_export_event(task, event);
+        }
         if Converter::is_own(task) {
             return self.converter.on_read_event(task, event);
         }
@@ -249,6 +253,9 @@ impl Segue {
     /// Stops fetching the file of that name. The addresses of a motion file are removed from the
     /// link; a lesson shows that it was stopped.
     pub(super) fn stop_fetching(&mut self, name: &str) {
+        if self.stop_exports(name) {
+            return;
+        }
         if self.downloads.lessons_under_way().any(|lesson| lesson == name) {
             return self.stop_lessons();
         }

@@ -8,7 +8,7 @@ mod pool;
 mod reader;
 mod storage;
 
-pub(crate) use files::{download, open_files, read_arguments, read_dropped};
+pub(crate) use files::{download, download_file, open_files, read_arguments, read_dropped};
 pub(crate) use film::{Film, can_film, can_take_pictures, save_picture, take_picture};
 pub(crate) use frame_pacer::FramePacer;
 pub(crate) use gamepad::gamepad;

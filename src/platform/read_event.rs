@@ -9,11 +9,7 @@ use segue_text::{Message, ToMessage};
 pub(crate) enum ReadEvent {
     /// The number of bytes that are read.
     Progress(u64),
-    /// The bytes of a small new file, to be stored.
-    #[cfg_attr(
-        not(target_arch = "wasm32"),
-        expect(dead_code, reason = "a window has the bytes of its files")
-    )]
+    /// The bytes of a small new file, to be stored, or of one that was written.
     Bytes(LargeFile),
     /// There is no memory for the report; the number of bytes that it needs.
     NoRoom(u64),
@@ -43,6 +39,9 @@ pub(crate) enum ReadError {
     /// The worker ended without a report.
     #[error("the worker sent nothing")]
     NoReport,
+    /// A file cannot be made of it, for this reason.
+    #[error("{0}")]
+    Refused(Message),
     /// The worker's report cannot be unpacked.
     #[error("{0}")]
     InvalidReport(Message),

@@ -16,7 +16,7 @@ mod stored_place;
 
 pub(crate) use corpora::{SHOWS_CORPORA, choose_corpus, set_corpora, show_corpus};
 pub(crate) use fetch::{Fetch, fetch, load_language, load_lesson, load_sample};
-pub(crate) use files::{copy_text, download, open_files, read_dropped};
+pub(crate) use files::{copy_text, download, download_file, open_files, read_dropped};
 pub(crate) use film::{Film, can_film, can_take_pictures, save_picture, take_picture};
 pub(crate) use folders::watch_folders;
 pub(crate) use frame_pacer::FramePacer;

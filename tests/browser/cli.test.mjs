@@ -37,7 +37,9 @@ const firstDifference = (one, other) => {
 onOneBackend("results of the command line are those of the page, bit for bit", async ({ open }) => {
   const folder = mkdtempSync(join(tmpdir(), "segue-"));
   try {
-    const { page, segue, load, ready } = await open("play=off", { viewport: [640, 480] });
+    const fetched = [];
+    const prepare = (page) => void page.context().on("request", (request) => fetched.push(new URL(request.url()).pathname));
+    const { page, segue, load, ready } = await open("play=off", { viewport: [640, 480], prepare });
     const own = join(folder, "own.bvh");
     writeFileSync(own, striding({ frames: 90, swing: 33 }));
     const run = (command, out) => {
@@ -61,6 +63,15 @@ onOneBackend("results of the command line are those of the page, bit for bit", a
     run(["transition", own, "run"], out);
     const [made, shown] = [readFileSync(out), await segue("export", "result", "bvh")];
     assert.ok(made.equals(shown), firstDifference(made, shown));
+    // A long one, which a worker writes with a program that the page fetches for it.
+    const long = join(folder, "long.bvh");
+    writeFileSync(long, striding({ frames: 9000, swing: 33 }));
+    run(["view", long], out);
+    const { clips: [longClip] } = await load("long.bvh", readFileSync(long));
+    await segue("set", { lab: "view", a: longClip.id });
+    const written = await segue("export", "result", "bvh");
+    assert.ok(readFileSync(out).equals(written), firstDifference(readFileSync(out), written));
+    assert.ok(fetched.some((path) => path.endsWith("/converter_bg.wasm")), fetched.join(" "));
   } finally {
     rmSync(folder, { recursive: true });
   }

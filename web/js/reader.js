@@ -1,10 +1,12 @@
 // A worker that reads motion files, with a WebAssembly of its own (src/bin/reader.rs), and converts
-// them with another one (src/bin/converter.rs). src/platform/web/reader.rs gives it tasks.
+// and writes them with another one (src/bin/converter.rs). src/platform/web/reader.rs gives it tasks.
 //
-// Tasks are { task, name, setup, convert, file, stored, returnsBytes }: a Blob, or the place of the
-// bytes in the storage, or both; `convert` has the options of a file that is converted. For each the
-// worker answers with messages { task, progress }, { task, head }, { task, piece } …, { task, end: true,
-// bytes }, or { task, failed: reason }, or { task, lost: true } when there is no such file any more.
+// Tasks are { task, name, setup, convert, isExport, file, stored, returnsBytes }: a Blob, or the place
+// of the bytes in the storage, or both; `convert` has the options of a file that is converted, and
+// `isExport` says that the bytes are those of a packed export. For each the worker answers with
+// messages { task, progress }, { task, head }, { task, piece } …, { task, end: true, bytes }, or
+// { task, failed: reason }, { task, refused: message }, or { task, lost: true } when there is no such
+// file any more.
 
 import init, { readFile } from "./read/reader.js";
 
@@ -19,14 +21,18 @@ let starting;
 /** The memory from which on a trap is taken for a failed allocation, bytes. */
 const MIN_EXHAUSTED_BYTES = 1 << 30;
 
-self.onmessage = async ({ data: { task, name, setup, convert, file, stored, returnsBytes } }) => {
+self.onmessage = async ({ data: { task, name, setup, convert, isExport, file, stored, returnsBytes } }) => {
   const post = (message, transfer = []) => self.postMessage({ task, ...message }, transfer);
   let memory;
   try {
-    const converter = convert && await (starting ??= startConverter());
+    const converter = (convert || isExport) && await (starting ??= startConverter());
     ({ memory } = converter || await reader);
     const buffer = await bytesOf(file, stored);
     if (!buffer) return post({ lost: true });
+    if (isExport) {
+      const made = converter.writeExport(new Uint8Array(buffer));
+      return typeof made === "string" ? post({ refused: made }) : post({ end: true, bytes: made }, [made.buffer]);
+    }
     const sha256 = await digest(buffer);
     const bytes = new Uint8Array(buffer);
     let told = performance.now();
@@ -52,9 +58,9 @@ self.onmessage = async ({ data: { task, name, setup, convert, file, stored, retu
 
 async function startConverter() {
   try {
-    const { default: init, convertFile } = await import("./convert/converter.js");
+    const { default: init, convertFile, writeExport } = await import("./convert/converter.js");
     const { memory } = await init();
-    return { convertFile, memory };
+    return { convertFile, writeExport, memory };
   } catch {
     throw new Error("the program that converts files cannot be fetched: check the network and try again");
   }

@@ -1,5 +1,6 @@
 //! A motion as the bytes of a file.
 
+pub mod packed;
 mod together;
 
 pub use together::Together;

@@ -34,6 +34,8 @@ pub(crate) use board::{JobBoard, Taken, Ticket};
 pub(crate) use database_clip::DatabaseClipTask;
 pub(crate) use distances::DistanceTask;
 pub use error::JobError;
+pub(crate) use motion_parcel::{pack as pack_motion, unpack as unpack_motion};
+pub(crate) use parcel::take;
 pub use parcel::{Parcel, ParcelError};
 pub(crate) use registration::{RegistrationAnswer, RegistrationTask};
 pub(crate) use stream::StreamTask;

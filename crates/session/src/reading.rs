@@ -57,8 +57,19 @@ pub struct ReadTask {
     pub size: u64,
     /// The options of reading it.
     pub setup: ReadSetup,
-    /// The options of converting its clips ([`read_and_convert`]); `None` to return them.
-    pub convert: Option<Arc<ConvertOptions>>,
+    /// What is made of it.
+    pub product: Product,
+}
+
+/// What is made of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Product {
+    /// Its clips ([`read`]).
+    Clips,
+    /// Its clips in another format ([`read_and_convert`]).
+    Convert(Arc<ConvertOptions>),
+    /// The file of a packed export ([`packed::write`](crate::export::packed::write)).
+    Export,
 }
 
 /// Options of reading a file.

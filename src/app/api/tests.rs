@@ -20,6 +20,16 @@ fn load(segue: &mut Segue, name: &str, bytes: &[u8]) -> Result<LoadedClips, ApiE
     segue.read_result(task).expect("no test stops a task")
 }
 
+/// Returns a motion as a file, by words as a caller writes them.
+fn exported(
+    which: &str,
+    format: &str,
+    words: &ExportWords,
+    segue: &Segue,
+) -> Result<ExportedFile, ApiError> {
+    segue.export_as(which, &words.options(format)?)
+}
+
 fn object(json: Json) -> Map<String, Json> {
     if let Json::Object(map) = json { map } else { panic!("{json} is no object") }
 }
@@ -137,7 +147,7 @@ fn every_call_on_a_refused_result_rejects_with_its_sentence() {
         let name = segue.stage_name();
         assert!(
             segue.metrics().is_ok()
-                && segue.export("result", "bvh", &ExportWords::default()).is_ok()
+                && exported("result", "bvh", &ExportWords::default(), &segue).is_ok()
                 && segue.report(None).is_ok()
         );
         segue.set(&object(bad)).unwrap();
@@ -146,7 +156,7 @@ fn every_call_on_a_refused_result_rejects_with_its_sentence() {
         let refused = [
             segue.pose("result", 0.0).unwrap_err().to_string(),
             segue.metrics().unwrap_err().to_string(),
-            segue.export("result", "bvh", &ExportWords::default()).unwrap_err().to_string(),
+            exported("result", "bvh", &ExportWords::default(), &segue).unwrap_err().to_string(),
             segue.report(None).unwrap_err().to_string(),
             segue.keep("result").unwrap_err().to_string(),
         ];
@@ -162,13 +172,13 @@ fn every_call_on_a_refused_result_rejects_with_its_sentence() {
 #[test]
 fn exported_file_can_be_loaded() {
     let mut segue = open("a=walk&lab=view");
-    let file = segue.export("result", "bvh", &ExportWords::default()).unwrap();
+    let file = exported("result", "bvh", &ExportWords::default(), &segue).unwrap();
     assert_eq!(file.name, "walk.bvh");
     let loaded = load(&mut segue, &file.name, &file.bytes).unwrap();
     assert_eq!(loaded.clips.len(), 1);
     assert_eq!(loaded.clips[0].frames, segue.motion("walk").unwrap().clip().frames());
     assert_eq!(
-        segue.export("result", "max", &ExportWords::default()).unwrap_err().to_string(),
+        exported("result", "max", &ExportWords::default(), &segue).unwrap_err().to_string(),
         "found `max`, expected one of bvh, fbx, glb, vrma, npz, csv, g1"
     );
     let statue = ExportWords { body: Some("statue".into()), ..ExportWords::default() };
@@ -179,7 +189,7 @@ fn exported_file_can_be_loaded() {
         (pelvis, "root: found `pelvis`, expected one of as-is, ground, in-place"),
         (never, "fps: found 0, expected 1 to 1000 frames per second"),
     ] {
-        assert_eq!(segue.export("result", "glb", &words).unwrap_err().to_string(), problem);
+        assert_eq!(exported("result", "glb", &words, &segue).unwrap_err().to_string(), problem);
     }
     let refused = load(&mut segue, "x.bvh", b"HIERARCHY oops").unwrap_err().to_string();
     assert!(refused.starts_with("x.bvh:1:"), "{refused}");
@@ -191,9 +201,9 @@ fn exported_root_and_rate_are_those_of_the_call() {
     let mut segue = open("a=walk&lab=view");
     let own = segue.motion("walk").unwrap();
     let own = own.clip();
-    let as_is = segue.export("result", "bvh", &ExportWords::default()).unwrap();
+    let as_is = exported("result", "bvh", &ExportWords::default(), &segue).unwrap();
     let words = ExportWords { root: Some("ground".into()), fps: Some(24.0), body: None };
-    let file = segue.export("result", "bvh", &words).unwrap();
+    let file = exported("result", "bvh", &words, &segue).unwrap();
     let loaded = load(&mut segue, "ground.bvh", &file.bytes).unwrap();
     let read = segue.motion(&loaded.clips[0].id).unwrap();
     assert!((read.clip().fps() - 24.0).abs() < 1e-3, "{}", read.clip().fps());
@@ -229,7 +239,7 @@ fn clips_and_panes_are_exported_in_every_format() {
         for (format, mime) in
             [("bvh", "text/plain"), ("csv", "text/csv"), ("glb", "model/gltf-binary")]
         {
-            let file = segue.export(which, format, &ExportWords::default()).unwrap();
+            let file = exported(which, format, &ExportWords::default(), &segue).unwrap();
             assert_eq!(
                 (file.name.to_lowercase(), file.mime),
                 (format!("{}.{format}", stem.to_lowercase()), mime)
@@ -237,9 +247,10 @@ fn clips_and_panes_are_exported_in_every_format() {
             assert!(file.bytes.len() > 1000);
         }
     }
-    let table =
-        String::from_utf8(segue.export("result:1", "csv", &ExportWords::default()).unwrap().bytes)
-            .unwrap();
+    let table = String::from_utf8(
+        exported("result:1", "csv", &ExportWords::default(), &segue).unwrap().bytes,
+    )
+    .unwrap();
     let header = table.lines().next().unwrap();
     assert!(
         header.ends_with(

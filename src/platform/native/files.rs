@@ -191,6 +191,11 @@ pub(crate) fn download(file_name: &str, _mime: &str, bytes: &[u8], inbox: &Inbox
     });
 }
 
+/// Saves a file that was written in the background.
+pub(crate) fn download_file(file_name: &str, mime: &str, file: &LargeFile, inbox: &Inbox) {
+    download(file_name, mime, file.bytes(), inbox);
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,8 +1,10 @@
 //! Reading of large files on threads of their own.
 
-use crate::platform::{FileBytes, Inbox, Incoming, ReadEvent};
+use crate::platform::{FileBytes, Inbox, Incoming, ReadError, ReadEvent};
 use segue_session::Session;
-use segue_session::reading::{ReadTask, read, read_and_convert};
+use segue_session::export::packed;
+use segue_session::reading::{Product, ReadReport, ReadTask, read, read_and_convert};
+use segue_text::ToMessage as _;
 use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::Arc;
@@ -41,9 +43,9 @@ impl fmt::Debug for LargeFile {
     }
 }
 
-/// Returns a small file as it is: a window has room for it.
-pub(crate) fn outside_memory(bytes: Arc<[u8]>) -> FileBytes {
-    FileBytes::Here(bytes)
+/// Returns a file as it is: a window has room for it.
+pub(crate) fn outside_memory(bytes: impl Into<Arc<[u8]>>) -> FileBytes {
+    FileBytes::Here(bytes.into())
 }
 
 /// Does nothing, because only the system limits the memory of a window.
@@ -78,14 +80,21 @@ impl Reader {
                 report_event(ReadEvent::Progress(done as u64));
                 !stopped.load(Ordering::Relaxed)
             };
-            let report = match &task.convert {
-                Some(options) => {
-                    read_and_convert(&task.name, bytes, &task.setup, options, progress)
+            let report = match &task.product {
+                Product::Clips => read(&task.name, bytes, &task.setup, progress).map(Ok),
+                Product::Convert(options) => {
+                    read_and_convert(&task.name, bytes, &task.setup, options, progress).map(Ok)
                 }
-                None => read(&task.name, bytes, &task.setup, progress),
+                Product::Export => Some(packed::write(bytes).map_or_else(
+                    |error| Err(ReadError::Refused(error.to_message())),
+                    |made| {
+                        report_event(ReadEvent::Bytes(LargeFile::new(made.into())));
+                        Ok(ReadReport::default())
+                    },
+                )),
             };
             if let Some(report) = report {
-                report_event(ReadEvent::Done(Ok(report)));
+                report_event(ReadEvent::Done(report));
             }
         });
     }
@@ -105,7 +114,6 @@ impl Reader {
 mod tests {
     use super::*;
     use segue_session::reading::Content;
-    use segue_text::ToMessage as _;
     use std::time::Duration;
 
     #[test]

@@ -138,12 +138,20 @@ pub(crate) fn read_dropped(files: &[DroppedFileHandle], inbox: &Inbox) {
 
 /// Saves a file for the user.
 pub(crate) fn download(file_name: &str, mime: &str, bytes: &[u8], inbox: &Inbox) {
+    save_array(file_name, mime, &Uint8Array::from(bytes), inbox);
+}
+
+/// Saves a file that was written in the background.
+pub(crate) fn download_file(file_name: &str, mime: &str, file: &LargeFile, inbox: &Inbox) {
+    if let Some(bytes) = file.array() {
+        save_array(file_name, mime, &bytes, inbox);
+    }
+}
+
+fn save_array(file_name: &str, mime: &str, bytes: &Uint8Array, inbox: &Inbox) {
     let options = BlobPropertyBag::new();
     options.set_type(mime);
-    let blob = Blob::new_with_u8_array_sequence_and_options(
-        &Array::of1(&Uint8Array::from(bytes)),
-        &options,
-    );
+    let blob = Blob::new_with_u8_array_sequence_and_options(&Array::of1(bytes), &options);
     if let Err(error) = blob.and_then(|blob| save_blob(file_name, &blob)) {
         inbox.push(Incoming::Failed {
             reason: msg!(

@@ -7,7 +7,7 @@ use super::stored_place::stored_place;
 use crate::platform::begun::Begun;
 use crate::platform::{FileBytes, Inbox, Incoming, ReadError, ReadEvent};
 use js_sys::{Array, Function, Object, Reflect, Uint8Array};
-use segue_session::reading::{LARGE_BYTES, ReadTask, Unpacker, WireError};
+use segue_session::reading::{LARGE_BYTES, Product, ReadReport, ReadTask, Unpacker, WireError};
 use segue_session::{MemoryUse, PageMemory, Session};
 use segue_text::ToMessage as _;
 use std::cell::RefCell;
@@ -91,6 +91,14 @@ impl LargeFile {
         }
     }
 
+    /// Returns the array that has the bytes; `None` for a file that is none.
+    pub(crate) fn array(&self) -> Option<Uint8Array> {
+        match &self.0 {
+            Held::Bytes(bytes) => Some(bytes.clone()),
+            Held::Blob(_) | Held::Stored(_) => None,
+        }
+    }
+
     /// Returns the browser's handle of the file; `None` for a file in the storage, and when the
     /// browser has no room for it.
     fn to_blob(&self) -> Option<Blob> {
@@ -108,11 +116,11 @@ impl fmt::Debug for LargeFile {
     }
 }
 
-/// Hands a small file to the browser, so that the app's memory has no copy of its bytes, if the
-/// browser has room for it.
-pub(crate) fn outside_memory(bytes: Arc<[u8]>) -> FileBytes {
-    let file = LargeFile::of_bytes(&Uint8Array::from(&bytes[..]));
-    file.map_or(FileBytes::Here(bytes), FileBytes::Large)
+/// Hands a file to the browser, so that the app's memory has no copy of its bytes, if the browser
+/// has room for it.
+pub(crate) fn outside_memory(bytes: impl AsRef<[u8]> + Into<Arc<[u8]>>) -> FileBytes {
+    let file = LargeFile::of_bytes(&Uint8Array::from(bytes.as_ref()));
+    file.map_or_else(|| FileBytes::Here(bytes.into()), FileBytes::Large)
 }
 
 thread_local! {
@@ -189,6 +197,8 @@ struct Slot {
 struct CurrentTask {
     task: u64,
     size: u64,
+    /// Whether a file is written, so that there is no report.
+    is_export: bool,
     /// The report so far; `None` before its head has arrived.
     unpacker: Option<Unpacker>,
 }
@@ -294,6 +304,7 @@ impl State {
             Some(unpacker) => {
                 unpacker.finish().map_err(|error| ReadError::InvalidReport(error.to_message()))
             }
+            None if current.is_export => Ok(ReadReport::default()),
             None => Err(ReadError::NoReport),
         };
         if let Some(bytes) = bytes {
@@ -330,6 +341,9 @@ impl State {
             (part("piece").dyn_into::<Uint8Array>(), &mut current.unpacker)
         {
             unpacker.push(&piece.to_vec());
+        } else if let Some(reason) = part("refused").as_string() {
+            let reason = serde_json::from_str(&reason);
+            self.fail(index, reason.map_or(ReadError::NoReport, ReadError::Refused));
         } else if let Some(reason) = part("failed").as_string() {
             self.fail(index, ReadError::Failed(reason));
         } else if part("lost").is_truthy() {
@@ -373,7 +387,8 @@ fn start_next(state: &Rc<RefCell<State>>) {
                 return;
             };
             state.begun.begin(task.id);
-            let current = CurrentTask { task: task.id, size: task.size, unpacker: None };
+            let is_export = task.product == Product::Export;
+            let current = CurrentTask { task: task.id, size: task.size, is_export, unpacker: None };
             if let Some(slot) = state.slots.get_mut(slot) {
                 slot.current = Some(current);
             }
@@ -408,9 +423,11 @@ fn post(
     }
     let json_error = |error: serde_json::Error| ReadError::Failed(error.to_string());
     let setup = serde_json::to_string(&task.setup).map_err(json_error)?;
-    let convert = match &task.convert {
-        Some(options) => serde_json::to_string(options.as_ref()).map_err(json_error)?.into(),
-        None => JsValue::UNDEFINED,
+    let convert = match &task.product {
+        Product::Convert(options) => {
+            serde_json::to_string(options.as_ref()).map_err(json_error)?.into()
+        }
+        Product::Clips | Product::Export => JsValue::UNDEFINED,
     };
     let file = match bytes {
         FileBytes::Here(bytes) => LargeFile::of_bytes(&Uint8Array::from(&bytes[..])),
@@ -423,13 +440,14 @@ fn post(
         _ => JsValue::UNDEFINED,
     };
     // The worker returns the bytes of a small new file, so that they can be stored.
-    let is_new = task.setup.sha256.is_none() && task.convert.is_none();
+    let is_new = task.setup.sha256.is_none() && task.product == Product::Clips;
     let message = Object::new();
     for (key, value) in [
         ("task", JsValue::from(task.id as f64)),
         ("name", JsValue::from(&task.name)),
         ("setup", JsValue::from(setup)),
         ("convert", convert),
+        ("isExport", JsValue::from(task.product == Product::Export)),
         ("file", file.to_blob().map_or(JsValue::UNDEFINED, JsValue::from)),
         ("stored", stored),
         ("returnsBytes", JsValue::from(is_new && task.size <= LARGE_BYTES)),

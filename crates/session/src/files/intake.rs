@@ -10,7 +10,7 @@ use crate::library::{Arrival, Library};
 use crate::memory::{Memory, MemoryUse, PageMemory, expected_bytes, library_bytes, refusal};
 use crate::notice::{Level, Notices};
 use crate::outside;
-use crate::reading::{Content, LARGE_BYTES, ReadFunction, ReadSetup, ReadTask};
+use crate::reading::{Content, LARGE_BYTES, Product, ReadFunction, ReadSetup, ReadTask};
 use crate::samples::Sample;
 use segue_formats::ImportError;
 use segue_text::{Message, msg};
@@ -302,7 +302,7 @@ impl FileIntake {
             content,
             size,
             setup,
-            convert: None,
+            product: Product::Clips,
         };
         self.request(task, purpose);
         self.tasks

@@ -60,15 +60,9 @@ impl<'a> ClipHead<'a> {
 pub(super) fn put_clip(floats: &mut Vec<f32>, clip: &Clip) {
     let joints = clip.skeleton().len();
     floats.reserve(clip.frames() * (4 * joints + 3 * (1 + clip.translations().len())));
-    for frame in 0..clip.frames() {
-        for rotation in clip.rotations(frame) {
-            floats.extend_from_slice(&rotation.to_array());
-        }
-    }
+    floats.extend_from_slice(bytemuck::cast_slice(clip.all_rotations()));
     let tracks = clip.translations().iter().map(|track| &track.values[..]);
     for values in std::iter::once(clip.root_translations()).chain(tracks) {
-        for value in values {
-            floats.extend_from_slice(&value.to_array());
-        }
+        floats.extend_from_slice(bytemuck::cast_slice(values));
     }
 }

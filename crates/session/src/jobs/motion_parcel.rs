@@ -35,7 +35,7 @@ struct Head<'a> {
 
 /// Packs a clip with as much of its ground frames, contacts and ground height as is known. A worker
 /// computes the rest when it needs it, with the same bits.
-pub(super) fn pack(motion: &Motion) -> Result<Parcel, ParcelError> {
+pub(crate) fn pack(motion: &Motion) -> Result<Parcel, ParcelError> {
     let clip = motion.clip();
     let skeleton = clip.skeleton();
     let head = Head {
@@ -69,7 +69,7 @@ pub(super) fn pack(motion: &Motion) -> Result<Parcel, ParcelError> {
 }
 
 /// Restores a clip.
-pub(super) fn unpack(parcel: &Parcel) -> Result<Motion, ParcelError> {
+pub(crate) fn unpack(parcel: &Parcel) -> Result<Motion, ParcelError> {
     let head: Head<'_> = serde_json::from_str(&parcel.head)?;
     let (frames, mut floats, mut bytes) = (head.clip.frames, &parcel.floats[..], &parcel.bytes[..]);
     let skeleton = Skeleton::new(head.joints.into_owned()).map_err(|_| ParcelError::Arrays)?;

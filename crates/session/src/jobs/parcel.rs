@@ -31,7 +31,7 @@ pub(super) fn put<T: NoUninit>(bytes: &mut Vec<u8>, values: &[T]) {
 }
 
 /// Moves `count` values from the front of `bytes`.
-pub(super) fn take<T: Pod>(bytes: &mut &[u8], count: usize) -> Result<Vec<T>, ParcelError> {
+pub(crate) fn take<T: Pod>(bytes: &mut &[u8], count: usize) -> Result<Vec<T>, ParcelError> {
     let length = count.checked_mul(size_of::<T>()).ok_or(ParcelError::Arrays)?;
     let (now, later) = bytes.split_at_checked(length).ok_or(ParcelError::Arrays)?;
     *bytes = later;
