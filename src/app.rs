@@ -24,7 +24,7 @@ pub(crate) use crate::render::is_stage_complete;
 pub(crate) use address_bar::{link_query, link_query_for_others};
 pub(crate) use events::Event;
 #[cfg(target_arch = "wasm32")]
-pub(crate) use exports::{BegunExport, WrittenFile};
+pub(crate) use exports::BegunExport;
 pub(crate) use view::View;
 
 use crate::platform::{self, Inbox, Incoming, LargeFile, LargeFileStore, Pool, Reader, Storage};

@@ -4,7 +4,7 @@
 mod graphics;
 
 use crate::app::api::{self, ApiError, ExportWords};
-use crate::app::{BegunExport, Event, Segue, Shared, WrittenFile, is_stage_complete};
+use crate::app::{BegunExport, Event, Segue, Shared, is_stage_complete};
 use crate::outline::{Deed, Outline};
 use crate::platform::{
     Area, FileBytes, Inbox, LargeFile, area_of, confirm_leaving_while, inline_picture,
@@ -369,8 +369,7 @@ impl SegueHandle {
             segue.poll();
             match segue.take_export(task) {
                 None => {}
-                Some(Ok(WrittenFile::Here(bytes))) => return Ok(Uint8Array::from(&bytes[..])),
-                Some(Ok(WrittenFile::Large(file))) => {
+                Some(Ok(file)) => {
                     return file.array().ok_or_else(|| refused("the file is gone".into()));
                 }
                 Some(Err(reason)) => return Err(refused(reason.to_string())),

@@ -248,11 +248,13 @@ impl Segue {
         self.session.is_reading(task)
     }
 
-    /// Stops reading or fetching the file of that name, which may be a lesson's.
+    /// Stops reading, fetching or writing the file of that name, which may be a lesson's.
     pub(crate) fn stop(&mut self, name: &str) -> Result<(), ApiError> {
         let name = outside::file_name(name);
         if self.stop_exports(&name) {
-        } else if let Some(task) = self.session.task_of(&name) {
+            return Ok(());
+        }
+        if let Some(task) = self.session.task_of(&name) {
             self.dispatch(Command::File(FileCommand::StopReading(task)));
         } else if name == FILES && self.session.is_reading_new() {
             self.dispatch(Command::File(FileCommand::StopReadingNew));
@@ -471,8 +473,10 @@ impl Segue {
         let samples =
             self.session.awaited_samples().iter().map(|sample| (sample.id.to_owned(), None));
         let lessons = self.downloads.lessons_under_way().map(|name| (name, None));
+        let written = self.exports.under_way().map(|name| (name.to_owned(), None));
         computed
             .chain(self.downloads.under_way())
+            .chain(written)
             .chain(lessons)
             .chain(samples)
             .map(|(name, progress)| JobInfo { name, progress })

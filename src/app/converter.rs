@@ -1,7 +1,7 @@
 //! Conversion of many files: one after the other is read and converted by the reader of files, and
 //! what comes back is added to one archive.
 
-use super::Segue;
+use super::{Segue, exports};
 use crate::platform::{self, FileBytes, ReadEvent, Reader};
 use crate::ui::{ConvertAction, ConvertShown};
 use segue_formats::FileKind;
@@ -38,7 +38,7 @@ pub(super) struct Converter {
 struct Run {
     conversion: Conversion,
     setup: ReadSetup,
-    /// What is made of each file as it is read.
+    /// The result that is asked for of each file.
     product: Product,
     /// The number of files and clips in all.
     all: usize,
@@ -57,7 +57,7 @@ struct Current {
 impl Converter {
     /// Returns whether a task of the reader is part of a conversion.
     pub(super) fn is_own(task: u64) -> bool {
-        (FIRST_TASK..FIRST_TASK << 1).contains(&task)
+        (FIRST_TASK..exports::FIRST_TASK).contains(&task)
     }
 
     /// Adds a file; allowed while a conversion is running.

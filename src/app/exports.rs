@@ -10,7 +10,7 @@ use segue_text::{Message, ToMessage as _, msg};
 use std::collections::BTreeMap;
 
 /// The number of the first task of an export; those of the session and of conversions are lower.
-const FIRST_TASK: u64 = 1 << 41;
+pub(super) const FIRST_TASK: u64 = 1 << 41;
 
 /// The exports under way, and those that the page's API has yet to take, by their tasks.
 #[derive(Debug, Default)]
@@ -32,16 +32,7 @@ struct Export {
     is_taken: bool,
     /// The bytes of the file, once they have arrived.
     file: Option<LargeFile>,
-    result: Option<Result<WrittenFile, Message>>,
-}
-
-/// A file that was written in the background or at once.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum WrittenFile {
-    /// At once.
-    Here(Vec<u8>),
-    /// In the background.
-    Large(LargeFile),
+    result: Option<Result<LargeFile, Message>>,
 }
 
 /// An export that was begun.
@@ -66,9 +57,9 @@ impl Exports {
 }
 
 impl Segue {
-    /// Begins to write a motion as a file: at once, or in the background where it takes long.
-    /// `which` is as in [`Self::pose`]. The file of the background is saved, unless `is_taken` by
-    /// [`Self::take_export`].
+    /// Writes a motion as a file, or begins to write it in the background where that takes long.
+    /// `which` is as in [`Self::pose`]. A file that is written in the background is then saved for
+    /// the user, or kept for [`Self::take_export`] where it `is_taken` by that.
     pub(crate) fn begin_export(
         &mut self,
         which: &str,
@@ -100,7 +91,7 @@ impl Segue {
     }
 
     /// Returns the result of an export, once it has ended; `None` while it is under way.
-    pub(crate) fn take_export(&mut self, task: u64) -> Option<Result<WrittenFile, Message>> {
+    pub(crate) fn take_export(&mut self, task: u64) -> Option<Result<LargeFile, Message>> {
         let Some(export) = self.exports.all.get(&task) else {
             return Some(Err(stopped()));
         };
@@ -135,11 +126,11 @@ impl Segue {
         let is_as_before = export.revision == self.session.revision();
         let (which, how) = (export.which.clone(), export.how);
         let result = match made {
-            Ok(file) => Ok(WrittenFile::Large(file)),
+            Ok(file) => Ok(file),
             Err(ReadError::Refused(reason)) => Err(reason),
             // The writer cannot be fetched, or its memory is used up: then the page writes.
             Err(_) if is_as_before => match self.export_as(&which, &how) {
-                Ok(file) => Ok(WrittenFile::Here(file.bytes)),
+                Ok(file) => Ok(LargeFile::written(&file.bytes)),
                 Err(reason) => Err(Message::data(reason.to_string())),
             },
             Err(reason) => Err(reason.to_message()),
@@ -152,10 +143,7 @@ impl Segue {
         let (name, mime) = (std::mem::take(&mut export.name), export.mime);
         self.exports.all.remove(&task);
         match result {
-            Ok(WrittenFile::Here(bytes)) => platform::download(&name, mime, &bytes, &self.inbox),
-            Ok(WrittenFile::Large(file)) => {
-                platform::download_file(&name, mime, &file, &self.inbox);
-            }
+            Ok(file) => platform::download_file(&name, mime, &file, &self.inbox),
             Err(reason) => self.say_not_saved(&reason.to_string()),
         }
     }
@@ -217,7 +205,7 @@ mod tests {
         }
     }
 
-    fn end(task: u64, segue: &mut Segue) -> Result<WrittenFile, Message> {
+    fn end(task: u64, segue: &mut Segue) -> Result<LargeFile, Message> {
         loop {
             segue.poll();
             if let Some(result) = segue.take_export(task) {
@@ -236,7 +224,7 @@ mod tests {
             assert_eq!(segue.exports.under_way().collect::<Vec<_>>(), [&*name]);
             let expected = segue.export_as(&id, &how).unwrap();
             let made = end(task, &mut segue).unwrap();
-            assert!(made == WrittenFile::Large(LargeFile::new(expected.bytes.into())), "{name}");
+            assert!(made == LargeFile::written(&expected.bytes), "{name}");
             assert_eq!(segue.exports.under_way().count(), 0);
         }
         let short = segue.begin_export("walk", &ExportOptions::default(), true).unwrap();
@@ -279,6 +267,6 @@ mod tests {
         let task = begin(&id, &how, &mut segue);
         segue.on_export_event(task, ReadEvent::Done(Err(ReadError::NotStarted)));
         let made = segue.take_export(task).expect("a result").unwrap();
-        assert!(made == WrittenFile::Here(expected.bytes));
+        assert!(made == LargeFile::written(&expected.bytes));
     }
 }

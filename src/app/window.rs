@@ -19,7 +19,7 @@ pub(super) struct Window {
     pub(super) pacer: Option<FramePacer>,
     /// The installed theme; `None` before the first frame.
     pub(super) theme: Option<Theme>,
-    /// What the panels of the last frame showed.
+    /// The state that the panels of the last frame showed.
     pub(super) shown: Option<Shown>,
     /// Whether a finger is the main pointer, and the size of the window for which this was asked.
     has_coarse_pointer: bool,
@@ -31,7 +31,7 @@ pub(super) struct Window {
     pub(super) within_event: bool,
 }
 
-/// What the panels show that changes without a user's event.
+/// The part of the state in the panels that may change without an event of the user.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Shown {
     pub(super) revision: u64,

@@ -243,6 +243,7 @@ fn lab_side_ui(
         });
 }
 
+/// Draws the contents of the panel of the parameters, where a lesson may take the place of them.
 fn lab_side_contents_ui(
     session: &Session,
     layout: Layout,

@@ -37,7 +37,7 @@ pub(crate) struct Stillness {
     cursor: CursorIcon,
 }
 
-/// What becomes of the panels in a frame.
+/// The way in which the panels are shown in a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Mode {
     /// They are drawn.
@@ -70,11 +70,8 @@ impl Stillness {
     pub(crate) fn begin(&mut self, is_quiet: bool, ctx: &Context) {
         let was_expected = is_expected(ctx);
         let glyphs = Glyphs::of(ctx);
-        // Other glyphs may be in the place of those that a panel shows.
-        let has_glyphs = glyphs.used >= self.glyphs.used || glyphs.size != self.glyphs.size;
-        if glyphs.size != self.glyphs.size {
-            self.panels.clear();
-        }
+        // Otherwise the places of the glyphs in the texture are others.
+        let has_glyphs = glyphs.size == self.glyphs.size && glyphs.used >= self.glyphs.used;
         self.glyphs = glyphs;
         let now = ctx.input(|input| input.time);
         if is_quiet && has_glyphs && is_untouched(ctx) {
@@ -93,7 +90,7 @@ impl Stillness {
             // This frame's widgets could not be described.
             ctx.request_repaint();
         }
-        let expects = mode_of(self.frames + 1) == Mode::Still && self.frames > 0;
+        let expects = mode_of(self.frames + 1) == Mode::Still;
         ctx.data_mut(|data| data.insert_temp(expected_id(), expects));
         if self.mode == Mode::Still {
             ctx.set_cursor_icon(self.cursor);
@@ -150,7 +147,7 @@ fn is_untouched(ctx: &Context) -> bool {
         && !ctx.plugin::<LabelSelectionState>().lock().has_selection()
 }
 
-/// What a panel has drawn.
+/// The picture and the widgets of a panel.
 #[derive(Clone, Debug, PartialEq)]
 struct Drawn {
     room: Rect,

@@ -355,7 +355,7 @@ mod tests {
     use crate::{Command, Session, Value};
     use segue_formats::{ImportOptions, import};
 
-    fn blend() -> Session {
+    pub(super) fn blend() -> Session {
         let mut session = Session::new();
         session.apply(Command::OpenLink("lab=blend&joint=left%20foot".into())).unwrap();
         while session.work() {}

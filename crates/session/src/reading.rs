@@ -57,11 +57,11 @@ pub struct ReadTask {
     pub size: u64,
     /// The options of reading it.
     pub setup: ReadSetup,
-    /// What is made of it.
+    /// The result that is asked for.
     pub product: Product,
 }
 
-/// What is made of a file.
+/// The result that is asked for of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Product {
     /// Its clips ([`read`]).

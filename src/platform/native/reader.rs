@@ -20,6 +20,11 @@ impl LargeFile {
         Self(bytes)
     }
 
+    /// Returns a file that was written.
+    pub(crate) fn written(bytes: &[u8]) -> Self {
+        Self(bytes.into())
+    }
+
     /// Returns its size, bytes.
     pub(crate) fn len(&self) -> u64 {
         self.0.len() as u64

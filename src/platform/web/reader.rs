@@ -52,6 +52,11 @@ impl LargeFile {
         Self(Held::Blob(blob))
     }
 
+    /// Returns a file that was written.
+    pub(crate) fn written(bytes: &[u8]) -> Self {
+        Self(Held::Bytes(Uint8Array::from(bytes)))
+    }
+
     /// Returns a file in the storage, by its SHA-256.
     pub(super) fn stored(sha256: &str) -> Self {
         Self(Held::Stored(sha256.to_owned()))
@@ -91,7 +96,7 @@ impl LargeFile {
         }
     }
 
-    /// Returns the array that has the bytes; `None` for a file that is none.
+    /// Returns the bytes where the browser holds them as an array, as those of written files.
     pub(crate) fn array(&self) -> Option<Uint8Array> {
         match &self.0 {
             Held::Bytes(bytes) => Some(bytes.clone()),

@@ -108,15 +108,8 @@ pub fn write(packed: &[u8]) -> Result<Vec<u8>, PackedError> {
 mod tests {
     use super::*;
     use crate::export::plotted_of_result;
-    use crate::{Command, Session};
+    use crate::export::tests::blend;
     use segue_motion::clip::{Interpolation, resample};
-
-    fn blend() -> Session {
-        let mut session = Session::new();
-        session.apply(Command::OpenLink("lab=blend&joint=left%20foot".into())).unwrap();
-        while session.work() {}
-        session
-    }
 
     #[test]
     fn packed_exports_give_the_same_files() {
