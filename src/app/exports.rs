@@ -87,6 +87,8 @@ impl Segue {
         };
         self.exports.all.insert(id, export);
         self.reader.start(task, platform::outside_memory(packed));
+        // A call of the API causes no frame, and the library lists the export.
+        self.inbox.wake();
         Ok(BegunExport::UnderWay(id))
     }
 
@@ -106,6 +108,7 @@ impl Segue {
         let tasks = all.map(|(task, _)| *task).collect();
         self.reader.stop(&tasks);
         self.exports.all.retain(|task, _| !tasks.contains(task));
+        self.inbox.wake();
         !tasks.is_empty()
     }
 
