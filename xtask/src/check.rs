@@ -6,11 +6,11 @@ use std::process::{Child, Command};
 use std::time::{Duration, Instant};
 
 use crate::shell::{self, Result, cargo, command, fail, root};
-use crate::{compare, dist, server, tools};
+use crate::{compare, dist, lint, server, tools};
 
 /// The parts, in an order that fails early and lets each reuse what the one before has built.
 const PARTS: [(&str, Part); 7] = [
-    ("lint", lint),
+    ("lint", check_style),
     ("core", core),
     ("oracles", oracles),
     ("python", python),
@@ -130,12 +130,12 @@ impl Beside {
     }
 }
 
-fn lint(report: &mut Report) {
+fn check_style(report: &mut Report) {
     report.run("rustfmt", cargo(&["fmt", "--all", "--check"]));
-    report.run("clippy", clippy(&[&["--workspace", "--all-targets"], UI_TESTS].concat()));
     if shell::is_ci() {
-        return; // the build for the web is checked while it is made (lint.rs)
+        return; // everything is checked by Clippy while it is compiled (lint.rs)
     }
+    report.run("clippy", clippy(&[&["--workspace", "--all-targets"], UI_TESTS].concat()));
     report.step("clippy, web", || {
         tools::ensure_wasm_target()?;
         tools::clang()?;
@@ -155,23 +155,31 @@ fn core(report: &mut Report) {
             shell::run(&mut cargo(&["check", "--quiet", "--locked", "--package", library]))
         })
     });
-    report.run("tests without the UI", tests_without_ui());
+    report.step("tests without the UI", || shell::run(&mut tests_without_ui()?));
+    if shell::is_ci() {
+        // For Clippy, which outside CI has checked them already.
+        report.step("tools and benchmarks", || {
+            let what = ["--package=segue-tools", "--bins", "--benches", "--no-run"];
+            shell::run(tests_without_ui()?.args(what))
+        });
+    }
 }
 
 /// Returns the command that runs the tests of the libraries and those across them. All are tested
 /// at once: a library would otherwise be built again for each set of features that the others ask
 /// of the packages below it.
-fn tests_without_ui() -> Command {
+fn tests_without_ui() -> Result<Command> {
     let mut tests = cargo(&["test", "--quiet", "--locked", "--no-default-features"]);
     tests.args(["segue"].iter().chain(&LIBRARIES).flat_map(|name| ["--package", name]));
-    tests
+    lint::while_building(&mut tests)?;
+    Ok(tests)
 }
 
 fn oracles(report: &mut Report) {
     report.step("exported files in three.js, bvhio and NumPy", || {
         tools::browser_packages()?;
         let python = python_with_bvhio()?;
-        shell::run(tests_without_ui().arg("--test=exchange"))?;
+        shell::run(tests_without_ui()?.arg("--test=exchange"))?;
         let files = shell::target().join("tmp/exchange");
         shell::run(command("node", &["tests/browser/read_back.mjs"]).arg(&files))?;
         shell::run(command(python, &["crates/formats/tests/oracles/read_back.py"]).arg(&files))?;
@@ -194,6 +202,7 @@ fn python(report: &mut Report) {
         let build = ["-m", "maturin", "build", "--quiet", "--locked", "--profile=dev"];
         let mut maturin = command(&python, &build);
         shell::build_as_in_ci(&mut maturin);
+        lint::while_building(&mut maturin)?;
         maturin.arg("--features=unified").arg("--out").arg(&wheels);
         shell::run(maturin.current_dir(&package))?;
         let wheel = fs::read_dir(&wheels)?.next().ok_or("maturin has made no wheel")??.path();
@@ -210,16 +219,19 @@ fn python(report: &mut Report) {
 /// Builds the command line, and returns its path. It is built as for its own tests: alone, it
 /// would ask for other features of the packages below it.
 fn command_line() -> Result<PathBuf> {
-    shell::run(tests_without_ui().args(["--no-run", "--test=results"]))?;
+    shell::run(tests_without_ui()?.args(["--no-run", "--test=results"]))?;
     Ok(shell::target().join(format!("debug/segue{}", std::env::consts::EXE_SUFFIX)))
 }
 
 fn app(report: &mut Report) {
     report.step("tests, whole app", || {
         tools::software_vulkan()?;
-        let tests = ["test", "--locked", "--package=segue", "--bin=segue-app"];
-        shell::run(cargo(&tests).args(UI_TESTS))?;
-        shell::run(&mut cargo(&["test", "--locked", "--package=xtask"]))
+        let mut app = cargo(&["test", "--locked", "--package=segue", "--bin=segue-app"]);
+        lint::while_building(&mut app)?;
+        shell::run(app.args(UI_TESTS))?;
+        let mut xtask = cargo(&["test", "--locked", "--package=xtask"]);
+        lint::while_building(&mut xtask)?;
+        shell::run(&mut xtask)
     });
 }
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::process::Command;
 
 use crate::progress::{self, Build};
-use crate::shell::{Result, cargo, command, fail, is_ci, on_path, root, run, step, target};
+use crate::shell::{Result, cargo, command, fail, on_path, root, run, step, target};
 use crate::{lint, page, seal, tools};
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -44,7 +44,7 @@ pub fn build(profile: Profile, modules: Modules) -> Result<()> {
             // The app ends in one long link on one core: the other core builds the tool meanwhile.
             progress::run(vec![
                 Build { name: "Segue for the web", cargo: app(profile, &WORKERS)? },
-                Build { name: "its JavaScript's writer", cargo: bindgen() },
+                Build { name: "its JavaScript's writer", cargo: bindgen()? },
             ])
         },
     )?;
@@ -84,14 +84,14 @@ fn app(profile: Profile, others: &[&str]) -> Result<Command> {
     if profile == Profile::Release {
         build.arg("--release");
     }
-    if is_ci() {
-        lint::while_building(&mut build)?;
-    }
+    lint::while_building(&mut build)?;
     Ok(build)
 }
 
-fn bindgen() -> Command {
-    cargo(&["build", "--locked", "--profile=tool", "--package=segue-bindgen"])
+fn bindgen() -> Result<Command> {
+    let mut build = cargo(&["build", "--locked", "--profile=tool", "--package=segue-bindgen"]);
+    lint::while_building(&mut build)?;
+    Ok(build)
 }
 
 /// Writes `dist/` from what has been compiled.

@@ -1,6 +1,6 @@
-//! Clippy in the build for the web in CI: Segue's own packages are checked when they are compiled.
+//! Clippy in the builds of CI: Segue's own packages are checked when they are compiled.
 //!
-//! `cargo clippy` first checks all packages below them, which the build compiles again. In CI,
+//! `cargo clippy` first checks all packages below them, which the builds compile again. In CI,
 //! xtask is cargo's `RUSTC_WORKSPACE_WRAPPER` instead: cargo calls it in place of the compiler, for
 //! the packages of this workspace alone.
 
@@ -9,10 +9,16 @@ use std::path::Path;
 use std::process::{Command, ExitCode};
 
 use crate::shell::{self, Result, fail};
+use crate::tools::WASM_TARGET;
 
-/// Sets up a call of cargo so that Clippy checks what it compiles.
+/// In CI, sets up a call of cargo so that Clippy checks what it compiles.
 pub fn while_building(cargo: &mut Command) -> Result<()> {
-    cargo.env("RUSTC_WORKSPACE_WRAPPER", std::env::current_exe()?);
+    if shell::is_ci() {
+        cargo.env("RUSTC_WORKSPACE_WRAPPER", std::env::current_exe()?);
+        // `-D warnings`, in the form in which `cargo clippy` hands it on. Set for cargo: what Clippy
+        // has compiled is out of date where this variable has another value.
+        cargo.env("CLIPPY_ARGS", "-D__CLIPPY_HACKERY__warnings__CLIPPY_HACKERY__");
+    }
     Ok(())
 }
 
@@ -21,20 +27,23 @@ pub fn is_compiler(args: &[&str]) -> bool {
     args.first().is_some_and(|first| Path::new(first).file_stem().is_some_and(|it| it == "rustc"))
 }
 
-/// Checks by Clippy what is to be compiled, and compiles it if there is no fault.
+/// Compiles, and fails where Clippy finds a fault.
+///
+/// Clippy's driver is a compiler itself, but leaves out the optimisation of Rust's own
+/// intermediate code. Tests are compiled by it. What is deployed is checked first, and then
+/// compiled as it is without Clippy.
 pub fn compile(args: &[&str]) -> Result<ExitCode> {
     let (compiler, args) = args.split_first().ok_or("there is no compiler")?;
     // Cargo also asks the compiler for its version and its targets.
-    if args.iter().any(|arg| arg.ends_with(".rs")) {
-        let mut clippy = Command::new("clippy-driver");
-        clippy.arg(compiler).args(check_args(args)?);
-        // `-D warnings`, in the form in which `cargo clippy` hands it on.
-        clippy.env("CLIPPY_ARGS", "-D__CLIPPY_HACKERY__warnings__CLIPPY_HACKERY__");
-        if !succeeds(&mut clippy)? {
-            return Ok(ExitCode::FAILURE);
-        }
-    }
-    let compiled = succeeds(Command::new(compiler).args(args))?;
+    let is_code = args.iter().any(|arg| arg.ends_with(".rs"));
+    let is_deployed = args.contains(&WASM_TARGET);
+    let clippy = |args: &[String]| succeeds(Command::new("clippy-driver").arg(compiler).args(args));
+    let own: Vec<String> = args.iter().map(ToString::to_string).collect();
+    let compiled = match (is_code, is_deployed) {
+        (true, false) => clippy(&own)?,
+        (true, true) if !clippy(&check_args(args)?)? => false,
+        _ => succeeds(Command::new(compiler).args(args))?,
+    };
     Ok(if compiled { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 

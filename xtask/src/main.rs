@@ -28,7 +28,7 @@ cargo xtask serve --dist
 
 cargo xtask test [PART …]
     Everything that must pass. Parts: lint core oracles python app web browser; all of them unless some are named.
-    lint        rustfmt, and Clippy for everything, natively and for the web (in CI, the latter while `web` builds)
+    lint        rustfmt, and Clippy for everything, natively and for the web (in CI, while the other parts compile it)
     core        the tests of the libraries and the command line, and documentation examples, built without any UI
     oracles     exported files, read back by npm's three and PyPI's bvhio: the same motion?
     python      `import segue`: a wheel, and its tests against NumPy, SciPy and other readers

@@ -7,7 +7,8 @@ use crate::shell::{Result, command, fail, on_path, output, root, run, step, targ
 
 /// The version of Trunk for which Trunk.toml was written; others write other start scripts.
 const TRUNK: &str = "0.21.14";
-const WASM_TARGET: &str = "wasm32-unknown-unknown";
+/// The target of what runs in the page.
+pub const WASM_TARGET: &str = "wasm32-unknown-unknown";
 
 /// Checks that Trunk and wasm-bindgen are installed in the versions that build this page. Only
 /// `trunk serve` needs them.
