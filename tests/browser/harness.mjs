@@ -12,7 +12,11 @@
 
 import process from "node:process";
 import test, { after } from "node:test";
-import { BACKENDS, close, endBrowser, hasGraphics, openSegue, withTimeout } from "./segue.mjs";
+import { BACKENDS, close, endBrowser, hasGraphics, openSegue, setBrowserFlags, withTimeout } from "./segue.mjs";
+
+// A page of a test lives for seconds: what the browser would compile again, to run faster later, is
+// a fifth of what it takes to open one. Ten times as much has to run before it does.
+setBrowserFlags(["--js-flags=--wasm-tiering-budget=130000000"]);
 
 /** The tests that passed only in their second run, with what the first one reported. */
 const unstable = [];

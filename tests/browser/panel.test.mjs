@@ -129,11 +129,11 @@ onBothBackends("phone shows one pane, and the whole page", async ({ open }) => {
 // change by a call is not shown while they do.
 onBothBackends("panels that stand still while the motion plays take a click and show a change", async ({ open }) => {
   const { page, segue } = await open("lab=blend", { viewport: [1440, 900] });
-  const told = () => page.evaluate(() => document.getElementById("outline").textContent);
+  const told = () => page.evaluate(() => document.getElementById("outline")?.textContent);
   const standStill = () => until("ten frames pass of which the page is told nothing", async () => {
     const [{ frames }, text] = [await segue("stats"), await told()];
     await until("ten frames", async () => (await segue("stats")).frames >= frames + 10);
-    return (await told()) === text;
+    return text && (await told()) === text;
   });
   await standStill();
   const { x, y, width, height } = await page.getByRole("tab", { name: "Loop", exact: true }).boundingBox();

@@ -159,12 +159,18 @@ async function snapshot(page) {
 }
 
 const browsers = new Map();
+let ownFlags = [];
+
+/** Sets options of the browsers that are started from now on, beside those of their backend. */
+export function setBrowserFlags(flags) {
+  ownFlags = flags;
+}
 
 /** The browsers of this test file by backend, started on demand. */
 export function launch(backend) {
   if (!BACKEND_FLAGS[backend]) throw new Error(`there is no backend "${backend}", only ${Object.keys(BACKEND_FLAGS).join(", ")}`);
   if (!browsers.has(backend)) {
-    browsers.set(backend, chromium.launch({ executablePath: chromiumPath(), args: [...COMMON_FLAGS, ...BACKEND_FLAGS[backend]] }));
+    browsers.set(backend, chromium.launch({ executablePath: chromiumPath(), args: [...COMMON_FLAGS, ...BACKEND_FLAGS[backend], ...ownFlags] }));
   }
   return browsers.get(backend);
 }
