@@ -10,7 +10,7 @@ use crate::{compare, dist, lint, server, tools};
 
 /// The parts, in an order that fails early and lets each reuse what the one before has built.
 const PARTS: [(&str, Part); 7] = [
-    ("lint", check_style),
+    ("lint", lint),
     ("core", core),
     ("oracles", oracles),
     ("python", python),
@@ -130,7 +130,7 @@ impl Beside {
     }
 }
 
-fn check_style(report: &mut Report) {
+fn lint(report: &mut Report) {
     report.run("rustfmt", cargo(&["fmt", "--all", "--check"]));
     if shell::is_ci() {
         return; // everything is checked by Clippy while it is compiled (lint.rs)

@@ -15,8 +15,8 @@ use crate::tools::WASM_TARGET;
 pub fn while_building(cargo: &mut Command) -> Result<()> {
     if shell::is_ci() {
         cargo.env("RUSTC_WORKSPACE_WRAPPER", std::env::current_exe()?);
-        // `-D warnings`, in the form in which `cargo clippy` hands it on. Set for cargo: what Clippy
-        // has compiled is out of date where this variable has another value.
+        // `-D warnings`, in the form in which `cargo clippy` hands it on. Set for cargo: what
+        // Clippy has compiled is out of date where this variable has another value.
         cargo.env("CLIPPY_ARGS", "-D__CLIPPY_HACKERY__warnings__CLIPPY_HACKERY__");
     }
     Ok(())
@@ -34,15 +34,17 @@ pub fn is_compiler(args: &[&str]) -> bool {
 /// compiled as it is without Clippy.
 pub fn compile(args: &[&str]) -> Result<ExitCode> {
     let (compiler, args) = args.split_first().ok_or("there is no compiler")?;
+    let clippy = |args: &[&str]| succeeds(Command::new("clippy-driver").arg(compiler).args(args));
     // Cargo also asks the compiler for its version and its targets.
     let is_code = args.iter().any(|arg| arg.ends_with(".rs"));
-    let is_deployed = args.contains(&WASM_TARGET);
-    let clippy = |args: &[String]| succeeds(Command::new("clippy-driver").arg(compiler).args(args));
-    let own: Vec<String> = args.iter().map(ToString::to_string).collect();
-    let compiled = match (is_code, is_deployed) {
-        (true, false) => clippy(&own)?,
-        (true, true) if !clippy(&check_args(args)?)? => false,
-        _ => succeeds(Command::new(compiler).args(args))?,
+    let compiled = if is_code && !args.contains(&WASM_TARGET) {
+        clippy(args)?
+    } else {
+        let checked = !is_code || {
+            let args = check_args(args)?;
+            clippy(&args.iter().map(String::as_str).collect::<Vec<_>>())?
+        };
+        checked && succeeds(Command::new(compiler).args(args))?
     };
     Ok(if compiled { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
