@@ -19,11 +19,12 @@ use segue_motion::math::Planar;
 use segue_scene::pose_at;
 use segue_session::bone_map::BoneMap;
 use segue_session::export::{
-    Column, ExportBody, ExportFormat, ExportOptions, ExportRoot, export, file_name, packed,
+    Column, ExportBody, ExportFormat, ExportOptions, ExportRoot, export, file_name,
     plotted_of_clip, plotted_of_result,
 };
 use segue_session::metrics::MetricId;
 use segue_session::outside;
+use segue_session::packed;
 use segue_session::reading::Content;
 use segue_session::{
     ClipInfo, Command, CommandError, FileCommand, Key, Kind, LabError, LabId, List, LoadedFile,
@@ -423,10 +424,10 @@ impl Segue {
         how: &ExportOptions,
     ) -> Result<Option<(String, Vec<u8>)>, ApiError> {
         let (motion, curves, stem) = self.exported(which, how)?;
-        if !packed::takes_long(motion, self.session.character().is_some(), how) {
+        if !packed::takes_long(motion) {
             return Ok(None);
         }
-        let packed = packed::pack(motion, &curves, how).ok();
+        let packed = packed::pack(motion, self.session.character().as_ref(), &curves, how).ok();
         Ok(packed.map(|packed| (file_name(&stem, how.format.ending()), packed)))
     }
 

@@ -2,12 +2,13 @@
 //! what comes back is added to one archive.
 
 use super::{Segue, exports};
-use crate::platform::{self, FileBytes, ReadEvent, Reader};
+use crate::platform::{self, FileBytes, LargeFile, ReadError, ReadEvent, Reader};
 use crate::ui::{ConvertAction, ConvertShown};
 use segue_formats::FileKind;
 use segue_session::conversion::{Conversion, ConversionRow, ConvertedFile};
 use segue_session::convert::{ConvertOptions, TargetRig};
 use segue_session::export::ExportOptions;
+use segue_session::packed;
 use segue_session::reading::{Content, Product, ReadReport, ReadSetup, ReadTask, SkeletonFile};
 use segue_session::{Command, FileCommand, Level, Origin, Session, Slot};
 use segue_text::{Message, ToMessage as _, msg};
@@ -40,18 +41,29 @@ struct Run {
     setup: ReadSetup,
     /// The result that is asked for of each file.
     product: Product,
+    /// Whether long clips of the library are converted here, too: a worker could not.
+    has_no_writer: bool,
     /// The number of files and clips in all.
     all: usize,
     current: Option<Current>,
 }
 
-/// The file that is read now.
+/// The file or clip that is converted now.
 #[derive(Debug)]
 struct Current {
     task: u64,
     name: String,
     size: u64,
     done: u64,
+    clip: Option<CurrentClip>,
+}
+
+/// The clip of the library that is converted now.
+#[derive(Debug)]
+struct CurrentClip {
+    id: String,
+    /// The bytes that the worker has made of it.
+    made: Option<LargeFile>,
 }
 
 impl Converter {
@@ -77,7 +89,7 @@ impl Converter {
         }
     }
 
-    /// Takes in an event of the file that is read.
+    /// Takes in an event of the file or clip that is converted.
     pub(super) fn on_read_event(&mut self, task: u64, event: ReadEvent) {
         let Some(run) = &mut self.run else { return };
         let Some(current) = run.current.as_mut().filter(|current| current.task == task) else {
@@ -88,11 +100,37 @@ impl Converter {
                 current.done = done;
                 return;
             }
-            // Converted files are not stored.
-            ReadEvent::Bytes(_) => return,
-            ReadEvent::NoRoom(_) => Err("there is no room for the file".into()),
-            ReadEvent::Done(report) => report.map_err(|error| error.to_message()),
+            ReadEvent::Bytes(made) => {
+                // Files that are read are not stored.
+                if let Some(clip) = &mut current.clip {
+                    clip.made = Some(made);
+                }
+                return;
+            }
+            ReadEvent::NoRoom(_) => Err(ReadError::NoRoom),
+            ReadEvent::Done(report) => report,
         };
+        if let Some(CurrentClip { id, made }) = current.clip.take() {
+            let name = std::mem::take(&mut current.name);
+            run.current = None;
+            let made = made.and_then(|made| packed::read_converted(&made.to_vec()?));
+            match (report, made) {
+                (Ok(_), Some(made)) => run.conversion.add_converted(&name, Ok(made)),
+                (Err(ReadError::Refused(reason)), _) => {
+                    run.conversion.add_converted(&name, Err(reason));
+                }
+                // The program cannot be fetched, or its memory is used up.
+                _ => {
+                    run.has_no_writer = true;
+                    self.waiting.push_front(Item::Clip { id });
+                }
+            }
+            return;
+        }
+        let report = report.map_err(|error| match error {
+            ReadError::NoRoom => msg!("there is no room for the file"),
+            other => other.to_message(),
+        });
         let name = std::mem::take(&mut current.name);
         run.current = None;
         let has_motions = self.waiting.iter().any(Item::may_need_model);
@@ -148,18 +186,36 @@ impl Converter {
                 let content = Content::Outside(String::new());
                 let (setup, product) = (run.setup.clone(), run.product.clone());
                 let task = ReadTask { id, name: name.clone(), content, size, setup, product };
-                run.current = Some(Current { task: id, name, size, done: 0 });
+                run.current = Some(Current { task: id, name, size, done: 0, clip: None });
                 reader.start(task, bytes);
             }
             Some(Item::Clip { id }) => {
                 let entry = session.library().find(&id);
-                match entry.and_then(|entry| Some((entry, entry.motion.as_ref()?))) {
-                    Some((entry, motion)) => {
-                        let title = entry.title().to_string();
-                        run.conversion.add_clip(&title, motion, entry.mesh.as_ref());
-                    }
-                    None => run.conversion.fail(&id, "its motion is not loaded".into()),
-                }
+                let Some((entry, motion)) =
+                    entry.and_then(|entry| Some((entry, entry.motion.as_ref()?)))
+                else {
+                    run.conversion.fail(&id, "its motion is not loaded".into());
+                    return (true, None);
+                };
+                let (name, mesh) = (entry.title().to_string(), entry.mesh.as_ref());
+                let options = run.conversion.options();
+                // One file of all clips needs their motions.
+                let is_elsewhere = matches!(run.product, Product::Convert(_))
+                    && !run.has_no_writer
+                    && packed::takes_long(motion);
+                let packed = is_elsewhere.then(|| packed::pack_conversion(motion, mesh, options));
+                let Some(Ok(packed)) = packed else {
+                    run.conversion.add_clip(&name, motion, mesh);
+                    return (true, None);
+                };
+                self.tasks += 1;
+                let task = FIRST_TASK + self.tasks;
+                let (size, clip) = (packed.len() as u64, Some(CurrentClip { id, made: None }));
+                reader.start(
+                    ReadTask::of_packed_motion(task, &name, packed.len()),
+                    platform::outside_memory(packed),
+                );
+                run.current = Some(Current { task, name, size, done: 0, clip });
             }
         }
         (true, None)
@@ -303,7 +359,8 @@ impl Segue {
         } else {
             Conversion::new(options)
         };
-        self.converter.run = Some(Run { conversion, setup, product, all, current: None });
+        self.converter.run =
+            Some(Run { conversion, setup, product, has_no_writer: false, all, current: None });
         self.converter.rows = Arc::default();
     }
 
@@ -338,6 +395,8 @@ fn stopped() -> Message {
 mod tests {
     use super::*;
     use crate::platform::{Inbox, Incoming};
+    use segue_formats::bvh;
+    use segue_motion::synth::{Action, Params, synthesize};
     use segue_session::export::ExportFormat;
 
     const BVH: &[u8] = b"HIERARCHY ROOT Hips { OFFSET 0 1 0 CHANNELS 1 Yrotation End Site { OFFSET 0 0.7 0 } } MOTION Frames: 2 Frame Time: .1\n1\n2";
@@ -396,6 +455,55 @@ mod tests {
         segue.panels.convert.is_open = false;
         segue.receive(Incoming::File { name: "one.bvh".into(), bytes: Arc::from(BVH) });
         assert_eq!(segue.session.library().entries().len(), before + 1);
+    }
+
+    /// Opens an app with a clip of a minute, and begins to convert it. Returns the task.
+    fn begin_with_a_long_clip() -> (Segue, u64) {
+        let mut segue = app();
+        segue.panels.convert.is_open = false;
+        let params = Params { duration_secs: 60.0, ..Params::new(Action::Walk) };
+        let clip = synthesize(&params).expect("natural parameters").clip;
+        let text = bvh::write(&clip, &bvh::WriteOptions::default());
+        let task = segue.load_in_background("long.bvh", FileBytes::Here(text.into_bytes().into()));
+        while segue.is_reading(task) {
+            segue.poll();
+        }
+        segue.read_result(task).expect("a result").expect("a clip");
+        let own = segue.clips().into_iter().find(|clip| clip.id.starts_with("long"));
+        let id = own.expect("the clip").id;
+        segue.run_conversion(&ConvertAction::AddClips(vec![id]));
+        start(&mut segue);
+        let (more, _) = segue.converter.advance(&segue.session, &mut segue.reader);
+        assert!(more, "the clip is with a worker");
+        let run = segue.converter.run.as_ref().expect("a conversion");
+        let task = run.current.as_ref().expect("a clip").task;
+        (segue, task)
+    }
+
+    #[test]
+    fn page_converts_a_long_clip_as_a_worker_does_where_none_can() {
+        let mut made = Vec::new();
+        for fails in [false, true] {
+            let (mut segue, task) = begin_with_a_long_clip();
+            if fails {
+                let event = ReadEvent::Done(Err(ReadError::NotStarted));
+                segue.converter.on_read_event(task, event);
+                assert!(segue.converter.run.as_ref().is_some_and(|run| run.has_no_writer));
+            }
+            made.push((converted(&mut segue).bytes, segue.converter.shown().rows));
+        }
+        assert_eq!(made[0].1[0].output, Ok("long.npz".to_owned()));
+        assert!(made[0] == made[1]);
+    }
+
+    #[test]
+    fn long_clip_that_is_stopped_gets_a_line_and_late_answers_change_nothing() {
+        let (mut segue, task) = begin_with_a_long_clip();
+        assert!(segue.converter.stop(&mut segue.reader).is_some());
+        let event = ReadEvent::Done(Ok(ReadReport::default()));
+        segue.converter.on_read_event(task, event);
+        let rows = segue.converter.shown().rows;
+        assert_eq!((rows.len(), &rows[0].output), (1, &Err(stopped())));
     }
 
     #[test]

@@ -5,7 +5,7 @@ use super::api::{ApiError, ExportedFile};
 use crate::platform::{self, LargeFile, ReadError, ReadEvent};
 use segue_session::Level;
 use segue_session::export::ExportOptions;
-use segue_session::reading::{Content, Product, ReadSetup, ReadTask};
+use segue_session::reading::ReadTask;
 use segue_text::{Message, ToMessage as _, msg};
 use std::collections::BTreeMap;
 
@@ -71,10 +71,7 @@ impl Segue {
         };
         self.exports.tasks += 1;
         let id = FIRST_TASK + self.exports.tasks;
-        let (size, setup) = (packed.len() as u64, ReadSetup::default());
-        let content = Content::Outside(String::new());
-        let task =
-            ReadTask { id, name: name.clone(), content, size, setup, product: Product::Export };
+        let task = ReadTask::of_packed_motion(id, &name, packed.len());
         let export = Export {
             name,
             mime: how.format.mime(),
@@ -179,7 +176,8 @@ mod tests {
     use crate::platform::{FileBytes, Inbox};
     use segue_formats::bvh::{WriteOptions, write};
     use segue_motion::synth::{Action, Params, synthesize};
-    use segue_session::export::ExportFormat;
+    use segue_session::export::{ExportBody, ExportFormat};
+    use segue_session::{Command, Key, Value};
     use std::sync::Arc;
 
     /// Opens a page with a clip of a minute. Returns its id.
@@ -232,6 +230,30 @@ mod tests {
         }
         let short = segue.begin_export("walk", &ExportOptions::default(), true).unwrap();
         assert!(matches!(short, BegunExport::Done(_)));
+    }
+
+    #[test]
+    fn character_goes_to_the_writer_with_the_motion() {
+        let (mut segue, id) = open();
+        let glb = ExportOptions { format: ExportFormat::Glb, ..ExportOptions::default() };
+        let mut figure = segue.export_as("walk", &glb).unwrap().bytes;
+        // The bodies of files of Segue's own are left out.
+        let author = figure.windows(6).position(|found| found == b"Segue ").expect("an author");
+        figure[author..author + 5].copy_from_slice(b"Other");
+        let task = segue.load_in_background("figure.glb", FileBytes::Here(Arc::from(figure)));
+        while segue.is_reading(task) {
+            segue.poll();
+        }
+        segue.read_result(task).expect("a result").expect("a clip");
+        let own = segue.clips().into_iter().find(|clip| clip.id.starts_with("figure"));
+        let character = Value::Text(own.expect("the clip").id);
+        segue.dispatch(Command::Set(vec![(Key::Character, character)]));
+        assert!(segue.session.character().is_some());
+        let task = begin(&id, &glb, &mut segue);
+        let expected = segue.export_as(&id, &glb).unwrap();
+        assert!(end(task, &mut segue).unwrap() == LargeFile::written(&expected.bytes));
+        let plain = ExportOptions { body: ExportBody::Plain, ..glb };
+        assert!(segue.export_as(&id, &plain).unwrap().bytes != expected.bytes);
     }
 
     #[test]

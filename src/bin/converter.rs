@@ -1,6 +1,6 @@
-//! The program that converts files for the page, and writes those of long motions: the readers and
-//! writers of segue-formats, and nothing of the app. `web/js/reader.js` fetches it for the first
-//! file that is converted or written.
+//! The program that converts files and clips for the page, and writes the files of long motions:
+//! the readers and writers of segue-formats, and nothing of the app. `web/js/reader.js` fetches it
+//! for the first file that is converted or written.
 
 #[cfg(target_arch = "wasm32")]
 #[path = "file_worker/report.rs"]
@@ -11,9 +11,8 @@ mod worker {
     use super::report::{Receiver, answer};
     use js_sys::Uint8Array;
     use segue_session::convert::ConvertOptions;
-    use segue_session::export::packed;
+    use segue_session::packed::{self, PackedError};
     use segue_session::reading::read_and_convert;
-    use segue_text::ToMessage as _;
     use wasm_bindgen::JsValue;
     use wasm_bindgen::prelude::wasm_bindgen;
 
@@ -36,14 +35,15 @@ mod worker {
         })
     }
 
-    /// Writes the file of a packed export, and returns its bytes; or a string where it is refused:
+    /// Returns the bytes that a packed motion was packed for; or a string where they are refused:
     /// the reason as the JSON of a message.
-    #[wasm_bindgen(js_name = writeExport)]
+    #[wasm_bindgen(js_name = writePacked)]
     #[expect(unreachable_pub, reason = "called from JavaScript")]
-    pub fn write_export(packed: &[u8]) -> Result<JsValue, JsValue> {
+    pub fn write_packed(packed: &[u8]) -> Result<JsValue, JsValue> {
         match packed::write(packed) {
             Ok(file) => Ok(Uint8Array::from(&file[..]).into()),
-            Err(reason) => serde_json::to_string(&reason.to_message())
+            Err(PackedError::Damaged) => Err(PackedError::Damaged.to_string().into()),
+            Err(PackedError::Refused(reason)) => serde_json::to_string(&reason)
                 .map(JsValue::from)
                 .map_err(|error| error.to_string().into()),
         }

@@ -75,3 +75,43 @@ onOneBackend("dropped files are converted into an archive, also at the second tr
   assert.ok(fetched.includes("converter_bg.wasm"));
   assert.equal((await segue("clips")).filter(({ sha256 }) => sha256).length, 1, "the library is as before");
 });
+
+// Fails when a long clip of the library is not converted by the worker, when the page does not
+// convert it where the worker cannot, and when the two archives differ.
+onOneBackend("long clip of the library is converted by the worker, or by the page where that cannot", async ({ open }) => {
+  const archives = [];
+  for (const isThere of [true, false]) {
+    const prepare = async (page) => {
+      await page.context().route("**/convert/*", (route) => (isThere ? route.continue() : route.abort()));
+      await page.addInitScript(() => {
+        window.written = 0;
+        window.Worker = class extends Worker {
+          constructor(...args) {
+            super(...args);
+            this.addEventListener("message", ({ data }) => (window.written += data.end && data.bytes ? 1 : 0));
+          }
+        };
+      });
+    };
+    const { page, load } = await open("lab=view&play=off", { viewport: [1280, 800], prepare });
+    await load("read.bvh", striding({ frames: 6000 }));
+    const row = page.getByRole("button", { name: /^read/ }).first();
+    await until("the clip is listed", async () => (await row.count()) === 1);
+    const { x, y, width, height } = await row.boundingBox();
+    await page.keyboard.down("Control");
+    await page.mouse.click(x + width / 2, y + height / 2);
+    await page.keyboard.up("Control");
+    const press = (name) => page.getByRole("button", { name, exact: true }).evaluate((element) => element.click());
+    await until("it is chosen", async () => (await page.getByRole("button", { name: "Convert…", exact: true }).count()) === 1);
+    await press("Convert…");
+    const dialog = page.getByRole("dialog", { name: "Convert many files" });
+    await until("the dialog is open", async () => (await dialog.count()) === 1);
+    const writtenBefore = await page.evaluate(() => window.written);
+    const download = page.waitForEvent("download");
+    await press("Convert");
+    await until("it is saved", async () => (await dialog.textContent()).includes("1 saved"));
+    assert.equal(await page.evaluate(() => window.written) - writtenBefore, isThere ? 1 : 0);
+    archives.push(await readFile(await (await download).path()));
+  }
+  assert.ok(archives[0].equals(archives[1]), `${archives.map(({ length }) => length)} bytes`);
+});

@@ -1,9 +1,9 @@
 // A worker that reads motion files, with a WebAssembly of its own (src/bin/reader.rs), and converts
 // and writes them with another one (src/bin/converter.rs). src/platform/web/reader.rs gives it tasks.
 //
-// Tasks are { task, name, setup, convert, isExport, file, stored, returnsBytes }: a Blob, or the place
+// Tasks are { task, name, setup, convert, isPacked, file, stored, returnsBytes }: a Blob, or the place
 // of the bytes in the storage, or both; `convert` has the options of a file that is converted, and
-// `isExport` says that the bytes are those of a packed export. For each the worker answers with
+// `isPacked` says that the bytes are those of a packed motion. For each the worker answers with
 // messages { task, progress }, { task, head }, { task, piece } …, { task, end: true, bytes }, or
 // { task, failed: reason }, { task, refused: message }, or { task, lost: true } when there is no such
 // file any more.
@@ -21,16 +21,16 @@ let starting;
 /** The memory from which on a trap is taken for a failed allocation, bytes. */
 const MIN_EXHAUSTED_BYTES = 1 << 30;
 
-self.onmessage = async ({ data: { task, name, setup, convert, isExport, file, stored, returnsBytes } }) => {
+self.onmessage = async ({ data: { task, name, setup, convert, isPacked, file, stored, returnsBytes } }) => {
   const post = (message, transfer = []) => self.postMessage({ task, ...message }, transfer);
   let memory;
   try {
-    const converter = (convert || isExport) && await (starting ??= startConverter());
+    const converter = (convert || isPacked) && await (starting ??= startConverter());
     ({ memory } = converter || await reader);
     const buffer = await bytesOf(file, stored);
     if (!buffer) return post({ lost: true });
-    if (isExport) {
-      const made = converter.writeExport(new Uint8Array(buffer));
+    if (isPacked) {
+      const made = converter.writePacked(new Uint8Array(buffer));
       return typeof made === "string" ? post({ refused: made }) : post({ end: true, bytes: made }, [made.buffer]);
     }
     const sha256 = await digest(buffer);
@@ -58,9 +58,9 @@ self.onmessage = async ({ data: { task, name, setup, convert, isExport, file, st
 
 async function startConverter() {
   try {
-    const { default: init, convertFile, writeExport } = await import("./convert/converter.js");
+    const { default: init, convertFile, writePacked } = await import("./convert/converter.js");
     const { memory } = await init();
-    return { convertFile, writeExport, memory };
+    return { convertFile, writePacked, memory };
   } catch {
     throw new Error("the program that converts files cannot be fetched: check the network and try again");
   }

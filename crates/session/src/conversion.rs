@@ -3,7 +3,8 @@
 //!
 //! ```text
 //! file → reading::read_and_convert (a worker) → compressed files → Conversion → zip
-//! clip of the library → Conversion::add_clip ─────────────────────────────────────┘
+//! clip of the library → Conversion::add_clip ─────────────────────────────────────┤
+//! long one → packed::write (a worker) → Conversion::add_converted ────────────────┘
 //! ```
 //!
 //! Motions stay with the worker, one file at a time: what remains of each is its compressed output.
@@ -137,12 +138,17 @@ impl Conversion {
         }
     }
 
-    /// Converts a motion of the library and adds it. `mesh` is as in [`convert_motion`].
+    /// Converts a motion of the library here and adds it. `mesh` is as in [`convert_motion`].
     pub fn add_clip(&mut self, name: &str, motion: &Motion, mesh: Option<&Arc<SkinnedMesh>>) {
         if self.together.is_some() {
             return self.join(name, name, &Arc::new(motion.clone()), mesh, Vec::new());
         }
         self.add(name, convert_motion(motion, mesh, &self.options), Vec::new());
+    }
+
+    /// Adds a motion of the library that was converted elsewhere.
+    pub fn add_converted(&mut self, name: &str, made: Result<ConvertedClip, Message>) {
+        self.add(name, made, Vec::new());
     }
 
     /// Adds a clip to the one file.

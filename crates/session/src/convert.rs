@@ -61,7 +61,8 @@ impl TargetRig {
 }
 
 /// A clip in another format. The compressed bytes of its file are not in here where they are sent
-/// beside it ([`ReadFile::unpacked`](crate::reading::ReadFile::unpacked)).
+/// beside it ([`ReadFile::unpacked`](crate::reading::ReadFile::unpacked), and
+/// [`packed::write`](crate::packed::write)).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ConvertedClip {
     /// The clip's name.

@@ -1,6 +1,5 @@
 //! A motion as the bytes of a file.
 
-pub mod packed;
 mod together;
 
 pub use together::Together;
@@ -350,12 +349,12 @@ pub fn file_name(stem: &str, ending: &str) -> String {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::{Command, Session, Value};
     use segue_formats::{ImportOptions, import};
 
-    pub(super) fn blend() -> Session {
+    pub(crate) fn blend() -> Session {
         let mut session = Session::new();
         session.apply(Command::OpenLink("lab=blend&joint=left%20foot".into())).unwrap();
         while session.work() {}

@@ -93,6 +93,7 @@ mod motion;
 mod notice;
 mod numbers;
 pub mod outside;
+pub mod packed;
 mod pane;
 mod panes;
 mod params;

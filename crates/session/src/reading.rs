@@ -7,6 +7,7 @@ mod wire;
 
 pub(crate) use converted::without_motion;
 pub use skeletons::SkeletonFile;
+pub(crate) use wire::{CharacterHead, put_character};
 pub use wire::{Parcel, Unpacker, WireError};
 
 use super::bone_map::{BoneMaps, mapped};
@@ -61,6 +62,21 @@ pub struct ReadTask {
     pub product: Product,
 }
 
+impl ReadTask {
+    /// Returns the task of a packed motion of `size` bytes, which are handed over beside it.
+    #[must_use]
+    pub fn of_packed_motion(id: u64, name: &str, size: usize) -> Self {
+        Self {
+            id,
+            name: name.to_owned(),
+            content: Content::Outside(String::new()),
+            size: size as u64,
+            setup: ReadSetup::default(),
+            product: Product::PackedMotion,
+        }
+    }
+}
+
 /// The result that is asked for of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Product {
@@ -68,8 +84,8 @@ pub enum Product {
     Clips,
     /// Its clips in another format ([`read_and_convert`]).
     Convert(Arc<ConvertOptions>),
-    /// The file of a packed export ([`packed::write`](crate::export::packed::write)).
-    Export,
+    /// What a packed motion was packed for ([`packed::write`](crate::packed::write)).
+    PackedMotion,
 }
 
 /// Options of reading a file.

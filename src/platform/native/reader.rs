@@ -2,9 +2,8 @@
 
 use crate::platform::{FileBytes, Inbox, Incoming, ReadError, ReadEvent};
 use segue_session::Session;
-use segue_session::export::packed;
+use segue_session::packed::{self, PackedError};
 use segue_session::reading::{Product, ReadReport, ReadTask, read, read_and_convert};
-use segue_text::ToMessage as _;
 use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::Arc;
@@ -34,6 +33,12 @@ impl LargeFile {
     #[expect(clippy::unused_self, reason = "a page has files that are only in its storage")]
     pub(crate) fn is_stored(&self) -> bool {
         false
+    }
+
+    /// Returns a copy of its bytes.
+    #[expect(clippy::unnecessary_wraps, reason = "a page has files that are only in its storage")]
+    pub(crate) fn to_vec(&self) -> Option<Vec<u8>> {
+        Some(self.0.to_vec())
     }
 
     /// Returns its bytes.
@@ -90,8 +95,11 @@ impl Reader {
                 Product::Convert(options) => {
                     read_and_convert(&task.name, bytes, &task.setup, options, progress).map(Ok)
                 }
-                Product::Export => Some(packed::write(bytes).map_or_else(
-                    |error| Err(ReadError::Refused(error.to_message())),
+                Product::PackedMotion => Some(packed::write(bytes).map_or_else(
+                    |error| match error {
+                        PackedError::Damaged => Err(ReadError::Failed(error.to_string())),
+                        PackedError::Refused(reason) => Err(ReadError::Refused(reason)),
+                    },
                     |made| {
                         report_event(ReadEvent::Bytes(LargeFile::new(made.into())));
                         Ok(ReadReport::default())
@@ -119,6 +127,7 @@ impl Reader {
 mod tests {
     use super::*;
     use segue_session::reading::Content;
+    use segue_text::ToMessage as _;
     use std::time::Duration;
 
     #[test]

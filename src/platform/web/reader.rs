@@ -104,6 +104,11 @@ impl LargeFile {
         }
     }
 
+    /// Returns a copy of the bytes of a written file; `None` for other files.
+    pub(crate) fn to_vec(&self) -> Option<Vec<u8>> {
+        self.array().map(|bytes| bytes.to_vec())
+    }
+
     /// Returns the browser's handle of the file; `None` for a file in the storage, and when the
     /// browser has no room for it.
     fn to_blob(&self) -> Option<Blob> {
@@ -203,7 +208,7 @@ struct CurrentTask {
     task: u64,
     size: u64,
     /// Whether a file is written, so that there is no report.
-    is_export: bool,
+    is_packed: bool,
     /// The report so far; `None` before its head has arrived.
     unpacker: Option<Unpacker>,
 }
@@ -309,7 +314,7 @@ impl State {
             Some(unpacker) => {
                 unpacker.finish().map_err(|error| ReadError::InvalidReport(error.to_message()))
             }
-            None if current.is_export => Ok(ReadReport::default()),
+            None if current.is_packed => Ok(ReadReport::default()),
             None => Err(ReadError::NoReport),
         };
         if let Some(bytes) = bytes {
@@ -392,8 +397,8 @@ fn start_next(state: &Rc<RefCell<State>>) {
                 return;
             };
             state.begun.begin(task.id);
-            let is_export = task.product == Product::Export;
-            let current = CurrentTask { task: task.id, size: task.size, is_export, unpacker: None };
+            let is_packed = task.product == Product::PackedMotion;
+            let current = CurrentTask { task: task.id, size: task.size, is_packed, unpacker: None };
             if let Some(slot) = state.slots.get_mut(slot) {
                 slot.current = Some(current);
             }
@@ -432,7 +437,7 @@ fn post(
         Product::Convert(options) => {
             serde_json::to_string(options.as_ref()).map_err(json_error)?.into()
         }
-        Product::Clips | Product::Export => JsValue::UNDEFINED,
+        Product::Clips | Product::PackedMotion => JsValue::UNDEFINED,
     };
     let file = match bytes {
         FileBytes::Here(bytes) => LargeFile::of_bytes(&Uint8Array::from(&bytes[..])),
@@ -452,7 +457,7 @@ fn post(
         ("name", JsValue::from(&task.name)),
         ("setup", JsValue::from(setup)),
         ("convert", convert),
-        ("isExport", JsValue::from(task.product == Product::Export)),
+        ("isPacked", JsValue::from(task.product == Product::PackedMotion)),
         ("file", file.to_blob().map_or(JsValue::UNDEFINED, JsValue::from)),
         ("stored", stored),
         ("returnsBytes", JsValue::from(is_new && task.size <= LARGE_BYTES)),

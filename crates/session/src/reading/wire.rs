@@ -1,9 +1,12 @@
 //! Transfer of a report from a worker: a JSON header, and the long arrays as bytes in pieces, so
-//! that neither side copies for longer than a frame.
+//! that neither side copies for longer than a frame. A character goes to a worker in the same form,
+//! in one piece.
 
+mod character;
 mod parcel;
 mod unpacker;
 
+pub(crate) use character::{CharacterHead, put_character};
 pub use parcel::Parcel;
 pub use unpacker::Unpacker;
 

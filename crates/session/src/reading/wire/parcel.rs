@@ -95,7 +95,7 @@ fn meshes(clips: &[ReadClip]) -> Vec<&Arc<SkinnedMesh>> {
 }
 
 /// Returns the images of meshes, each once.
-fn images<'a>(meshes: &[&'a Arc<SkinnedMesh>]) -> Vec<&'a Arc<[u8]>> {
+pub(super) fn images<'a>(meshes: &[&'a Arc<SkinnedMesh>]) -> Vec<&'a Arc<[u8]>> {
     let mut images: Vec<&Arc<[u8]>> = Vec::new();
     for TexturedPart { texture, .. } in meshes.iter().flat_map(|mesh| &mesh.textured) {
         if !images.iter().any(|known| Arc::ptr_eq(known, &texture.image)) {
@@ -103,6 +103,14 @@ fn images<'a>(meshes: &[&'a Arc<SkinnedMesh>]) -> Vec<&'a Arc<[u8]>> {
         }
     }
     images
+}
+
+/// Appends the arrays of a mesh to bytes that are sent at once.
+pub(super) fn put_whole_mesh(bytes: &mut Vec<u8>, mesh: &SkinnedMesh) {
+    let mut append = |piece: &[u8]| bytes.extend_from_slice(piece);
+    let mut piece = Piece { bytes: Vec::with_capacity(PIECE_BYTES), send: &mut append };
+    put_mesh(&mut piece, mesh);
+    piece.flush();
 }
 
 fn put_mesh(piece: &mut Piece<'_>, mesh: &SkinnedMesh) {
@@ -203,7 +211,7 @@ impl ClipHead {
 
 impl MeshHead {
     /// Returns that of a mesh; `images` are those of the file.
-    fn of(mesh: &SkinnedMesh, images: &[&Arc<[u8]>]) -> Self {
+    pub(super) fn of(mesh: &SkinnedMesh, images: &[&Arc<[u8]>]) -> Self {
         let textured = mesh.textured.iter().filter_map(|TexturedPart { triangles, texture }| {
             Some(TexturedHead {
                 triangles: triangles.clone(),

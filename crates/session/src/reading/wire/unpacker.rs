@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 impl MeshHead {
     /// Returns an empty mesh with memory for its arrays.
-    fn room(&self) -> Result<SkinnedMesh, TryReserveError> {
+    pub(super) fn room(&self) -> Result<SkinnedMesh, TryReserveError> {
         let mut mesh = SkinnedMesh::default();
         mesh.positions.try_reserve_exact(self.vertices)?;
         mesh.normals.try_reserve_exact(self.vertices)?;
@@ -27,7 +27,7 @@ impl MeshHead {
     }
 
     /// Moves what the mesh still needs from the front of `bytes`.
-    fn take(&self, mesh: &mut SkinnedMesh, bytes: &mut &[u8]) {
+    pub(super) fn take(&self, mesh: &mut SkinnedMesh, bytes: &mut &[u8]) {
         fill(&mut mesh.positions, self.vertices, bytes, |v| v);
         fill(&mut mesh.normals, self.vertices, bytes, |v| v);
         fill(&mut mesh.joints, self.vertices, bytes, |joints| joints);
@@ -44,7 +44,7 @@ impl MeshHead {
     }
 
     /// Returns the textured parts of the mesh; `images` are those of the file.
-    fn textured(&self, images: &[Arc<[u8]>]) -> Vec<TexturedPart> {
+    pub(super) fn textured(&self, images: &[Arc<[u8]>]) -> Vec<TexturedPart> {
         let part = |part: &TexturedHead| {
             let image = Arc::clone(images.get(part.image)?);
             let texture = Texture { image, sampler: part.sampler, alpha: part.alpha };
