@@ -11,9 +11,6 @@ use std::process::{Command, ExitCode};
 use crate::shell::{self, Result, fail};
 use crate::tools::WASM_TARGET;
 
-/// The packages with code for the web alone. The code of the others is checked natively.
-const WITH_WEB_CODE: [&str; 2] = ["segue", "segue-fbx"];
-
 /// In CI, sets up a call of cargo so that Clippy checks what it compiles.
 pub fn while_building(cargo: &mut Command) -> Result<()> {
     if shell::is_ci() {
@@ -33,8 +30,8 @@ pub fn is_compiler(args: &[&str]) -> bool {
 /// Compiles, and fails where Clippy finds a fault.
 ///
 /// Clippy's driver is a compiler itself, but leaves out the optimisation of Rust's own
-/// intermediate code. Tests are compiled by it. What is deployed is checked first where it has code
-/// that the tests have not, and then compiled as it is without Clippy.
+/// intermediate code. Tests are compiled by it. What is deployed is checked first, and then
+/// compiled as it is without Clippy.
 pub fn compile(args: &[&str]) -> Result<ExitCode> {
     let (compiler, args) = args.split_first().ok_or("there is no compiler")?;
     let clippy = |args: &[&str]| succeeds(Command::new("clippy-driver").arg(compiler).args(args));
@@ -43,12 +40,11 @@ pub fn compile(args: &[&str]) -> Result<ExitCode> {
     let compiled = if is_code && !args.contains(&WASM_TARGET) {
         clippy(args)?
     } else {
-        let package = std::env::var("CARGO_PKG_NAME").unwrap_or_default();
-        let is_fine = !is_code || !WITH_WEB_CODE.contains(&&*package) || {
+        let checked = !is_code || {
             let args = check_args(args)?;
             clippy(&args.iter().map(String::as_str).collect::<Vec<_>>())?
         };
-        is_fine && succeeds(Command::new(compiler).args(args))?
+        checked && succeeds(Command::new(compiler).args(args))?
     };
     Ok(if compiled { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
@@ -87,26 +83,6 @@ fn check_args(args: &[&str]) -> Result<Vec<String>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn packages_with_code_for_the_web_are_checked_for_it() {
-        for folder in fs::read_dir(shell::root().join("crates")).expect("the packages") {
-            let folder = folder.expect("a package").path();
-            let name = folder.file_name().expect("a name").to_string_lossy().into_owned();
-            let package = format!("segue-{name}");
-            if has_web_code(&folder.join("src")) {
-                assert!(WITH_WEB_CODE.contains(&&*package), "{package} has code for the web");
-            }
-        }
-    }
-
-    fn has_web_code(folder: &Path) -> bool {
-        fs::read_dir(folder).into_iter().flatten().flatten().any(|entry| {
-            let path = entry.path();
-            let says = || fs::read_to_string(&path).is_ok_and(|text| text.contains("wasm32"));
-            if path.is_dir() { has_web_code(&path) } else { says() }
-        })
-    }
 
     #[test]
     fn a_check_writes_nothing_of_the_build() {
