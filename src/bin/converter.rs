@@ -35,7 +35,7 @@ mod worker {
         })
     }
 
-    /// Returns the bytes that a packed motion was packed for; or a string where they are refused:
+    /// Writes the file of a packed motion, and returns its bytes; or a string where it is refused:
     /// the reason as the JSON of a message.
     #[wasm_bindgen(js_name = writePacked)]
     #[expect(unreachable_pub, reason = "called from JavaScript")]

@@ -158,21 +158,25 @@ fn core(report: &mut Report) {
     report.step("tests without the UI", || shell::run(&mut tests_without_ui()?));
     if shell::is_ci() {
         // For Clippy, which outside CI has checked them already.
-        report.step("tools and benchmarks", || {
-            let what = ["--package=segue-tools", "--bins", "--benches", "--no-run"];
-            shell::run(tests_without_ui()?.args(what))
+        report.step("programs and benchmarks", || {
+            shell::run(&mut without_ui(&["build", "--profile=test", "--bins", "--benches"])?)
         });
     }
 }
 
-/// Returns the command that runs the tests of the libraries and those across them. All are tested
-/// at once: a library would otherwise be built again for each set of features that the others ask
-/// of the packages below it.
+/// Returns the command that runs the tests of the libraries and tools, and those across them.
 fn tests_without_ui() -> Result<Command> {
-    let mut tests = cargo(&["test", "--quiet", "--locked", "--no-default-features"]);
-    tests.args(["segue"].iter().chain(&LIBRARIES).flat_map(|name| ["--package", name]));
-    lint::while_building(&mut tests)?;
-    Ok(tests)
+    without_ui(&["test"])
+}
+
+/// Returns a call of cargo for the libraries and tools. It takes all at once: a library would
+/// otherwise be built again for each set of features that the others ask of the packages below it.
+fn without_ui(call: &[&str]) -> Result<Command> {
+    let mut all = cargo(&[call, &["--quiet", "--locked", "--no-default-features"]].concat());
+    let packages = ["segue", "segue-tools"];
+    all.args(packages.iter().chain(&LIBRARIES).flat_map(|name| ["--package", name]));
+    lint::while_building(&mut all)?;
+    Ok(all)
 }
 
 fn oracles(report: &mut Report) {
@@ -233,6 +237,19 @@ fn app(report: &mut Report) {
         lint::while_building(&mut xtask)?;
         shell::run(&mut xtask)
     });
+    if shell::is_ci() {
+        // For Clippy, as above. The small test is built, too, because the libraries have other
+        // features without any.
+        report.step("the window and xtask, as they run", || {
+            let window = ["--package=segue", "--bin=segue-app", "--test=language"];
+            let mut app = cargo(&["build", "--quiet", "--locked", "--profile=test"]);
+            lint::while_building(&mut app)?;
+            shell::run(app.args(window).args(UI_TESTS))?;
+            let mut xtask = cargo(&["check", "--quiet", "--locked", "--package=xtask"]);
+            lint::while_building(&mut xtask)?;
+            shell::run(&mut xtask)
+        });
+    }
 }
 
 fn web(report: &mut Report) {

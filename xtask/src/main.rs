@@ -29,8 +29,8 @@ cargo xtask serve --dist
 cargo xtask test [PART …]
     Everything that must pass. Parts: lint core oracles python app web browser; all of them unless some are named.
     lint        rustfmt, and Clippy for everything, natively and for the web (in CI, while the other parts compile it)
-    core        the tests of the libraries and the command line, and documentation examples, built without any UI (in CI, for Clippy, benchmarks and
-                tools are built, too)
+    core        the tests of the libraries, the command line and the tools, and documentation examples, built without any UI (in CI, for Clippy,
+                the programs themselves and benchmarks are built, too)
     oracles     exported files, read back by npm's three and PyPI's bvhio: the same motion?
     python      `import segue`: a wheel, and its tests against NumPy, SciPy and other readers
     app         the tests of the app, pictures of the UI among them

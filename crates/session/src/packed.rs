@@ -37,7 +37,7 @@ impl From<ParcelError> for PackedError {
     }
 }
 
-/// What is made of a packed motion.
+/// The file that a worker writes of a packed motion.
 #[derive(Serialize, Deserialize)]
 enum Purpose {
     /// The file of [`export`].
@@ -87,7 +87,8 @@ pub fn pack(
     pack_for(Purpose::Export(*options), motion, character, columns)
 }
 
-/// Packs what [`convert_motion`] converts: [`read_converted`] takes what [`write`] makes of it.
+/// Packs what [`convert_motion`] converts. [`read_converted`] reads the bytes that [`write`] returns
+/// for it.
 ///
 /// # Errors
 /// [`ParcelError::Head`] where something cannot be told in JSON.
@@ -140,8 +141,7 @@ fn pack_for(
     Ok(packed)
 }
 
-/// Makes of a packed motion what it was packed for: the file of an export, or what
-/// [`read_converted`] takes.
+/// Writes the file of a packed motion. A conversion gives the bytes that [`read_converted`] reads.
 ///
 /// # Errors
 /// [`PackedError`]: the reason why there is no file.

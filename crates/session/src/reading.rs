@@ -84,7 +84,7 @@ pub enum Product {
     Clips,
     /// Its clips in another format ([`read_and_convert`]).
     Convert(Arc<ConvertOptions>),
-    /// What a packed motion was packed for ([`packed::write`](crate::packed::write)).
+    /// The bytes that [`packed::write`](crate::packed::write) returns for a packed motion.
     PackedMotion,
 }
 
