@@ -87,8 +87,8 @@ pub fn pack(
     pack_for(Purpose::Export(*options), motion, character, columns)
 }
 
-/// Packs what [`convert_motion`] converts. [`read_converted`] reads the bytes that [`write`] returns
-/// for it.
+/// Packs what [`convert_motion`] converts. [`read_converted`] reads the bytes that [`write`]
+/// returns for it.
 ///
 /// # Errors
 /// [`ParcelError::Head`] where something cannot be told in JSON.
@@ -141,7 +141,8 @@ fn pack_for(
     Ok(packed)
 }
 
-/// Writes the file of a packed motion. A conversion gives the bytes that [`read_converted`] reads.
+/// Writes the file of a packed motion. A conversion gives the bytes that [`read_converted`]
+/// reads.
 ///
 /// # Errors
 /// [`PackedError`]: the reason why there is no file.
