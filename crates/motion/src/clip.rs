@@ -117,7 +117,7 @@ mod usual;
 mod velocity;
 
 pub use contacts::{ContactCorrection, ContactCorrections, ContactOptions, Contacts, StanceEnd};
-pub(crate) use contacts::{stillest_point, stillest_step};
+pub(crate) use contacts::{phase_between, stillest_point, stillest_step};
 pub use curves::{CurveKind, joint_curve};
 pub use ground::estimate_ground;
 pub use in_place::{RootMotion, RootMotionError, root_motion_from_feet, take_in_place};

@@ -102,7 +102,7 @@ mod moving;
 mod whole_cycle;
 
 pub use concatenate::{Method, TransitionOptions, concatenate};
-pub use cut_points::{CutPoints, CycleSearch, find_cycle};
+pub use cut_points::{CutPoints, CycleFinder, CycleSearch, find_cycle};
 pub use declared_cycle::treat_as_cycle;
 pub use foot_lock::{FootLockError, FootLockOptions, FootLocking, foot_lock, has_legs};
 pub(crate) use foot_lock::{anchor, envelope, hips};

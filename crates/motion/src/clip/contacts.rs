@@ -217,19 +217,14 @@ impl Contacts {
     /// with fewer than two touchdowns.
     #[must_use]
     pub fn phase(&self, foot: impl Into<Foot>, frame: usize) -> Option<f32> {
-        // A foot that is planted when the clip begins touched down before.
-        let touchdowns: Vec<usize> = self
-            .intervals(foot)
-            .into_iter()
-            .map(|stance| stance.start)
-            .filter(|&at| at > 0)
-            .collect();
-        let next = touchdowns
-            .partition_point(|&at| at <= frame)
-            .clamp(1, touchdowns.len().saturating_sub(1).max(1));
-        let (from, to) = (*touchdowns.get(next - 1)?, *touchdowns.get(next)?);
-        let phase = (frame as f32 - from as f32) / (to - from) as f32;
-        Some(phase.rem_euclid(1.0))
+        phase_between(&self.touchdowns(foot), frame)
+    }
+
+    /// Returns the frames in which a foot touches down, in order. A foot that is planted when the
+    /// clip begins touched down before.
+    pub(crate) fn touchdowns(&self, foot: impl Into<Foot>) -> Vec<usize> {
+        let starts = self.intervals(foot).into_iter().map(|stance| stance.start);
+        starts.filter(|&at| at > 0).collect()
     }
 
     /// Returns the frames during which a foot is planted, as ranges in order of time.
@@ -237,6 +232,17 @@ impl Contacts {
     pub fn intervals(&self, foot: impl Into<Foot>) -> Vec<Range<usize>> {
         runs(self.flags(foot.into())).filter(|(value, _)| *value).map(|(_, range)| range).collect()
     }
+}
+
+/// Returns the phase of a foot in `frame` as [`Contacts::phase`] does, given the frames in which it
+/// touches down.
+pub(crate) fn phase_between(touchdowns: &[usize], frame: usize) -> Option<f32> {
+    let next = touchdowns
+        .partition_point(|&at| at <= frame)
+        .clamp(1, touchdowns.len().saturating_sub(1).max(1));
+    let (from, to) = (*touchdowns.get(next - 1)?, *touchdowns.get(next)?);
+    let phase = (frame as f32 - from as f32) / (to - from) as f32;
+    Some(phase.rem_euclid(1.0))
 }
 
 /// Returns the step over the ground of the point that moves least: a foot that rolls without
