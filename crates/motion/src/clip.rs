@@ -123,7 +123,7 @@ pub use ground::estimate_ground;
 pub use in_place::{RootMotion, RootMotionError, root_motion_from_feet, take_in_place};
 pub(crate) use jolts::{JoltScan, jolts, turn_change};
 pub use mirror::{MirrorError, mirror};
-pub use motion::{FootOptions, Motion, with_body_plan_of};
+pub use motion::{FootOptions, Motion, MotionAnalysis, with_body_plan_of};
 pub use reference::reference_pose;
 pub(crate) use reference::stance_for_rest;
 pub use resample::resample;

@@ -12,10 +12,12 @@
 //!
 //! A new job is a file with a [`Task`](task::Task), and a row of the table in `any_task.rs`.
 
+mod analysis;
 mod any_task;
 mod board;
 mod candidates;
 mod clip_parcel;
+mod cycle;
 mod database_clip;
 mod distances;
 mod error;
@@ -26,11 +28,15 @@ mod stream;
 mod task;
 #[cfg(test)]
 mod tests;
+mod view;
 mod worker;
 mod worker_memory;
 
+pub(crate) use analysis::AnalysisTask;
+pub(crate) use any_task::Kind;
 pub use any_task::{Answer, Job};
 pub(crate) use board::{JobBoard, Taken, Ticket};
+pub(crate) use cycle::CycleTask;
 pub(crate) use database_clip::DatabaseClipTask;
 pub(crate) use distances::DistanceTask;
 pub use error::JobError;
@@ -40,4 +46,5 @@ pub use parcel::{Parcel, ParcelError};
 pub(crate) use registration::{RegistrationAnswer, RegistrationTask};
 pub(crate) use stream::StreamTask;
 pub use task::JobClip;
+pub(crate) use view::{ViewAnswer, ViewTask};
 pub use worker::Worker;

@@ -1,9 +1,11 @@
 //! Labs: results made from clips and parameters, as pure functions of their inputs.
 
+mod analyses;
 mod answer;
 mod artefact_meter;
 mod blend;
 mod clean;
+mod delegated;
 mod edit;
 mod error;
 mod feet;

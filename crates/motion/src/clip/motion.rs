@@ -9,6 +9,10 @@ use crate::skeleton::{Role, Roles};
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
+mod analysis;
+
+pub use analysis::MotionAnalysis;
+
 /// The greatest number of frames that are sampled to find the body plan.
 const MAX_PLAN_SAMPLES: usize = 60;
 

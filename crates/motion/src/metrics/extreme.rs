@@ -2,7 +2,7 @@
 
 /// The largest value that a quantity has in any frame, and that frame: where a viewer looks for the
 /// fault.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Extreme {
     /// The value, in the unit of the quantity.
     pub value: f64,

@@ -11,7 +11,7 @@ const USUAL_PERCENTILE: f32 = 0.99;
 
 /// Metrics of a whole clip whose sources are unknown, such as a capture or the export of another
 /// program, beyond those of every result ([`ResultMetrics`](super::ResultMetrics)).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ClipMetrics {
     /// Foot slide, centimetres: [`foot_slide_cm`](super::foot_slide_cm). `None` without feet or
     /// stances.

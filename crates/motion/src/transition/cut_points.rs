@@ -38,7 +38,7 @@ impl CycleSearch {
 }
 
 /// The ends of a cycle, and how well they match.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct CutPoints {
     /// The frames that play; `cycle.end` is the frame that corresponds to `cycle.start`. The
     /// argument of [`super::close_loop`].

@@ -1,11 +1,14 @@
 //! The table of the kinds of jobs.
 
+use super::analysis::AnalysisTask;
+use super::cycle::CycleTask;
 use super::database_clip::DatabaseClipTask;
 use super::distances::DistanceTask;
 use super::error::JobError;
 use super::registration::RegistrationTask;
 use super::stream::StreamTask;
 use super::task::{JobClip, Task};
+use super::view::ViewTask;
 use super::worker_memory::WorkerMemory;
 use super::{Parcel, ParcelError};
 use serde::{Deserialize, Serialize};
@@ -139,8 +142,11 @@ macro_rules! tasks {
 }
 
 tasks! {
+    Analysis(AnalysisTask),
+    Cycle(CycleTask),
     DatabaseClip(DatabaseClipTask),
     Distances(DistanceTask),
     Registration(RegistrationTask),
     Stream(StreamTask),
+    View(ViewTask),
 }

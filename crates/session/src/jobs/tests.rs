@@ -2,9 +2,11 @@
 
 use super::any_task::Kind as _;
 use super::*;
+use crate::Request;
 use crate::fixtures::*;
 use crate::labs::Distances;
 use crate::params::MAX_PANES;
+use crate::reading::{Content, read};
 use proptest::prelude::*;
 use segue_motion::clip::ContactCorrection;
 use segue_motion::clip::fixtures::QuadrupedWalk;
@@ -232,6 +234,65 @@ fn made_bvh_of_12_secs(seed: f64) -> Arc<[u8]> {
     segue_formats::bvh::write(&clip, &segue_formats::bvh::WriteOptions::default())
         .into_bytes()
         .into()
+}
+
+/// Returns a walk of more than two minutes as a BVH file: some seconds again and again.
+fn long_bvh() -> Arc<[u8]> {
+    let once = made_bvh_of_12_secs(4.0);
+    let text = std::str::from_utf8(&once).unwrap();
+    let (head, rows) = text.split_once("Frame Time:").unwrap();
+    let (time, rows) = rows.split_once('\n').unwrap();
+    let (skeleton, _) = head.split_once("Frames:").unwrap();
+    let frames = 12 * rows.lines().count();
+    format!("{skeleton}Frames: {frames}\nFrame Time:{time}\n{}", rows.repeat(12))
+        .into_bytes()
+        .into()
+}
+
+#[test]
+fn long_clip_is_analysed_locked_and_searched_by_workers_as_by_a_session_without() {
+    let bytes = long_bvh();
+    let open = |session: &mut Session| {
+        let size = bytes.len() as u64;
+        let task = session.begin_reading("long.bvh", Content::Outside("file 1".into()), size);
+        let setup = session.take_requests().into_iter().find_map(|request| match request {
+            Request::Read(task) => Some(task.setup),
+            _ => None,
+        });
+        let report = read("long.bvh", &bytes, &setup.unwrap(), &mut |_| true).unwrap();
+        let id = session.finish_reading(task, Ok(report)).unwrap().unwrap().ids.remove(0);
+        session.apply(Command::OpenLink(format!("lab=view&play=off&a={id}"))).unwrap();
+    };
+    let mut workers = Workers::new(2, 3);
+    let mut both = Both::opened(&mut workers, open);
+    // The analysis of the clip, and its measurement.
+    assert_eq!(workers.run, 2);
+    let changes = [
+        (Key::FootLock, Value::Switch(true), 3),
+        // The feet are read anew, and the clip is another one.
+        (Key::ContactHeight, Value::Number(3.0), 5),
+        // The clip with its usual contacts is known; its cycle is searched, and its feet are not
+        // locked.
+        (Key::Lab, Value::Choice("loop"), 6),
+        (Key::LoopFrom, Value::Number(3.0), 7),
+    ];
+    for (key, value, run) in changes {
+        both.change(&mut workers, |session| set(session, key, value.clone()));
+        assert_eq!(workers.run, run, "{key:?}");
+    }
+    assert!(both.session.main_outcome().unwrap().cycle.is_some());
+    // Where no worker has an answer, the session has its own.
+    let mut alone = Session::new();
+    alone.set_workers(1);
+    open(&mut alone);
+    while alone.work() || alone.has_waiting_jobs() {
+        if let Some(job) = alone.take_job(0) {
+            alone.finish_job(job.number, None, 0.0);
+        }
+    }
+    open(&mut both.alone);
+    while both.alone.work() {}
+    assert_same(&alone, &both.alone);
 }
 
 #[test]

@@ -1,12 +1,13 @@
 //! All labs, and the state that they keep between results.
 
+use super::analyses::Analyses;
 use super::artefact_meter::ArtefactMeter;
 use super::blend::{self, BlendCache};
 use super::clean::{self, CleanCache};
 use super::graph::{self, GraphScheduler};
-use super::lab::{HasPart, Lab};
+use super::lab::{HasPart, Lab, LabClips};
 use super::layers::{self, LayerCache};
-use super::loop_::{self, CycleFinder};
+use super::loop_::{self, CycleCache};
 use super::match_::{self, DriveScheduler};
 use super::on_character::CharacterMotions;
 use super::pair::Pairs;
@@ -43,10 +44,12 @@ pub(crate) fn lab_of(lab: LabId) -> &'static dyn Lab<LabSet> {
 /// The caches of all labs, so that unchanged intermediate results are not computed again.
 #[derive(Debug, Default)]
 pub(crate) struct LabSet {
+    /// The analyses of long clips.
+    analyses: Analyses,
     pairs: Pairs,
     blends: BlendCache,
     gaits: GaitFinder,
-    cycles: CycleFinder,
+    cycles: CycleCache,
     layers: LayerCache,
     pub(crate) registrations: RegistrationSchedulers,
     paths: Paths,
@@ -64,10 +67,12 @@ pub(crate) struct LabSet {
 
 impl LabSet {
     /// Returns all sliced work, in the order of scheduling.
-    fn sliced(&self) -> [&dyn Sliced; 10] {
+    fn sliced(&self) -> [&dyn Sliced; 12] {
         [
+            &self.analyses,
             &self.pairs,
             &self.blends,
+            &self.cycles,
             &self.registrations,
             &self.views,
             &self.cleaned,
@@ -79,10 +84,12 @@ impl LabSet {
         ]
     }
 
-    fn sliced_mut(&mut self) -> ([&mut dyn Sliced; 10], &mut JobBoard) {
-        let sliced: [&mut dyn Sliced; 10] = [
+    fn sliced_mut(&mut self) -> ([&mut dyn Sliced; 12], &mut JobBoard) {
+        let sliced: [&mut dyn Sliced; 12] = [
+            &mut self.analyses,
             &mut self.pairs,
             &mut self.blends,
+            &mut self.cycles,
             &mut self.registrations,
             &mut self.views,
             &mut self.cleaned,
@@ -93,6 +100,14 @@ impl LabSet {
             &mut self.graphs,
         ];
         (sliced, &mut self.jobs)
+    }
+
+    /// Returns whether everything that is derived from these clips is known or takes no longer than
+    /// a frame. Otherwise it is requested: call [`work`](Self::work), then ask again.
+    pub(crate) fn knows(&mut self, clips: &LabClips) -> bool {
+        let all = clips.slots.iter().chain(clips.more.iter().map(|clip| &clip.motion));
+        let are_known: Vec<bool> = all.map(|clip| self.analyses.knows(clip, &self.jobs)).collect();
+        are_known.into_iter().all(|is_known| is_known)
     }
 
     /// Clears the pending requests of all labs; each pane then requests what it needs again.
@@ -141,7 +156,7 @@ has_parts! {
     Pairs, pairs;
     BlendCache, blends;
     GaitFinder, gaits;
-    CycleFinder, cycles;
+    CycleCache, cycles;
     LayerCache, layers;
     RegistrationSchedulers, registrations;
     Paths, paths;

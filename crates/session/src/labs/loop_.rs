@@ -1,25 +1,35 @@
 //! The Loop lab: a part of a clip becomes a cycle.
 
+use super::delegated::Delegated;
 use super::feet::Lock;
 use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs};
 use super::repetition::{Repetition, repeat_cycle, repeated};
+use super::request_cache::RequestCache;
+use super::sliced::{JobKind, Sliced};
 use super::{Cycle, CycleMade, Outcome, PlacedClip, Slot};
 use crate::choices;
+use crate::jobs::{CycleTask, JobBoard};
 use crate::labs::LabError;
 use crate::metrics::{Metric, MetricId};
 use crate::params::{Key, Params};
 use segue_motion::clip::Motion;
 use segue_motion::math::Planar;
 use segue_motion::transition::{
-    CutPoints, CycleSearch, LoopMethod, LoopOptions, close_loop, find_cycle,
+    CutPoints, CycleFinder, CycleSearch, LoopMethod, LoopOptions, close_loop, find_cycle,
 };
 use segue_text::{Message, msg};
+use std::ops::ControlFlow;
 use std::sync::Arc;
+
+/// Clips of up to this number of frames are searched at once: about 8 ms for 31 joints.
+const AT_ONCE: usize = 800;
+/// The number of frames from which on a worker searches: what takes it longer than to begin.
+const FOR_WORKERS: usize = 4_000;
 
 /// The Loop lab: a cycle cut from a clip, with matching ends.
 pub(super) struct LoopLab;
 
-impl<S: HasPart<CycleFinder>> Lab<S> for LoopLab {
+impl<S: HasPart<CycleCache>> Lab<S> for LoopLab {
     fn result_name(&self, _params: &Params, a: Message, _b: Message) -> Message {
         msg!("{a}, looped", a)
     }
@@ -48,7 +58,8 @@ impl<S: HasPart<CycleFinder>> Lab<S> for LoopLab {
         params: &Params,
         _match_window: usize,
     ) -> Result<Option<Inputs>, LabError> {
-        Ok(Some(Inputs::new(HasPart::<CycleFinder>::part(labs).inputs(clips.first()?, params)?)))
+        let found = HasPart::<CycleCache>::part(labs).inputs(clips.first()?, params)?;
+        Ok(found.map(Inputs::new))
     }
 }
 
@@ -68,28 +79,31 @@ impl PartialEq for LoopInputs {
     }
 }
 
-/// The ends of a cycle, and the request for them.
+/// A clip and the ends of a cycle in it.
 #[derive(Debug)]
 struct FoundCycle {
     motion: Arc<Motion>,
-    /// The ends that the user set.
-    given: [Option<usize>; 2],
     cut: CutPoints,
 }
 
-/// A cache of the last search for a cycle.
+/// A clip, and the ends of the cycle in it that the user set.
+type CycleOf = (Arc<Motion>, [Option<usize>; 2]);
+
+/// A cache of cycles that panes ask for, with the search for them.
 #[derive(Debug, Default)]
-pub(crate) struct CycleFinder {
-    known: Option<Arc<FoundCycle>>,
+pub(crate) struct CycleCache {
+    cache:
+        RequestCache<CycleOf, Delegated<CycleTask, CycleFinder>, Result<Arc<FoundCycle>, LabError>>,
 }
 
-impl CycleFinder {
-    /// Returns the loop of the parameters for a clip.
+impl CycleCache {
+    /// Returns the loop of the parameters for a clip; `None` if the search takes longer than a
+    /// frame: call [`work`](Self::work), then ask again.
     pub(crate) fn inputs(
         &mut self,
         motion: &Arc<Motion>,
         params: &Params,
-    ) -> Result<LoopInputs, LabError> {
+    ) -> Result<Option<LoopInputs>, LabError> {
         let fps = motion.clip().fps();
         let last = motion.clip().frames().saturating_sub(1);
         let mut given = [Key::LoopFrom, Key::LoopTo]
@@ -99,30 +113,85 @@ impl CycleFinder {
         {
             std::mem::swap(from, to);
         }
-        Ok(LoopInputs {
-            found: self.found(motion, given)?,
-            options: options(params),
-            foot_lock: Lock::of(params),
-        })
+        let Some(found) = self.found(motion, given)? else { return Ok(None) };
+        Ok(Some(LoopInputs { found, options: options(params), foot_lock: Lock::of(params) }))
     }
 
     fn found(
         &mut self,
         motion: &Arc<Motion>,
         given: [Option<usize>; 2],
-    ) -> Result<Arc<FoundCycle>, LabError> {
-        if let Some(found) = &self.known
-            && Arc::ptr_eq(&found.motion, motion)
-            && found.given == given
-        {
-            return Ok(Arc::clone(found));
+    ) -> Result<Option<Arc<FoundCycle>>, LabError> {
+        let is_it = |(of, ends): &CycleOf| Arc::ptr_eq(of, motion) && *ends == given;
+        if let Some(found) = self.cache.request(|of, _| is_it(of)) {
+            return found.clone().map(Some);
         }
-        let search =
-            CycleSearch { start: given[0], end: given[1], ..CycleSearch::new(motion.clip().fps()) };
-        let cut = find_cycle(motion, &search)?;
-        let found = Arc::new(FoundCycle { motion: Arc::clone(motion), given, cut });
-        self.known = Some(Arc::clone(&found));
-        Ok(found)
+        if self.cache.is_under_way(is_it) {
+            return Ok(None);
+        }
+        let of = (Arc::clone(motion), given);
+        if motion.clip().frames() > AT_ONCE {
+            self.cache.begin(of, Delegated::New);
+            return Ok(None);
+        }
+        let cut = find_cycle(motion, &search_of(&of))?;
+        let found = found_in(&of, cut);
+        self.cache.keep(of, Ok(Arc::clone(&found)));
+        Ok(Some(found))
+    }
+}
+
+fn search_of((motion, given): &CycleOf) -> CycleSearch {
+    CycleSearch { start: given[0], end: given[1], ..CycleSearch::new(motion.clip().fps()) }
+}
+
+fn found_in((motion, _): &CycleOf, cut: CutPoints) -> Arc<FoundCycle> {
+    Arc::new(FoundCycle { motion: Arc::clone(motion), cut })
+}
+
+/// Does one slice of a search.
+fn search_on(
+    of: &CycleOf,
+    finder: Option<CycleFinder>,
+) -> Result<ControlFlow<CutPoints, CycleFinder>, LabError> {
+    let mut finder = match finder {
+        Some(finder) => finder,
+        None => CycleFinder::new(&of.0, &search_of(of))?,
+    };
+    Ok(match finder.advance(&of.0)? {
+        ControlFlow::Break(cut) => ControlFlow::Break(cut),
+        ControlFlow::Continue(()) => ControlFlow::Continue(finder),
+    })
+}
+
+impl Sliced for CycleCache {
+    fn clear_requests(&mut self) {
+        self.cache.clear_requests();
+    }
+
+    fn work(&mut self, jobs: &mut JobBoard) -> bool {
+        self.cache.work(|of, work| {
+            let offer = || {
+                let is_long = of.0.clip().frames() >= FOR_WORKERS;
+                is_long.then(|| (CycleTask { search: search_of(of) }, vec![Arc::clone(&of.0)]))
+            };
+            let taken = |cut: CutPoints| Some(Ok(found_in(of, cut)));
+            work.advance(jobs, offer, taken, |finder| match search_on(of, finder) {
+                Ok(flow) => flow.map_break(|cut| Ok(found_in(of, cut))),
+                // It is told when a pane asks for the cycle.
+                Err(error) => ControlFlow::Break(Err(error)),
+            })
+        })
+    }
+
+    fn is_ready(&self) -> bool {
+        self.cache.is_ready()
+    }
+
+    fn progress(&self) -> Option<(JobKind, f64)> {
+        let (of, work) = self.cache.under_way().next()?;
+        let progress = work.here().map_or(0.0, |finder| finder.progress(&of.0));
+        Some((JobKind::Matching, f64::from(progress)))
     }
 }
 

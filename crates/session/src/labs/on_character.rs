@@ -160,6 +160,6 @@ impl Sliced for CharacterMotions {
     }
 
     fn progress(&self) -> Option<(JobKind, f64)> {
-        Some((JobKind::Retargeting, f64::from(self.cache.next()?.work.progress())))
+        Some((JobKind::Retargeting, f64::from(self.cache.under_way().next()?.1.work.progress())))
     }
 }

@@ -286,7 +286,7 @@ impl Sliced for Pairs {
     }
 
     fn progress(&self) -> Option<(JobKind, f64)> {
-        Some((JobKind::Retargeting, f64::from(self.cache.next()?.progress())))
+        Some((JobKind::Retargeting, f64::from(self.cache.under_way().next()?.1.progress())))
     }
 }
 

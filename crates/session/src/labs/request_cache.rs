@@ -12,6 +12,26 @@ pub(super) struct RequestCache<Of, Work, Made> {
     is_ready: bool,
 }
 
+/// The outcome of a slice of work.
+#[derive(Debug)]
+pub(super) enum Step<Work, Made> {
+    /// There is more to do.
+    On(Work),
+    /// There is nothing to do until a worker answers.
+    Waits(Work),
+    /// The result.
+    Done(Made),
+}
+
+impl<Work, Made> From<ControlFlow<Made, Work>> for Step<Work, Made> {
+    fn from(flow: ControlFlow<Made, Work>) -> Self {
+        match flow {
+            ControlFlow::Continue(work) => Self::On(work),
+            ControlFlow::Break(made) => Self::Done(made),
+        }
+    }
+}
+
 #[derive(Debug)]
 struct Entry<Of, T> {
     is_wanted: bool,
@@ -69,32 +89,35 @@ impl<Of, Work, Made> RequestCache<Of, Work, Made> {
         self.under_way.iter_mut().for_each(|entry| entry.is_wanted = false);
     }
 
-    /// Does one slice of the first result that is requested and not known. Returns `false` if there
-    /// is none.
-    pub(super) fn work(
+    /// Does one slice of the first result that is requested and not known, and waits for no worker.
+    /// Returns `false` if there is none.
+    pub(super) fn work<S: Into<Step<Work, Made>>>(
         &mut self,
-        slice: impl FnOnce(&Of, Work) -> ControlFlow<Made, Work>,
+        mut slice: impl FnMut(&Of, Work) -> S,
     ) -> bool {
         self.under_way.retain(|entry| entry.is_wanted);
-        if self.under_way.is_empty() {
-            return false;
-        }
-        let Entry { is_wanted, of, content } = self.under_way.remove(0);
-        match slice(&of, content) {
-            ControlFlow::Continue(content) => {
-                self.under_way.insert(0, Entry { is_wanted, of, content });
+        for at in 0..self.under_way.len() {
+            let Entry { is_wanted, of, content } = self.under_way.remove(at);
+            let (content, waits) = match slice(&of, content).into() {
+                Step::On(content) => (content, false),
+                Step::Waits(content) => (content, true),
+                Step::Done(made) => {
+                    self.keep(of, made);
+                    self.is_ready = true;
+                    return true;
+                }
+            };
+            self.under_way.insert(at, Entry { is_wanted, of, content });
+            if !waits {
+                return true;
             }
-            ControlFlow::Break(made) => {
-                self.keep(of, made);
-                self.is_ready = true;
-            }
         }
-        true
+        false
     }
 
-    /// Returns the work that is next.
-    pub(super) fn next(&self) -> Option<&Work> {
-        self.under_way.first().map(|entry| &entry.content)
+    /// Returns the work under way, the next first, and what each is for.
+    pub(super) fn under_way(&self) -> impl Iterator<Item = (&Of, &Work)> {
+        self.under_way.iter().map(|entry| (&entry.of, &entry.content))
     }
 
     /// Returns whether a result is finished that was not there when it was requested.
@@ -129,6 +152,16 @@ mod tests {
         assert!(cache.known(|&of| of == 7).is_some(), "it was requested");
         cache.clear_requests();
         assert_eq!(cache.known(|&of| of == 7), None, "nothing requested it");
+    }
+
+    #[test]
+    fn work_goes_on_behind_what_waits_for_a_worker() {
+        let mut cache = RequestCache::<u32, u32, u32>::default();
+        cache.begin(1, 0);
+        cache.begin(2, 0);
+        let first_waits = |of: &u32, _| if *of == 1 { Step::Waits(0) } else { Step::Done(7) };
+        assert!(cache.work(first_waits) && !cache.work(first_waits));
+        assert!(cache.is_under_way(|&of| of == 1) && cache.known(|&of| of == 2) == Some(&7));
     }
 
     #[test]

@@ -1,22 +1,25 @@
 //! The View lab: one clip, with its planted feet locked, at another place or without its root
 //! motion, and its metrics.
 
+use super::delegated::Delegated;
 use super::feet::{Lock, locking, slide_before};
 use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs, can_change_result};
+use super::request_cache::RequestCache;
 use super::sliced::{JobKind, Sliced};
 use super::{ArtefactMeter, MeasuredMotion, Outcome};
 use crate::contact_edits::with_own_edits;
-use crate::jobs::JobBoard;
+use crate::jobs::{JobBoard, ViewAnswer, ViewTask};
 use crate::labs::LabError;
 use crate::metrics::{Metric, MetricId};
 use crate::params::{Compare, Key, Kind, MAX_PANES, PARAMS, Param, Params, Value};
 use crate::{LabId, choices};
-use segue_motion::clip::{Motion, take_in_place};
+use segue_motion::clip::{Clip, Motion, take_in_place};
 use segue_motion::math::Planar;
-use segue_motion::metrics::{ClipMeter, Extreme, SlideMeter};
+use segue_motion::metrics::{ClipMeter, ClipMetrics, Extreme, SlideMeter};
 use segue_motion::path::{FitOptions, FittedPath};
 use segue_motion::transition::FootLocking;
 use segue_text::{Message, msg};
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// The View lab: one clip, placed on the ground.
@@ -80,6 +83,9 @@ impl<S: HasPart<ViewCache>> Lab<S> for ViewLab {
 const AT_ONCE: usize = 1_000;
 /// The number of frames in one slice of work: about 2 ms for 31 joints in a browser.
 const PER_SLICE: usize = 500;
+/// The number of frames from which on a worker locks and measures: what takes it longer than to
+/// begin.
+const FOR_WORKERS: usize = 8_000;
 
 /// Returns the metrics of a clip as it is: those that the View lab shows, without a session. Empty
 /// for a clip that cannot be shown.
@@ -217,28 +223,18 @@ impl Ground {
 /// The result for one clip.
 #[derive(Debug)]
 struct ViewResult {
-    of: Arc<Motion>,
     lock: Option<Lock>,
     made: Result<Outcome, LabError>,
 }
 
-/// A cache of locked and measured clips, as many as there can be panes, with their work in slices.
+/// A cache of locked and measured clips that panes ask for, with their work.
 #[derive(Debug, Default)]
 pub(crate) struct ViewCache {
-    /// The results, the newest last.
-    known: Vec<Arc<ViewResult>>,
-    under_way: Vec<PendingView>,
-    /// Whether a requested result is available and has not been fetched yet.
-    is_ready: bool,
+    cache: RequestCache<ViewOf, Delegated<ViewTask, Stage>, Arc<ViewResult>>,
 }
 
-#[derive(Debug)]
-struct PendingView {
-    motion: Arc<Motion>,
-    lock: Option<Lock>,
-    is_wanted: bool,
-    stage: Stage,
-}
+/// A clip, and how its feet are locked.
+type ViewOf = (Arc<Motion>, Option<Lock>);
 
 #[derive(Debug)]
 enum Stage {
@@ -259,6 +255,15 @@ enum Stage {
 }
 
 impl Stage {
+    fn of((motion, lock): &ViewOf) -> Self {
+        match *lock {
+            Some(lock) => {
+                Self::Before(lock, Box::new(SlideMeter::new(motion.clip(), motion.roles())))
+            }
+            None => Self::measuring(Arc::clone(motion), None),
+        }
+    }
+
     fn measuring(motion: Arc<Motion>, before: Option<Metric>) -> Self {
         let meter = Box::new(ClipMeter::new(motion.clip(), motion.roles(), motion.ground_m()));
         Self::Measuring { motion, before, meter }
@@ -271,15 +276,7 @@ impl ViewCache {
     /// returned at once, and later again with its metrics.
     pub(crate) fn inputs(&mut self, motion: &Arc<Motion>, params: &Params) -> Option<ViewInputs> {
         let lock = Lock::of(params);
-        let viewed = self.known(motion, lock).or_else(|| {
-            let index = self.begin(motion, lock);
-            while motion.clip().frames() <= AT_ONCE
-                && self.under_way.get(index).is_some_and(|at| Arc::ptr_eq(&at.motion, motion))
-            {
-                self.step(index);
-            }
-            self.known(motion, lock)
-        });
+        let viewed = self.viewed((Arc::clone(motion), lock));
         (viewed.is_some() || lock.is_none()).then(|| ViewInputs {
             motion: Arc::clone(motion),
             viewed,
@@ -287,139 +284,128 @@ impl ViewCache {
         })
     }
 
-    fn known(&self, motion: &Arc<Motion>, lock: Option<Lock>) -> Option<Arc<ViewResult>> {
-        let is_it =
-            |viewed: &&Arc<ViewResult>| Arc::ptr_eq(&viewed.of, motion) && viewed.lock == lock;
-        self.known.iter().find(is_it).cloned()
-    }
-
-    /// Begins the work unless it is under way; returns its index among the work under way.
-    fn begin(&mut self, motion: &Arc<Motion>, lock: Option<Lock>) -> usize {
-        let is_it = |at: &PendingView| Arc::ptr_eq(&at.motion, motion) && at.lock == lock;
-        if let Some(index) = self.under_way.iter().position(is_it) {
-            self.under_way[index].is_wanted = true;
-            return index;
+    fn viewed(&mut self, of: ViewOf) -> Option<Arc<ViewResult>> {
+        let is_it = |(motion, lock): &ViewOf| Arc::ptr_eq(motion, &of.0) && *lock == of.1;
+        if let Some(known) = self.cache.request(|of, _| is_it(of)) {
+            return Some(Arc::clone(known));
         }
-        self.under_way.push(PendingView {
-            motion: Arc::clone(motion),
-            lock,
-            is_wanted: true,
-            stage: match lock {
-                Some(lock) => {
-                    let meter = SlideMeter::new(motion.clip(), motion.roles());
-                    Stage::Before(lock, Box::new(meter))
-                }
-                None => Stage::measuring(Arc::clone(motion), None),
-            },
-        });
-        self.under_way.len() - 1
-    }
-
-    fn step(&mut self, index: usize) {
-        let PendingView { motion, lock, is_wanted, stage } = self.under_way.remove(index);
-        match next(&motion, stage) {
-            Step::On(stage) => {
-                self.under_way
-                    .insert(index, PendingView { motion, lock, is_wanted, stage: *stage });
-            }
-            Step::Done(made) => {
-                let made = *made;
-                self.known.push(Arc::new(ViewResult { of: motion, lock, made }));
-                let surplus = self.known.len().saturating_sub(MAX_PANES);
-                self.known.drain(..surplus);
-            }
+        if self.cache.is_under_way(is_it) {
+            return None;
         }
+        if of.0.clip().frames() > AT_ONCE {
+            self.cache.begin(of, Delegated::New);
+            return None;
+        }
+        let mut stage = Stage::of(&of);
+        let made = loop {
+            stage = match next(&of.0, stage) {
+                ControlFlow::Continue(stage) => stage,
+                ControlFlow::Break(made) => break made,
+            };
+        };
+        let viewed = Arc::new(ViewResult { lock: of.1, made });
+        self.cache.keep(of, Arc::clone(&viewed));
+        Some(viewed)
     }
 }
 
 impl Sliced for ViewCache {
     fn clear_requests(&mut self) {
-        self.is_ready = false;
-        for under_way in &mut self.under_way {
-            under_way.is_wanted = false;
-        }
+        self.cache.clear_requests();
     }
 
-    fn work(&mut self, _jobs: &mut JobBoard) -> bool {
-        self.under_way.retain(|at| at.is_wanted);
-        let before = self.under_way.len();
-        if before == 0 {
-            return false;
-        }
-        self.step(0);
-        self.is_ready |= self.under_way.len() < before;
-        true
+    fn work(&mut self, jobs: &mut JobBoard) -> bool {
+        self.cache.work(|of, work| {
+            let (motion, lock) = of;
+            let view = |made| Arc::new(ViewResult { lock: *lock, made });
+            let offer = || {
+                let is_long = motion.clip().frames() >= FOR_WORKERS;
+                let lock = lock.map(|lock| lock.on_ground(motion.ground_m()));
+                is_long.then(|| (ViewTask { lock }, vec![Arc::clone(motion)]))
+            };
+            let taken = |ViewAnswer { locked, before, found }: ViewAnswer| {
+                let shown = match locked {
+                    Some(locked) => Arc::new(with_locked_feet(motion, locked)),
+                    None => Arc::clone(motion),
+                };
+                let before = lock.map(|_| slide_before(before));
+                Some(view(Ok(outcome(shown, before, &found))))
+            };
+            work.advance(jobs, offer, taken, |stage| {
+                next(motion, stage.unwrap_or_else(|| Stage::of(of))).map_break(view)
+            })
+        })
     }
 
     fn is_ready(&self) -> bool {
-        self.is_ready
+        self.cache.is_ready()
     }
 
     fn progress(&self) -> Option<(JobKind, f64)> {
         // Metrics are quick, so no progress is reported.
-        let at = self.under_way.iter().find(|at| at.lock.is_some())?;
-        let progress = match &at.stage {
-            Stage::Before(..) => 0.0,
-            Stage::Locking { locking, .. } => 0.2 + 0.6 * locking.progress(),
-            Stage::Measuring { motion, meter, .. } => 0.8 + 0.2 * meter.progress(motion.clip()),
+        let (_, work) = self.cache.under_way().find(|((_, lock), _)| lock.is_some())?;
+        let progress = match work.here() {
+            None | Some(Stage::Before(..)) => 0.0,
+            Some(Stage::Locking { locking, .. }) => 0.2 + 0.6 * locking.progress(),
+            Some(Stage::Measuring { motion, meter, .. }) => {
+                0.8 + 0.2 * meter.progress(motion.clip())
+            }
         };
         Some((JobKind::HoldingFeet, f64::from(progress)))
     }
 }
 
-/// The result of a slice of work.
-enum Step {
-    On(Box<Stage>),
-    Done(Box<Result<Outcome, LabError>>),
+/// Returns a clip whose feet are locked. Hips are only raised and lowered, so the character's
+/// ground frames stay.
+fn with_locked_feet(of: &Motion, locked: Clip) -> Motion {
+    of.with_clip(locked, of.ground_frames().to_vec())
 }
 
-fn on(stage: Stage) -> Step {
-    Step::On(Box::new(stage))
+/// Returns the result that shows a motion.
+fn outcome(motion: Arc<Motion>, before: Option<Metric>, found: &ClipMetrics) -> Outcome {
+    let fps = motion.clip().fps();
+    let at = |id, value: Option<f64>, frame| Metric::at_frame(id, value, frame, fps);
+    let slide = at(MetricId::FootSlide, found.foot_slide_cm, found.foot_slide_at);
+    let slides = std::iter::once(slide).chain(before);
+    let faults = [
+        at(MetricId::ClipPenetration, found.penetration_cm, found.penetration_at),
+        at(MetricId::ClipPositionJump, found.jump_cm, found.jump_at),
+    ];
+    Outcome { metrics: slides.chain(faults).collect(), ..Outcome::plain(motion) }
 }
 
-fn next(of: &Arc<Motion>, stage: Stage) -> Step {
-    match stage {
+/// Does one slice of the work for a clip.
+fn next(of: &Arc<Motion>, stage: Stage) -> ControlFlow<Result<Outcome, LabError>, Stage> {
+    ControlFlow::Continue(match stage {
         Stage::Before(lock, mut meter) => {
             if meter.advance(of.clip(), of.contacts(), PER_SLICE) {
-                return on(Stage::Before(lock, meter));
+                return ControlFlow::Continue(Stage::Before(lock, meter));
             }
             let before = meter.worst();
             match locking(Arc::clone(of.clip()), of.roles(), of.contacts(), of.ground_m(), lock) {
-                Ok(Some(locking)) => on(Stage::Locking { before, locking: Box::new(locking) }),
-                Ok(None) => on(Stage::measuring(Arc::clone(of), Some(slide_before(before)))),
-                Err(error) => Step::Done(Box::new(Err(error))),
+                Ok(Some(locking)) => Stage::Locking { before, locking: Box::new(locking) },
+                Ok(None) => Stage::measuring(Arc::clone(of), Some(slide_before(before))),
+                Err(error) => return ControlFlow::Break(Err(error)),
             }
         }
         Stage::Locking { before, mut locking } => {
             if locking.advance(PER_SLICE) {
-                return on(Stage::Locking { before, locking });
+                return ControlFlow::Continue(Stage::Locking { before, locking });
             }
             match locking.finish() {
-                // Hips are only raised and lowered, so the character's ground frames stay.
-                Ok(locked) => {
-                    let motion = of.with_clip(locked, of.ground_frames().to_vec());
-                    on(Stage::measuring(Arc::new(motion), Some(slide_before(before))))
-                }
-                Err(error) => Step::Done(Box::new(Err(error.into()))),
+                Ok(locked) => Stage::measuring(
+                    Arc::new(with_locked_feet(of, locked)),
+                    Some(slide_before(before)),
+                ),
+                Err(error) => return ControlFlow::Break(Err(error.into())),
             }
         }
         Stage::Measuring { motion, before, mut meter } => {
             if meter.advance(motion.clip(), motion.contacts(), PER_SLICE) {
-                return on(Stage::Measuring { motion, before, meter });
+                return ControlFlow::Continue(Stage::Measuring { motion, before, meter });
             }
             let found = meter.finish(motion.ground_frames());
-            let fps = motion.clip().fps();
-            let at = |id, value: Option<f64>, frame| Metric::at_frame(id, value, frame, fps);
-            let slide = at(MetricId::FootSlide, found.foot_slide_cm, found.foot_slide_at);
-            let slides = std::iter::once(slide).chain(before);
-            let faults = [
-                at(MetricId::ClipPenetration, found.penetration_cm, found.penetration_at),
-                at(MetricId::ClipPositionJump, found.jump_cm, found.jump_at),
-            ];
-            Step::Done(Box::new(Ok(Outcome {
-                metrics: slides.chain(faults).collect(),
-                ..Outcome::plain(motion)
-            })))
+            return ControlFlow::Break(Ok(outcome(motion, before, &found)));
         }
-    }
+    })
 }
