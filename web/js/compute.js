@@ -2,15 +2,30 @@
 // several. src/platform/web/pool.rs gives it jobs.
 //
 // The page posts { module, maxBytes }, the compiled WebAssembly, or { failed }, to which the worker
-// answers with { ready } or { unusable: reason }. Before and after that come clips, { clip, head, floats, bytes }, clips to drop, { drop }, and jobs, { job, message }. To each
-// job the worker answers with { job, secs, head, floats, bytes } or { job, failed: reason, trapped }.
-// After a trap it is not used any more.
+// answers with { ready } or { unusable: reason }. Before and after that come clips, each as { clip,
+// head, bytes, length }, the number of its floats, and these in pieces in their order, { clip, at,
+// piece }; clips to drop, { drop }; and jobs, { job, message }. To each job the worker answers with
+// { job, secs, head, floats, bytes } or { job, failed: reason, trapped }. After a trap it is not
+// used any more.
 
 import init, { Computer } from "./compute/compute.js";
 
 let begin;
 /** The worker's program. Whatever comes before the WebAssembly waits for it. */
 const computer = new Promise((resolve) => { begin = resolve; });
+
+/** The clips of which only a part has come, by their numbers. */
+const begun = new Map();
+
+/** Takes in a part of a clip. Returns the clip once it is whole. */
+function arrived({ clip, head, bytes, length, at, piece }) {
+  if (piece) begun.get(clip)?.floats.set(piece, at);
+  else begun.set(clip, { head, bytes, floats: new Float32Array(length) });
+  const found = begun.get(clip);
+  const isWhole = found && (piece ? at + piece.length : 0) === found.floats.length;
+  if (isWhole) begun.delete(clip);
+  return isWhole ? found : undefined;
+}
 
 self.onmessage = async ({ data }) => {
   const { clip, drop, job } = data;
@@ -25,9 +40,11 @@ self.onmessage = async ({ data }) => {
     return;
   }
   try {
+    const whole = clip === undefined ? undefined : arrived(data);
+    if (drop !== undefined) begun.delete(drop);
     // All messages wait for the same promise, so that they are handled one after the other.
     const worker = await computer;
-    if (clip !== undefined) worker.takeClip(clip, data.head, data.floats, data.bytes);
+    if (whole) worker.takeClip(clip, whole.head, whole.floats, whole.bytes);
     if (drop !== undefined) worker.dropClip(drop);
     if (job === undefined) return;
     const start = performance.now();

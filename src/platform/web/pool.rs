@@ -9,7 +9,7 @@ use js_sys::{Array, Float32Array, Function, Object, Reflect, Uint8Array};
 use segue_session::Session;
 use segue_session::jobs::{Answer, Job, Parcel};
 use std::cell::RefCell;
-use std::collections::{BTreeSet, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::fmt;
 use std::rc::Rc;
 use wasm_bindgen::{JsCast as _, JsValue};
@@ -36,6 +36,8 @@ pub(crate) fn set_answer_listener(listener: impl Fn() + 'static) {
 
 /// The number of jobs that a worker has at once: the next one does not wait for the page.
 const JOBS_AT_ONCE: usize = 2;
+/// The number of floats of a clip that are sent at once: about a millisecond.
+const PIECE_FLOATS: usize = 1 << 18;
 /// The time after which a job counts as lost with its worker, milliseconds: one that the browser
 /// has ended says nothing.
 const MAX_JOB_MS: f64 = 30_000.0;
@@ -80,6 +82,8 @@ struct Slot {
     is_ready: bool,
     /// The clips that it has.
     clips: BTreeSet<u32>,
+    /// The clips of which it has a part: the number of their floats.
+    begun: BTreeMap<u32, usize>,
     /// Its jobs, the one that runs first.
     jobs: VecDeque<Posted>,
     /// A job whose clips are still to be sent, or one of a worker that has ended.
@@ -233,12 +237,27 @@ impl Pool {
             if slot.clips.contains(&clip.number) {
                 continue;
             }
-            if now_ms() >= until_ms {
-                return Ok(());
-            }
-            let parcel = clip.parcel().map_err(|error| error.to_string())?;
             let number = JsValue::from(clip.number);
-            post(&worker, &[("clip", number)], Some(&parcel))?;
+            let mut sent = slot.begun.get(&clip.number).copied();
+            while sent != Some(clip.floats()) {
+                if now_ms() >= until_ms {
+                    return Ok(());
+                }
+                let Some(at) = sent else {
+                    let parcel = clip.parcel_without_floats().map_err(|error| error.to_string())?;
+                    let length = JsValue::from(clip.floats() as f64);
+                    post(&worker, &[("clip", number.clone()), ("length", length)], Some(&parcel))?;
+                    slot.begun.insert(clip.number, 0);
+                    sent = Some(0);
+                    continue;
+                };
+                let piece = clip.piece(at, PIECE_FLOATS);
+                let properties = [("clip", number.clone()), ("at", JsValue::from(at as f64))];
+                post_piece(&worker, &properties, piece)?;
+                sent = Some(at + piece.len());
+                slot.begun.insert(clip.number, at + piece.len());
+            }
+            slot.begun.remove(&clip.number);
             slot.clips.insert(clip.number);
         }
         let message = job.message().map_err(|error| error.to_string())?;
@@ -264,6 +283,7 @@ impl Slot {
         self.generation += 1;
         self.is_ready = false;
         self.clips.clear();
+        self.begun.clear();
     }
 }
 
@@ -319,7 +339,8 @@ impl State {
 
     fn drop_clip(&mut self, number: u32) {
         for slot in &mut self.slots {
-            if slot.clips.remove(&number)
+            let has_part = slot.begun.remove(&number).is_some();
+            if (slot.clips.remove(&number) || has_part)
                 && let Some(worker) = &slot.worker
                 && let Err(error) = post(worker, &[("drop", number.into())], None)
             {
@@ -379,27 +400,40 @@ fn answer_of(job: &Job, part: &impl Fn(&str) -> JsValue) -> Option<Answer> {
     job.answer(parcel).ok()
 }
 
-/// Posts a message with these properties, and with the content of a parcel, whose arrays are moved.
+/// Posts a message with these properties, and with the head and bytes of a parcel, which are moved.
 fn post(
     worker: &Worker,
     properties: &[(&str, JsValue)],
     parcel: Option<&Parcel>,
 ) -> Result<(), JsValue> {
+    let message = message_of(properties)?;
+    let Some(Parcel { head, bytes, .. }) = parcel else {
+        return worker.post_message(&message);
+    };
+    let bytes = Uint8Array::from(&bytes[..]);
+    Reflect::set(&message, &JsValue::from("head"), &JsValue::from(head))?;
+    Reflect::set(&message, &JsValue::from("bytes"), &bytes)?;
+    worker.post_message_with_transfer(&message, &Array::of1(&bytes.buffer()))
+}
+
+/// Posts a message with these properties and floats, which are moved.
+fn post_piece(
+    worker: &Worker,
+    properties: &[(&str, JsValue)],
+    piece: &[f32],
+) -> Result<(), JsValue> {
+    let message = message_of(properties)?;
+    let piece = Float32Array::from(piece);
+    Reflect::set(&message, &JsValue::from("piece"), &piece)?;
+    worker.post_message_with_transfer(&message, &Array::of1(&piece.buffer()))
+}
+
+fn message_of(properties: &[(&str, JsValue)]) -> Result<Object, JsValue> {
     let message = Object::new();
-    let set = |key: &str, value: &JsValue| Reflect::set(&message, &JsValue::from(key), value);
     for (key, value) in properties {
-        set(key, value)?;
+        Reflect::set(&message, &JsValue::from(*key), value)?;
     }
-    let moved = Array::new();
-    if let Some(Parcel { head, floats, bytes }) = parcel {
-        let (floats, bytes) = (Float32Array::from(&floats[..]), Uint8Array::from(&bytes[..]));
-        moved.push(&floats.buffer());
-        moved.push(&bytes.buffer());
-        set("head", &JsValue::from(head))?;
-        set("floats", &floats)?;
-        set("bytes", &bytes)?;
-    }
-    worker.post_message_with_transfer(&message, &moved)
+    Ok(message)
 }
 
 /// Makes a worker for a place of the pool.

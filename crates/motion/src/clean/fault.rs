@@ -6,7 +6,9 @@ use crate::skeleton::Foot;
 use std::ops::Range;
 
 /// The kinds of faults, in the order in which they are mended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
 pub enum FaultKind {
     /// Left and right are exchanged.
     Swap,
@@ -60,7 +62,7 @@ impl FaultKind {
 }
 
 /// How a fault is mended, with the numbers that the mend needs.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(super) enum Form {
     /// A few frames between good ones, which are drawn anew.
     Run,
@@ -95,7 +97,7 @@ pub(super) enum Form {
 }
 
 /// A fault of one track: a joint's rotation, or a translation.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(super) struct TrackFault {
     /// The index among all tracks.
     pub(super) track: usize,
@@ -107,7 +109,7 @@ pub(super) struct TrackFault {
 }
 
 /// A fault that was found.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Fault {
     /// The kind.
     pub kind: FaultKind,
@@ -128,7 +130,7 @@ pub struct Fault {
 }
 
 /// The unit of a fault's size.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum SizeUnit {
     /// Degrees.
     Degrees,

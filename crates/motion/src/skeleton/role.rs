@@ -52,7 +52,9 @@ pub enum BodyPlan {
 }
 
 /// The pair that a foot belongs to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
 pub enum FootPair {
     /// The feet of a body on two legs, and the hind feet of one on four.
     Hind,
@@ -68,7 +70,9 @@ impl FootPair {
 /// A foot that can stand on the ground.
 ///
 /// A [`Side`] alone is a hind foot: of a body on two legs, its left or right foot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
 #[expect(missing_docs, reason = "the names say it")]
 pub struct Foot {
     pub pair: FootPair,

@@ -5,6 +5,7 @@ use super::cycle::CycleTask;
 use super::database_clip::DatabaseClipTask;
 use super::distances::DistanceTask;
 use super::error::JobError;
+use super::faults::FaultTask;
 use super::registration::RegistrationTask;
 use super::stream::StreamTask;
 use super::task::{JobClip, Task};
@@ -146,6 +147,7 @@ tasks! {
     Cycle(CycleTask),
     DatabaseClip(DatabaseClipTask),
     Distances(DistanceTask),
+    Faults(FaultTask),
     Registration(RegistrationTask),
     Stream(StreamTask),
     View(ViewTask),

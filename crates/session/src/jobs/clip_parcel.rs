@@ -56,13 +56,16 @@ impl<'a> ClipHead<'a> {
     }
 }
 
+/// Returns the arrays of a clip, in their order in a parcel.
+pub(super) fn arrays_of(clip: &Clip) -> impl Iterator<Item = &[f32]> {
+    let tracks = clip.translations().iter().map(|track| &track.values[..]);
+    let translations = std::iter::once(clip.root_translations()).chain(tracks);
+    std::iter::once(bytemuck::cast_slice(clip.all_rotations()))
+        .chain(translations.map(bytemuck::cast_slice))
+}
+
 /// Appends the arrays of a clip.
 pub(super) fn put_clip(floats: &mut Vec<f32>, clip: &Clip) {
-    let joints = clip.skeleton().len();
-    floats.reserve(clip.frames() * (4 * joints + 3 * (1 + clip.translations().len())));
-    floats.extend_from_slice(bytemuck::cast_slice(clip.all_rotations()));
-    let tracks = clip.translations().iter().map(|track| &track.values[..]);
-    for values in std::iter::once(clip.root_translations()).chain(tracks) {
-        floats.extend_from_slice(bytemuck::cast_slice(values));
-    }
+    floats.reserve(arrays_of(clip).map(<[f32]>::len).sum());
+    arrays_of(clip).for_each(|array| floats.extend_from_slice(array));
 }

@@ -36,6 +36,13 @@ struct Head<'a> {
 /// Packs a clip with as much of its ground frames, contacts and ground height as is known. A worker
 /// computes the rest when it needs it, with the same bits.
 pub(crate) fn pack(motion: &Motion) -> Result<Parcel, ParcelError> {
+    let mut parcel = pack_without_floats(motion)?;
+    put_clip(&mut parcel.floats, motion.clip());
+    Ok(parcel)
+}
+
+/// Packs a clip as [`pack`] does, without its floats ([`arrays_of`](super::clip_parcel::arrays_of)).
+pub(super) fn pack_without_floats(motion: &Motion) -> Result<Parcel, ParcelError> {
     let clip = motion.clip();
     let skeleton = clip.skeleton();
     let head = Head {
@@ -54,8 +61,6 @@ pub(crate) fn pack(motion: &Motion) -> Result<Parcel, ParcelError> {
         feet: motion.known_contacts().map_or(0, |contacts| contacts.feet().len()),
         ground_m: motion.known_ground_m(),
     };
-    let mut floats = Vec::new();
-    put_clip(&mut floats, clip);
     let mut bytes = Vec::with_capacity(26 * clip.frames());
     for place in motion.known_ground_frames().unwrap_or_default() {
         put(&mut bytes, &[place.yaw, place.shift.x, place.shift.y]);
@@ -65,7 +70,7 @@ pub(crate) fn pack(motion: &Motion) -> Result<Parcel, ParcelError> {
             bytes.extend((0..clip.frames()).map(|frame| u8::from(found.planted(foot, frame))));
         }
     }
-    Ok(Parcel { head: serde_json::to_string(&head)?, floats, bytes })
+    Ok(Parcel { head: serde_json::to_string(&head)?, floats: Vec::new(), bytes })
 }
 
 /// Restores a clip.

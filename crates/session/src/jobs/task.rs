@@ -1,5 +1,6 @@
 //! The trait of tasks, and the clips of a job.
 
+use super::clip_parcel::arrays_of;
 use super::error::JobError;
 use super::motion_parcel;
 use super::worker_memory::WorkerMemory;
@@ -42,5 +43,31 @@ impl JobClip {
     /// [`ParcelError`] when JSON cannot represent its header.
     pub fn parcel(&self) -> Result<Parcel, ParcelError> {
         motion_parcel::pack(&self.motion)
+    }
+
+    /// Packs the clip without its floats, which [`piece`](Self::piece) returns.
+    ///
+    /// # Errors
+    /// [`ParcelError`] when JSON cannot represent its header.
+    pub fn parcel_without_floats(&self) -> Result<Parcel, ParcelError> {
+        motion_parcel::pack_without_floats(&self.motion)
+    }
+
+    /// Returns the number of floats of the clip's parcel.
+    #[must_use]
+    pub fn floats(&self) -> usize {
+        arrays_of(self.motion.clip()).map(<[f32]>::len).sum()
+    }
+
+    /// Returns floats of the clip's parcel, up to `most` from the offset `at` on; none at its end.
+    #[must_use]
+    pub fn piece(&self, mut at: usize, most: usize) -> &[f32] {
+        for array in arrays_of(self.motion.clip()) {
+            match array.get(at..) {
+                Some(rest) if !rest.is_empty() => return rest.get(..most).unwrap_or(rest),
+                _ => at -= array.len(),
+            }
+        }
+        &[]
     }
 }

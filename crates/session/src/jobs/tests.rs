@@ -250,7 +250,7 @@ fn long_bvh() -> Arc<[u8]> {
 }
 
 #[test]
-fn long_clip_is_analysed_locked_and_searched_by_workers_as_by_a_session_without() {
+fn work_for_a_long_clip_is_the_same_by_workers_and_without() {
     let bytes = long_bvh();
     let open = |session: &mut Session| {
         let size = bytes.len() as u64;
@@ -275,12 +275,13 @@ fn long_clip_is_analysed_locked_and_searched_by_workers_as_by_a_session_without(
         // locked.
         (Key::Lab, Value::Choice("loop"), 6),
         (Key::LoopFrom, Value::Number(3.0), 7),
+        (Key::Lab, Value::Choice("clean"), 8),
     ];
     for (key, value, run) in changes {
         both.change(&mut workers, |session| set(session, key, value.clone()));
         assert_eq!(workers.run, run, "{key:?}");
     }
-    assert!(both.session.main_outcome().unwrap().cycle.is_some());
+    assert!(both.session.main_outcome().unwrap().cleaned().is_some());
     // Where no worker has an answer, the session has its own.
     let mut alone = Session::new();
     alone.set_workers(1);
@@ -474,6 +475,17 @@ fn motion_in_a_parcel_stays_the_same() {
         let clip = JobClip { number: 1, motion: Arc::new(motion.clone()) };
         let parcel = clip.parcel().unwrap();
         assert!(motion_parcel::unpack(&parcel).unwrap() == motion);
+        // The same in pieces.
+        let mut pieces = clip.parcel_without_floats().unwrap();
+        loop {
+            let piece = clip.piece(pieces.floats.len(), 1000);
+            pieces.floats.extend_from_slice(piece);
+            if piece.is_empty() {
+                break;
+            }
+            assert!(piece.len() <= 1000);
+        }
+        assert!(pieces == parcel && clip.floats() == parcel.floats.len());
         // A message that is cut off is refused.
         let torn = Parcel { floats: parcel.floats[1..].to_vec(), ..parcel.clone() };
         assert!(motion_parcel::unpack(&torn).is_err());

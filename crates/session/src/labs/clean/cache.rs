@@ -1,16 +1,21 @@
 //! Searches for faults and their mends, computed in slices and kept between results.
 
+use super::super::delegated::Delegated;
+use super::super::request_cache::Step;
 use super::super::sliced::{JobKind, Sliced};
 use super::{CleanInputs, Mends};
-use crate::jobs::JobBoard;
+use crate::jobs::{FaultTask, JobBoard};
 use crate::labs::LabError;
 use crate::params::{Key, MAX_PANES, Params};
 use segue_motion::clean::{Fault, FaultSearch, MendOptions, Mended, Mending, damage};
 use segue_motion::clip::Motion;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// Takes of up to this number of frames are searched and mended at once.
 const AT_ONCE: usize = 500;
+/// The number of frames from which on a worker searches a take: what takes it longer than to begin.
+const FOR_WORKERS: usize = 2_000;
 
 /// The faults of a take.
 #[derive(Debug)]
@@ -70,17 +75,17 @@ pub(crate) struct CleanCache {
 #[derive(Debug)]
 struct Pending {
     is_wanted: bool,
-    job: Job,
+    work: Work,
 }
 
 #[derive(Debug)]
-enum Job {
+enum Work {
     Search {
         of: Arc<Motion>,
         broken: Broken,
         motion: Arc<Motion>,
         injected: usize,
-        search: Box<FaultSearch>,
+        search: Delegated<FaultTask, Box<FaultSearch>>,
     },
     Mend {
         of: Arc<Searched>,
@@ -118,23 +123,23 @@ impl CleanCache {
         if let Some(known) = self.searched.iter().find(|known| is_it(&known.of, known.broken)) {
             return Ok(Some(Arc::clone(known)));
         }
-        let pending = self.under_way.iter_mut().find(|at| match &at.job {
-            Job::Search { of, broken, .. } => is_it(of, *broken),
-            Job::Mend { .. } => false,
+        let pending = self.under_way.iter_mut().find(|at| match &at.work {
+            Work::Search { of, broken, .. } => is_it(of, *broken),
+            Work::Mend { .. } => false,
         });
         if let Some(pending) = pending {
             pending.is_wanted = true;
             return Ok(None);
         }
         let (broken_motion, injected) = broken.apply(motion)?;
-        let job = Job::Search {
+        let work = Work::Search {
             of: Arc::clone(motion),
             broken,
-            search: Box::new(FaultSearch::new(Arc::clone(&broken_motion))),
+            search: Delegated::New,
             motion: broken_motion,
             injected,
         };
-        self.begin(job, at_once);
+        self.begin(work, at_once);
         let known = self.searched.iter().find(|known| is_it(&known.of, known.broken));
         Ok(known.cloned())
     }
@@ -149,9 +154,9 @@ impl CleanCache {
         if let Some(known) = self.cleaned.iter().find(|known| is_it(&known.of, &known.mends)) {
             return Ok(Some(Arc::clone(known)));
         }
-        let pending = self.under_way.iter_mut().find(|at| match &at.job {
-            Job::Mend { of, mends, .. } => is_it(of, mends),
-            Job::Search { .. } => false,
+        let pending = self.under_way.iter_mut().find(|at| match &at.work {
+            Work::Mend { of, mends, .. } => is_it(of, mends),
+            Work::Search { .. } => false,
         });
         if let Some(pending) = pending {
             pending.is_wanted = true;
@@ -162,44 +167,67 @@ impl CleanCache {
         let options = MendOptions { cutoff_hz: mends.cutoff_hz, ..MendOptions::default() };
         let is_quick = at_once || chosen.is_empty();
         let mending = Box::new(Mending::new(&searched.motion, &chosen, &options)?);
-        let job = Job::Mend { of: Arc::clone(searched), mends: mends.clone(), mending };
-        self.begin(job, is_quick);
+        let work = Work::Mend { of: Arc::clone(searched), mends: mends.clone(), mending };
+        self.begin(work, is_quick);
         let known = self.cleaned.iter().find(|known| is_it(&known.of, &known.mends));
         Ok(known.cloned())
     }
 
-    fn begin(&mut self, job: Job, at_once: bool) {
-        if at_once {
-            let mut job = Some(job);
-            while let Some(next) = job {
-                job = self.step(next);
+    fn begin(&mut self, work: Work, at_once: bool) {
+        if !at_once {
+            self.under_way.push(Pending { is_wanted: true, work });
+            return;
+        }
+        // Without workers, none of it waits.
+        let jobs = &mut JobBoard::default();
+        let mut work = Some(work);
+        while let Some(next) = work.take() {
+            if let Step::On(next) = self.step(next, jobs) {
+                work = Some(next);
             }
-        } else {
-            self.under_way.push(Pending { is_wanted: true, job });
         }
     }
 
-    /// Does one slice. Returns the rest of the job; keeps what is done.
-    fn step(&mut self, job: Job) -> Option<Job> {
-        match job {
-            Job::Search { of, broken, motion, injected, mut search } => {
-                if search.advance() {
-                    return Some(Job::Search { of, broken, motion, injected, search });
+    /// Does one slice. Returns the rest of the work; keeps what is done.
+    fn step(&mut self, work: Work, jobs: &mut JobBoard) -> Step<Work, ()> {
+        match work {
+            Work::Search { of, broken, motion, injected, search } => {
+                let offer = || {
+                    let is_long = motion.clip().frames() >= FOR_WORKERS;
+                    is_long.then(|| (FaultTask, vec![Arc::clone(&motion)]))
+                };
+                let slice = |search: Option<Box<FaultSearch>>| {
+                    let begin = || Box::new(FaultSearch::new(Arc::clone(&motion)));
+                    let mut search = search.unwrap_or_else(begin);
+                    if search.advance() {
+                        ControlFlow::Continue(search)
+                    } else {
+                        ControlFlow::Break(search.finish())
+                    }
+                };
+                match search.advance(jobs, offer, Some, slice) {
+                    Step::On(search) => {
+                        return Step::On(Work::Search { of, broken, motion, injected, search });
+                    }
+                    Step::Waits(search) => {
+                        return Step::Waits(Work::Search { of, broken, motion, injected, search });
+                    }
+                    Step::Done(faults) => {
+                        let found = Searched { of, broken, motion, injected, faults };
+                        keep(&mut self.searched, found);
+                    }
                 }
-                let faults = search.finish();
-                let found = Searched { of, broken, motion, injected, faults };
-                keep(&mut self.searched, found);
             }
-            Job::Mend { of, mends, mut mending } => {
+            Work::Mend { of, mends, mut mending } => {
                 let made = match mending.advance() {
-                    Ok(true) => return Some(Job::Mend { of, mends, mending }),
+                    Ok(true) => return Step::On(Work::Mend { of, mends, mending }),
                     Ok(false) => Ok(mending.finish()),
                     Err(error) => Err(error.into()),
                 };
                 keep(&mut self.cleaned, Cleaned { of, mends, made });
             }
         }
-        None
+        Step::Done(())
     }
 }
 
@@ -218,17 +246,24 @@ impl Sliced for CleanCache {
         }
     }
 
-    fn work(&mut self, _jobs: &mut JobBoard) -> bool {
+    fn work(&mut self, jobs: &mut JobBoard) -> bool {
         self.under_way.retain(|at| at.is_wanted);
-        if self.under_way.is_empty() {
-            return false;
+        for at in 0..self.under_way.len() {
+            let Pending { is_wanted, work } = self.under_way.remove(at);
+            let (work, waits) = match self.step(work, jobs) {
+                Step::On(work) => (work, false),
+                Step::Waits(work) => (work, true),
+                Step::Done(()) => {
+                    self.is_ready = true;
+                    return true;
+                }
+            };
+            self.under_way.insert(at, Pending { is_wanted, work });
+            if !waits {
+                return true;
+            }
         }
-        let Pending { is_wanted, job } = self.under_way.remove(0);
-        match self.step(job) {
-            Some(job) => self.under_way.insert(0, Pending { is_wanted, job }),
-            None => self.is_ready = true,
-        }
-        true
+        false
     }
 
     fn is_ready(&self) -> bool {
@@ -237,9 +272,11 @@ impl Sliced for CleanCache {
 
     fn progress(&self) -> Option<(JobKind, f64)> {
         let pending = self.under_way.first()?;
-        let progress = match &pending.job {
-            Job::Search { search, .. } => 0.7 * search.progress(),
-            Job::Mend { mending, .. } => 0.7 + 0.3 * mending.progress(),
+        let progress = match &pending.work {
+            Work::Search { search, .. } => {
+                0.7 * search.here().map_or(0.0, |search| search.progress())
+            }
+            Work::Mend { mending, .. } => 0.7 + 0.3 * mending.progress(),
         };
         Some((JobKind::Cleaning, f64::from(progress)))
     }
