@@ -416,19 +416,22 @@ impl Segue {
         })
     }
 
-    /// Returns the file name of an export that takes long, and the export packed for a worker;
-    /// `None` for one that is made at once.
+    /// Returns the file name of an export that takes long, and the size and bytes of the export,
+    /// packed for a worker; `None` for one that is made at once.
     pub(super) fn long_export(
         &self,
         which: &str,
         how: &ExportOptions,
-    ) -> Result<Option<(String, Vec<u8>)>, ApiError> {
+    ) -> Result<Option<(String, usize, FileBytes)>, ApiError> {
         let (motion, curves, stem) = self.exported(which, how)?;
         if !packed::takes_long(motion) {
             return Ok(None);
         }
         let packed = packed::pack(motion, self.session.character().as_ref(), &curves, how).ok();
-        Ok(packed.map(|packed| (file_name(&stem, how.format.ending()), packed)))
+        Ok(packed.map(|packed| {
+            let name = file_name(&stem, how.format.ending());
+            (name, packed.size(), platform::packed_file(&packed))
+        }))
     }
 
     /// Returns a motion, its plotted curves where the format has them, and the stem of its file's

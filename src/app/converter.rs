@@ -210,10 +210,10 @@ impl Converter {
                 };
                 self.tasks += 1;
                 let task = FIRST_TASK + self.tasks;
-                let (size, clip) = (packed.len() as u64, Some(CurrentClip { id, made: None }));
+                let (size, clip) = (packed.size() as u64, Some(CurrentClip { id, made: None }));
                 reader.start(
-                    ReadTask::of_packed_motion(task, &name, packed.len()),
-                    platform::outside_memory(packed),
+                    ReadTask::of_packed_motion(task, &name, packed.size()),
+                    platform::packed_file(&packed),
                 );
                 run.current = Some(Current { task, name, size, done: 0, clip });
             }

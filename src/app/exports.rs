@@ -66,12 +66,12 @@ impl Segue {
         how: &ExportOptions,
         is_taken: bool,
     ) -> Result<BegunExport, ApiError> {
-        let Some((name, packed)) = self.long_export(which, how)? else {
+        let Some((name, size, packed)) = self.long_export(which, how)? else {
             return Ok(BegunExport::Done(self.export_as(which, how)?));
         };
         self.exports.tasks += 1;
         let id = FIRST_TASK + self.exports.tasks;
-        let task = ReadTask::of_packed_motion(id, &name, packed.len());
+        let task = ReadTask::of_packed_motion(id, &name, size);
         let export = Export {
             name,
             mime: how.format.mime(),
@@ -83,7 +83,7 @@ impl Segue {
             result: None,
         };
         self.exports.all.insert(id, export);
-        self.reader.start(task, platform::outside_memory(packed));
+        self.reader.start(task, packed);
         // A call of the API causes no frame, and the library lists the export.
         self.inbox.wake();
         Ok(BegunExport::UnderWay(id))

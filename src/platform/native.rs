@@ -13,7 +13,7 @@ pub(crate) use film::{Film, can_film, can_take_pictures, save_picture, take_pict
 pub(crate) use frame_pacer::FramePacer;
 pub(crate) use gamepad::gamepad;
 pub(crate) use pool::{Pool, set_answer_listener};
-pub(crate) use reader::{LargeFile, Reader, outside_memory, update_memory};
+pub(crate) use reader::{LargeFile, Reader, outside_memory, packed_file, update_memory};
 pub(crate) use storage::Storage;
 
 use super::{Inbox, Incoming, address};

@@ -31,7 +31,8 @@ pub(crate) use page::{
 };
 pub(crate) use pool::{Pool, set_answer_listener, set_computer_factory};
 pub(crate) use reader::{
-    LargeFile, Reader, outside_memory, set_worker_factory, update_memory, wasm_memory_bytes,
+    LargeFile, Reader, outside_memory, packed_file, set_worker_factory, update_memory,
+    wasm_memory_bytes,
 };
 pub(crate) use snapshot::{Area, area_of, inline_picture, snapshot};
 pub(crate) use storage::Storage;

@@ -39,6 +39,21 @@ export async function computingTime(page) {
 }
 
 /**
+ * Records the tasks of the page's thread. Returns a function that ends that, and returns their
+ * processor times, the longest first, milliseconds. Other programs do not lengthen them.
+ */
+export async function tracedTasks(page) {
+  const browser = page.context().browser();
+  await browser.startTracing(page, { categories: ["disabled-by-default-devtools.timeline", "__metadata"] });
+  return async () => {
+    const { traceEvents } = JSON.parse((await browser.stopTracing()).toString());
+    const mains = new Set(traceEvents.filter(({ name, args }) => name === "thread_name" && args.name === "CrRendererMain").map(({ pid, tid }) => `${pid} ${tid}`));
+    const tasks = traceEvents.filter(({ name, pid, tid }) => name === "RunTask" && mains.has(`${pid} ${tid}`));
+    return tasks.map(({ tdur = 0 }) => tdur / 1000).sort((a, b) => b - a);
+  };
+}
+
+/**
  * Returns the contents of the browser's storage: the link, the ids of the clips, the SHA-256 of the
  * files.
  */

@@ -7,7 +7,7 @@ import { readdirSync } from "node:fs";
 import path from "node:path";
 import process from "node:process";
 import { close, openSegue } from "./segue.mjs";
-import { stored, until } from "./help.mjs";
+import { stored, tracedTasks, until } from "./help.mjs";
 
 const [folder, backend = "webgl2"] = process.argv.slice(2);
 if (!folder) throw new Error("expected the folder of a corpus");
@@ -41,19 +41,6 @@ const watched = (page) => page.addInitScript(() => {
     }
   }).observe({ type: "longtask", buffered: true });
 });
-
-/** Records the tasks of the page. Returns a function that ends that, and returns their longest processor times, milliseconds. */
-async function traced(page) {
-  const browser = page.context().browser();
-  await browser.startTracing(page, { categories: ["disabled-by-default-devtools.timeline", "__metadata"] });
-  return async () => {
-    const { traceEvents } = JSON.parse((await browser.stopTracing()).toString());
-    const mains = new Set(traceEvents.filter(({ name, args }) => name === "thread_name" && args.name === "CrRendererMain").map(({ pid, tid }) => `${pid} ${tid}`));
-    const tasks = traceEvents.filter(({ name, pid, tid }) => name === "RunTask" && mains.has(`${pid} ${tid}`));
-    const busy = tasks.map(({ tdur = 0 }) => tdur / 1000).sort((a, b) => b - a);
-    return { longest: busy[0] ?? 0, over50: busy.filter((ms) => ms > 50).length, all: busy.reduce((sum, ms) => sum + ms, 0) / 1000, top: busy.slice(0, 8) };
-  };
-}
 
 const gapsOf = (page) => page.evaluate(() => {
   const gaps = { ...window.gaps };
@@ -90,7 +77,7 @@ try {
   await page.evaluate(() => document.body.append(Object.assign(document.createElement("input"), { type: "file", multiple: true, id: "corpus", hidden: true })));
   await page.setInputFiles("#corpus", files);
   await gapsOf(page);
-  const ended = await traced(page);
+  const ended = await tracedTasks(page);
   let began = Date.now();
   await dropChosen(page, path.basename(folder));
   const isReading = async () => (await segue("stats")).jobs.some(({ name }) => name === "files");
@@ -105,8 +92,10 @@ try {
   await gapsOf(page);
   await until("all is stored", async () => (await stored(page)).files.length === files.length, WAIT_MS);
   rows.push(row("… and stored", (Date.now() - began) / 1000, await gapsOf(page), (await segue("stats")).wasm_bytes));
-  const { longest, over50, all, top } = await ended();
-  console.log(`main thread: ${all.toFixed(1)} s of processor time, the longest tasks ${top.map((ms) => ms.toFixed(0)).join(", ")} ms, ${over50} over 50 ms, longest ${longest.toFixed(0)} ms`);
+  const times = await ended();
+  const top = times.slice(0, 8).map((ms) => ms.toFixed(0)).join(", ");
+  const all = times.reduce((sum, ms) => sum + ms, 0) / 1000;
+  console.log(`main thread: ${all.toFixed(1)} s of processor time, the longest tasks ${top} ms, ${times.filter((ms) => ms > 50).length} over 50 ms`);
 
   began = Date.now();
   await page.reload({ waitUntil: "commit" });

@@ -3,7 +3,7 @@
 //
 // Tasks are { task, name, setup, convert, isPacked, file, stored, returnsBytes }: a Blob, or the place
 // of the bytes in the storage, or both; `convert` has the options of a file that is converted, and
-// `isPacked` says that the bytes are those of a packed motion. For each the worker answers with
+// `isPacked` says that the bytes are those of a packed motion, in an ArrayBuffer. For each the worker answers with
 // messages { task, progress }, { task, head }, { task, piece } …, { task, end: true, bytes }, or
 // { task, failed: reason }, { task, refused: message }, or { task, lost: true } when there is no such
 // file any more.
@@ -69,6 +69,7 @@ async function startConverter() {
 /** Returns the bytes of a file, from the storage where the file cannot be read; null where there are none. */
 async function bytesOf(file, stored) {
   try {
+    if (file instanceof ArrayBuffer) return file;
     if (file) return await file.arrayBuffer();
   } catch (reason) {
     if (!stored) throw reason;

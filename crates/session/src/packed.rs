@@ -1,13 +1,12 @@
 //! Motions on their way to a worker that writes files of them.
 //!
 //! Writing a long motion as text takes the better part of a second. [`pack`] and
-//! [`pack_conversion`] copy what the file is made of, which takes a few milliseconds, and longer
-//! where a character has many megabytes of textures; [`write`] makes the file of it elsewhere, the
-//! same to the last bit.
+//! [`pack_conversion`] return what the file is made of, of which only a character's meshes and
+//! textures are copied; [`write`] makes the file of it elsewhere, the same to the last bit.
 
 use crate::convert::{ConvertOptions, ConvertedClip, convert_motion};
 use crate::export::{Column, ExportBody, ExportFormat, ExportOptions, export};
-use crate::jobs::{Parcel, ParcelError, pack_motion, take, unpack_motion};
+use crate::jobs::{Parcel, ParcelError, arrays_of, pack_without_floats, take, unpack_motion};
 use crate::reading::{CharacterHead, put_character};
 use segue_motion::clip::Motion;
 use segue_motion::skin::{Character, SkinnedMesh};
@@ -73,16 +72,41 @@ fn writes_character(options: &ExportOptions) -> bool {
     options.format == ExportFormat::Glb && options.body == ExportBody::Character
 }
 
+/// A packed motion, in pieces: its long arrays are those of the motion, without a copy.
+#[derive(Debug)]
+pub struct Packed<'a> {
+    pieces: Vec<Cow<'a, [u8]>>,
+}
+
+impl Packed<'_> {
+    /// Returns the pieces in their order.
+    pub fn pieces(&self) -> impl Iterator<Item = &[u8]> {
+        self.pieces.iter().map(|piece| &**piece)
+    }
+
+    /// Returns the number of bytes of all pieces.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        self.pieces().map(<[u8]>::len).sum()
+    }
+
+    /// Returns the pieces, one behind the other.
+    #[must_use]
+    pub fn to_vec(&self) -> Vec<u8> {
+        self.pieces.concat()
+    }
+}
+
 /// Packs what [`export`] writes.
 ///
 /// # Errors
 /// [`ParcelError::Head`] where something cannot be told in JSON.
-pub fn pack(
-    motion: &Motion,
+pub fn pack<'a>(
+    motion: &'a Motion,
     character: Option<&Character>,
-    columns: &[Column],
+    columns: &'a [Column],
     options: &ExportOptions,
-) -> Result<Vec<u8>, ParcelError> {
+) -> Result<Packed<'a>, ParcelError> {
     let character = character.filter(|_| writes_character(options));
     pack_for(Purpose::Export(*options), motion, character, columns)
 }
@@ -92,53 +116,50 @@ pub fn pack(
 ///
 /// # Errors
 /// [`ParcelError::Head`] where something cannot be told in JSON.
-pub fn pack_conversion(
-    motion: &Motion,
+pub fn pack_conversion<'a>(
+    motion: &'a Motion,
     mesh: Option<&Arc<SkinnedMesh>>,
     options: &ConvertOptions,
-) -> Result<Vec<u8>, ParcelError> {
+) -> Result<Packed<'a>, ParcelError> {
     let mesh = mesh.filter(|_| writes_character(&options.export) && options.rig.is_none());
     let character = mesh.map(|mesh| Character {
         skeleton: Arc::clone(motion.clip().skeleton()),
         roles: motion.roles().clone(),
         mesh: Arc::clone(mesh),
     });
-    pack_for(Purpose::Conversion(Box::new(options.clone())), motion, character.as_ref(), &[])
+    let purpose = Purpose::Conversion(Box::new(options.clone()));
+    pack_for(purpose, motion, character.as_ref(), &[])
 }
 
 /// Packs a motion: the length of the head, the head as JSON, the floats of the motion and of the
 /// columns, the arrays of the character, and the other bytes of the motion. Numbers have the byte
 /// order of the machine.
-fn pack_for(
+fn pack_for<'a>(
     purpose: Purpose,
-    motion: &Motion,
+    motion: &'a Motion,
     character: Option<&Character>,
-    columns: &[Column],
-) -> Result<Vec<u8>, ParcelError> {
-    let Parcel { head, floats, bytes } = pack_motion(motion)?;
+    columns: &'a [Column],
+) -> Result<Packed<'a>, ParcelError> {
+    let Parcel { head, bytes, .. } = pack_without_floats(motion)?;
     let names = columns.iter().map(|(name, _)| Cow::Borrowed(&**name));
-    let head_of_character = character.map(CharacterHead::of);
-    let bytes_of_character = head_of_character.as_ref().map_or(0, CharacterHead::bytes);
     let head = serde_json::to_string(&Head {
         purpose,
         columns: names.collect(),
         motion: head.into(),
-        floats: floats.len(),
+        floats: arrays_of(motion.clip()).map(<[f32]>::len).sum(),
         frames: motion.clip().frames(),
-        character: head_of_character,
+        character: character.map(CharacterHead::of),
     })?;
-    let arrays = || std::iter::once(&floats).chain(columns.iter().map(|(_, values)| values));
-    let length = arrays().map(|floats| size_of_val(&floats[..])).sum::<usize>();
-    let length = 8 + head.len() + length + bytes_of_character + bytes.len();
-    let mut packed = with_head(&head, length);
-    for floats in arrays() {
-        packed.extend_from_slice(bytemuck::cast_slice(floats));
-    }
+    let mut pieces = vec![Cow::Owned(with_head(&head, 8 + head.len()))];
+    pieces.extend(arrays_of(motion.clip()).map(|floats| bytemuck::cast_slice(floats).into()));
+    pieces.extend(columns.iter().map(|(_, values)| bytemuck::cast_slice(values).into()));
     if let Some(character) = character {
-        put_character(&mut packed, character);
+        let mut arrays = Vec::with_capacity(CharacterHead::of(character).bytes());
+        put_character(&mut arrays, character);
+        pieces.push(arrays.into());
     }
-    packed.extend_from_slice(&bytes);
-    Ok(packed)
+    pieces.push(bytes.into());
+    Ok(Packed { pieces })
 }
 
 /// Writes the file of a packed motion. A conversion gives the bytes that [`read_converted`]
@@ -231,6 +252,7 @@ mod tests {
             for fps in [None, Some(24.0)] {
                 let options = ExportOptions { format, fps, ..ExportOptions::default() };
                 let packed = pack(&outcome.motion, None, &columns, &options).unwrap();
+                let packed = packed.to_vec();
                 let made = write(&packed);
                 match export(&outcome.motion, None, &columns, &options) {
                     Ok(expected) => assert!(made.is_ok_and(|made| made == expected), "{format:?}"),
@@ -268,14 +290,18 @@ mod tests {
         let glb = ExportOptions { format: ExportFormat::Glb, ..ExportOptions::default() };
         let plain = ExportOptions { body: ExportBody::Plain, ..glb };
         for options in [glb, ExportOptions { fps: Some(24.0), ..glb }, plain] {
-            let made = write(&pack(motion, Some(&character), &[], &options).unwrap()).unwrap();
+            let packed = pack(motion, Some(&character), &[], &options).unwrap();
+            let made = write(&packed.to_vec()).unwrap();
             let expected = export(motion, Some(&character), &[], &options).unwrap();
             assert!(made == expected, "{:?}", options.body);
             let has_png = made.windows(4).any(|found| found == b"\x89PNG");
             assert_eq!(has_png, options.body == ExportBody::Character);
         }
-        let bvh = pack(motion, Some(&character), &[], &ExportOptions::default()).unwrap();
-        let alone = pack(motion, None, &[], &ExportOptions::default()).unwrap();
+        let [bvh, alone] = [Some(&character), None].map(|character| {
+            let packed = pack(motion, character, &[], &ExportOptions::default()).unwrap();
+            assert_eq!(packed.size(), packed.to_vec().len());
+            packed.to_vec()
+        });
         assert!(bvh == alone, "a format without bodies takes no mesh along");
     }
 
@@ -293,7 +319,7 @@ mod tests {
             for rig in [None, Some(rig.clone())] {
                 let export = ExportOptions { format, ..ExportOptions::default() };
                 let options = ConvertOptions { export, rig };
-                let packed = pack_conversion(motion, Some(&mesh), &options).unwrap();
+                let packed = pack_conversion(motion, Some(&mesh), &options).unwrap().to_vec();
                 match convert_motion(motion, Some(&mesh), &options) {
                     Ok(expected) => {
                         let made = write(&packed).unwrap();
@@ -308,7 +334,7 @@ mod tests {
             }
         }
         let packed = pack_conversion(motion, None, &ConvertOptions::default()).unwrap();
-        let made = write(&packed).unwrap();
+        let made = write(&packed.to_vec()).unwrap();
         for length in 0..64 {
             assert!(read_converted(&made[..length]).is_none(), "{length}");
         }
@@ -318,11 +344,11 @@ mod tests {
     fn damaged_packed_exports_are_refused() {
         let session = blend();
         let motion = &session.main_outcome().unwrap().motion;
-        let columns = [("a".to_owned(), vec![0.5; motion.clip().frames()])];
+        let columns = vec![("a".to_owned(), vec![0.5; motion.clip().frames()])];
         let character = textured_character();
         for format in [ExportFormat::Bvh, ExportFormat::Glb] {
             let options = ExportOptions { format, ..ExportOptions::default() };
-            let packed = pack(motion, Some(&character), &columns, &options).unwrap();
+            let packed = pack(motion, Some(&character), &columns, &options).unwrap().to_vec();
             for length in (0..packed.len()).step_by(packed.len() / 97).chain(0..64) {
                 let cut = write(&packed[..length]);
                 assert!(matches!(cut, Err(PackedError::Damaged)), "{length}");

@@ -2,7 +2,7 @@
 
 use crate::platform::{FileBytes, Inbox, Incoming, ReadError, ReadEvent};
 use segue_session::Session;
-use segue_session::packed::{self, PackedError};
+use segue_session::packed::{self, Packed, PackedError};
 use segue_session::reading::{Product, ReadReport, ReadTask, read, read_and_convert};
 use std::collections::BTreeSet;
 use std::fmt;
@@ -56,6 +56,11 @@ impl fmt::Debug for LargeFile {
 /// Returns a file as it is: a window has room for it.
 pub(crate) fn outside_memory(bytes: impl Into<Arc<[u8]>>) -> FileBytes {
     FileBytes::Here(bytes.into())
+}
+
+/// Returns a packed motion as the file of a task.
+pub(crate) fn packed_file(packed: &Packed<'_>) -> FileBytes {
+    FileBytes::Here(packed.to_vec().into())
 }
 
 /// Does nothing, because only the system limits the memory of a window.

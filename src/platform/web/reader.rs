@@ -7,6 +7,7 @@ use super::stored_place::stored_place;
 use crate::platform::begun::Begun;
 use crate::platform::{FileBytes, Inbox, Incoming, ReadError, ReadEvent};
 use js_sys::{Array, Function, Object, Reflect, Uint8Array};
+use segue_session::packed::Packed;
 use segue_session::reading::{LARGE_BYTES, Product, ReadReport, ReadTask, Unpacker, WireError};
 use segue_session::{MemoryUse, PageMemory, Session};
 use segue_text::ToMessage as _;
@@ -131,6 +132,18 @@ impl fmt::Debug for LargeFile {
 pub(crate) fn outside_memory(bytes: impl AsRef<[u8]> + Into<Arc<[u8]>>) -> FileBytes {
     let file = LargeFile::of_bytes(&Uint8Array::from(bytes.as_ref()));
     file.map_or_else(|| FileBytes::Here(bytes.into()), FileBytes::Large)
+}
+
+/// Returns a packed motion as the file of a task, outside the app's memory.
+pub(crate) fn packed_file(packed: &Packed<'_>) -> FileBytes {
+    let all = Uint8Array::new_with_length(packed.size() as u32);
+    let mut at = 0;
+    for piece in packed.pieces() {
+        let end = at + piece.len() as u32;
+        all.subarray(at, end).copy_from(piece);
+        at = end;
+    }
+    FileBytes::Large(LargeFile(Held::Bytes(all)))
 }
 
 thread_local! {
@@ -451,20 +464,28 @@ fn post(
     };
     // The worker returns the bytes of a small new file, so that they can be stored.
     let is_new = task.setup.sha256.is_none() && task.product == Product::Clips;
-    let message = Object::new();
+    let (message, moved) = (Object::new(), Array::new());
+    // A packed motion is the worker's alone: a Blob would copy it.
+    let file = match file.array().filter(|_| task.product == Product::PackedMotion) {
+        Some(array) => {
+            moved.push(&array.buffer());
+            array.buffer().into()
+        }
+        None => file.to_blob().map_or(JsValue::UNDEFINED, JsValue::from),
+    };
     for (key, value) in [
         ("task", JsValue::from(task.id as f64)),
         ("name", JsValue::from(&task.name)),
         ("setup", JsValue::from(setup)),
         ("convert", convert),
         ("isPacked", JsValue::from(task.product == Product::PackedMotion)),
-        ("file", file.to_blob().map_or(JsValue::UNDEFINED, JsValue::from)),
+        ("file", file),
         ("stored", stored),
         ("returnsBytes", JsValue::from(is_new && task.size <= LARGE_BYTES)),
     ] {
         Reflect::set(&message, &JsValue::from(key), &value)?;
     }
-    Ok(worker.post_message(&message)?)
+    Ok(worker.post_message_with_transfer(&message, &moved)?)
 }
 
 /// Makes a worker that reports to a slot of `state`.

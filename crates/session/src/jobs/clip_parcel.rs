@@ -57,7 +57,7 @@ impl<'a> ClipHead<'a> {
 }
 
 /// Returns the arrays of a clip, in their order in a parcel.
-pub(super) fn arrays_of(clip: &Clip) -> impl Iterator<Item = &[f32]> {
+pub(crate) fn arrays_of(clip: &Clip) -> impl Iterator<Item = &[f32]> {
     let tracks = clip.translations().iter().map(|track| &track.values[..]);
     let translations = std::iter::once(clip.root_translations()).chain(tracks);
     std::iter::once(bytemuck::cast_slice(clip.all_rotations()))

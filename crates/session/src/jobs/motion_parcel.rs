@@ -35,14 +35,14 @@ struct Head<'a> {
 
 /// Packs a clip with as much of its ground frames, contacts and ground height as is known. A worker
 /// computes the rest when it needs it, with the same bits.
-pub(crate) fn pack(motion: &Motion) -> Result<Parcel, ParcelError> {
+pub(super) fn pack(motion: &Motion) -> Result<Parcel, ParcelError> {
     let mut parcel = pack_without_floats(motion)?;
     put_clip(&mut parcel.floats, motion.clip());
     Ok(parcel)
 }
 
 /// Packs a clip as [`pack`] does, without its floats ([`arrays_of`](super::clip_parcel::arrays_of)).
-pub(super) fn pack_without_floats(motion: &Motion) -> Result<Parcel, ParcelError> {
+pub(crate) fn pack_without_floats(motion: &Motion) -> Result<Parcel, ParcelError> {
     let clip = motion.clip();
     let skeleton = clip.skeleton();
     let head = Head {
