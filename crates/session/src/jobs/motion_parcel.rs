@@ -41,7 +41,8 @@ pub(super) fn pack(motion: &Motion) -> Result<Parcel, ParcelError> {
     Ok(parcel)
 }
 
-/// Packs a clip as [`pack`] does, without its floats ([`arrays_of`](super::clip_parcel::arrays_of)).
+/// Packs a clip as [`pack`] does, without its floats
+/// ([`arrays_of`](super::clip_parcel::arrays_of)).
 pub(crate) fn pack_without_floats(motion: &Motion) -> Result<Parcel, ParcelError> {
     let clip = motion.clip();
     let skeleton = clip.skeleton();

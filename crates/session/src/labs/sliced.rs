@@ -5,7 +5,7 @@ use crate::jobs::JobBoard;
 /// The kinds of work that is done in slices.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum JobKind {
-    /// A search for the best place of a transition.
+    /// A search for the best place of a transition, or for the ends of a cycle.
     Matching,
     /// The registration of clips in time.
     Registering,

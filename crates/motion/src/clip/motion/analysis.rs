@@ -35,7 +35,7 @@ impl Motion {
     }
 
     /// Takes in the analysis of an equal motion, which was computed elsewhere. What is known stays.
-    /// Returns `false`, and takes nothing, where that of another clip is given: one of other length.
+    /// Returns `false`, and takes nothing, where it is that of a clip of another length.
     pub fn learn(&self, analysis: MotionAnalysis) -> bool {
         let frames = self.clip().frames();
         let MotionAnalysis { ground_frames, contacts, ground_m } = analysis;
