@@ -45,7 +45,7 @@ pub(crate) fn clip_panel_ui(
         }
         return;
     };
-    facts_ui(motion, ui);
+    facts_ui(motion, session, ui);
     if let Origin::File(file) = &entry.origin {
         ui.add_space(space::XS);
         overrides_ui(entry, file, motion, state, out, ui);
@@ -66,17 +66,20 @@ fn sentence_ui<'a>(sentence: impl Into<Text<'a>>, color: eframe::egui::Color32, 
     ui.label(RichText::new(say(sentence, ui)).font(theme_of(ui).font(Type::Small)).color(color));
 }
 
-fn facts_ui(motion: &Motion, ui: &mut Ui) {
+fn facts_ui(motion: &Motion, session: &Session, ui: &mut Ui) {
     let clip = motion.clip();
-    let speed = ground_speed(motion.ground_frames(), clip.fps());
+    let is_analyzing = session.is_analyzing(motion);
+    let derived = |fact: &dyn Fn() -> String| if is_analyzing { "…".into() } else { fact() };
+    let ground = || format_number(f64::from(motion.ground_m()) * 100.0, 0.1);
+    let speed = || format!("{:.2}", ground_speed(motion.ground_frames(), clip.fps()));
     let facts = [
         (text::LENGTH, format!("{:.2}", clip.duration_secs()), "s"),
         (text::FRAMES, clip.frames().to_string(), ""),
         (text::FRAME_RATE, format_number(clip.fps(), 0.01), "fps"),
         (text::JOINTS, clip.skeleton().len().to_string(), ""),
         (text::BODY_HEIGHT, format!("{:.2}", motion.roles().body_height(clip.skeleton())), "m"),
-        (text::GROUND, format_number(f64::from(motion.ground_m()) * 100.0, 0.1), "cm"),
-        (text::MEAN_SPEED, format!("{speed:.2}"), "m/s"),
+        (text::GROUND, derived(&ground), "cm"),
+        (text::MEAN_SPEED, derived(&speed), "m/s"),
     ];
     for (label, value, unit) in facts {
         kit::value_row_ui(label, &value, Word::new(unit), ui);

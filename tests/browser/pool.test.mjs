@@ -72,6 +72,21 @@ onOneBackend("database of workers is that of a page without them", async ({ open
   assert.equal((await workers(shared)).jobs, second.jobs + 3);
 });
 
+// Fails when the work for a long clip stays on the page, when one of the pieces in which the clip
+// travels is lost, and when a result differs in a bit.
+onOneBackend("work for a long clip is done by workers as by a page without them", async ({ open }) => {
+  const link = "lab=view&play=off";
+  const [alone, shared] = [await open(`${link}&pool=off`, SMALL), await open(`${link}&pool=2`, SMALL)];
+  const bytes = striding({ frames: 9000, swing: 33 });
+  for (const { segue, load } of [alone, shared]) await segue("set", { a: (await load("long.bvh", bytes)).clips[0].id });
+  // Its analysis and its measurement; its foot lock; the search for a cycle, and for faults.
+  for (const [values, jobs] of [[{}, 2], [{ foot_lock: true }, 3], [{ lab: "loop" }, 4], [{ lab: "clean" }, 5]]) {
+    for (const page of [alone, shared]) await page.segue("set", values);
+    assert.deepEqual(await result(shared), await result(alone), JSON.stringify(values));
+    assert.equal((await workers(shared)).jobs, jobs, JSON.stringify(values));
+  }
+});
+
 // Fails when the jobs of a worker that ended are lost.
 onOneBackend("jobs of a worker that ends are done by another", async ({ open }) => {
   const alone = await open(`${GRAPH}&pool=off`, SMALL);

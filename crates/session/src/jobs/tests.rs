@@ -286,6 +286,9 @@ fn work_for_a_long_clip_is_the_same_by_workers_and_without() {
     let mut alone = Session::new();
     alone.set_workers(1);
     open(&mut alone);
+    let motion = |session: &Session| session.slot(Slot::A).unwrap().motion.clone().unwrap();
+    assert!(alone.is_analyzing(&motion(&alone)) && !both.alone.is_analyzing(&motion(&both.alone)));
+    assert!(alone.contact_clips().is_empty() && !motion(&alone).is_analyzed());
     while alone.work() || alone.has_waiting_jobs() {
         if let Some(job) = alone.take_job(0) {
             alone.finish_job(job.number, None, 0.0);
@@ -294,6 +297,7 @@ fn work_for_a_long_clip_is_the_same_by_workers_and_without() {
     open(&mut both.alone);
     while both.alone.work() {}
     assert_same(&alone, &both.alone);
+    assert!(!alone.is_analyzing(&motion(&alone)));
 }
 
 #[test]

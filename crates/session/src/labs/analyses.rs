@@ -35,6 +35,11 @@ impl Analyses {
         }
         false
     }
+
+    /// Returns whether a worker analyses a clip.
+    pub(crate) fn is_under_way(&self, motion: &Motion) -> bool {
+        self.cache.under_way().any(|(of, _)| std::ptr::eq(&raw const **of, motion))
+    }
 }
 
 impl Sliced for Analyses {

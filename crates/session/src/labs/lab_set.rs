@@ -20,6 +20,7 @@ use super::{edit, in_place, make, transition};
 use crate::LabId;
 use crate::jobs::JobBoard;
 use crate::motion::FeetReader;
+use segue_motion::clip::Motion;
 
 /// Returns the definition of a lab.
 pub(crate) fn lab_of(lab: LabId) -> &'static dyn Lab<LabSet> {
@@ -108,6 +109,11 @@ impl LabSet {
         let all = clips.slots.iter().chain(clips.more.iter().map(|clip| &clip.motion));
         let are_known: Vec<bool> = all.map(|clip| self.analyses.knows(clip, &self.jobs)).collect();
         are_known.into_iter().all(|is_known| is_known)
+    }
+
+    /// Returns whether a worker is at what is derived from a motion.
+    pub(crate) fn is_analyzing(&self, motion: &Motion) -> bool {
+        self.analyses.is_under_way(motion)
     }
 
     /// Clears the pending requests of all labs; each pane then requests what it needs again.

@@ -62,11 +62,19 @@ impl Session {
             let has_feet =
                 Side::BOTH.iter().any(|&side| motion.roles().get(Role::foot(side)).is_some());
             let is_new = clips.iter().all(|clip| clip.id != entry.id);
-            if let Some(motion) = read.filter(|_| has_feet && is_new) {
+            let read = read.filter(|motion| has_feet && is_new && !self.is_analyzing(motion));
+            if let Some(motion) = read {
                 clips.push(ContactClip { id: entry.id.clone(), motion: Arc::clone(motion) });
             }
         }
         clips
+    }
+
+    /// Returns whether a worker is at what is derived from the frames of a motion: contacts, places
+    /// and the height of the ground. To ask for them meanwhile would take longer than a frame.
+    #[must_use]
+    pub fn is_analyzing(&self, motion: &Motion) -> bool {
+        self.labs.is_analyzing(motion)
     }
 
     /// Returns the number of clips with the rig of a clip, which corrections of its body parts
