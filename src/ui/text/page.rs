@@ -181,6 +181,7 @@ pub(crate) const STILL_COMPUTED: Word = Word::new("The result is still being com
 pub(crate) fn under_way(job: &Job) -> Message {
     let percent = 100.0 * job.progress;
     match &job.kind {
+        JobKind::Analyzing => msg!("Analysing the clip {percent:.0} %", percent),
         JobKind::Matching => msg!("Finding the best match {percent:.0} %", percent),
         JobKind::Registering => msg!("Registering the clips {percent:.0} %", percent),
         JobKind::BuildingGraph => msg!("Building the graph {percent:.0} %", percent),

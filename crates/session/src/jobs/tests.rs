@@ -2,11 +2,11 @@
 
 use super::any_task::Kind as _;
 use super::*;
-use crate::Request;
 use crate::fixtures::*;
 use crate::labs::Distances;
 use crate::params::MAX_PANES;
 use crate::reading::{Content, read};
+use crate::{JobKind, Request};
 use proptest::prelude::*;
 use segue_motion::clip::ContactCorrection;
 use segue_motion::clip::fixtures::QuadrupedWalk;
@@ -289,6 +289,7 @@ fn work_for_a_long_clip_is_the_same_by_workers_and_without() {
     let motion = |session: &Session| session.slot(Slot::A).unwrap().motion.clone().unwrap();
     assert!(alone.is_analyzing(&motion(&alone)) && !both.alone.is_analyzing(&motion(&both.alone)));
     assert!(alone.contact_clips().is_empty() && !motion(&alone).is_analyzed());
+    assert_eq!(alone.jobs().first().map(|job| &job.kind), Some(&JobKind::Analyzing));
     while alone.work() || alone.has_waiting_jobs() {
         if let Some(job) = alone.take_job(0) {
             alone.finish_job(job.number, None, 0.0);

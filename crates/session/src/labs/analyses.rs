@@ -62,8 +62,7 @@ impl Sliced for Analyses {
         self.cache.is_ready()
     }
 
-    /// It takes a fraction of a second, so no progress is reported.
     fn progress(&self) -> Option<(JobKind, f64)> {
-        None
+        self.cache.under_way().next().map(|_| (JobKind::Analyzing, 0.0))
     }
 }

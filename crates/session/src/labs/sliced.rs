@@ -5,6 +5,8 @@ use crate::jobs::JobBoard;
 /// The kinds of work that is done in slices.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum JobKind {
+    /// The reading of the feet and places of a long clip.
+    Analyzing,
     /// A search for the best place of a transition, or for the ends of a cycle.
     Matching,
     /// The registration of clips in time.
@@ -37,6 +39,7 @@ impl JobKind {
     #[must_use]
     pub fn name(&self) -> &str {
         match self {
+            Self::Analyzing => "analysing",
             Self::Matching => "matching",
             Self::Registering => "registering",
             Self::BuildingGraph => "graphing",
