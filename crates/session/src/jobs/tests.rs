@@ -292,6 +292,8 @@ fn work_for_a_long_clip_is_the_same_by_workers_and_without() {
     assert_eq!(alone.jobs().first().map(|job| &job.kind), Some(&JobKind::Analyzing));
     while alone.work() || alone.has_waiting_jobs() {
         if let Some(job) = alone.take_job(0) {
+            // What a worker has is under way, so that those who need the result wait for it.
+            assert!(!alone.jobs().is_empty());
             alone.finish_job(job.number, None, 0.0);
         }
     }

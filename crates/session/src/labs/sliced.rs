@@ -5,7 +5,7 @@ use crate::jobs::JobBoard;
 /// The kinds of work that is done in slices.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum JobKind {
-    /// The reading of the feet and places of a long clip.
+    /// The reading of the feet and places of a long clip, and its measurement.
     Analyzing,
     /// A search for the best place of a transition, or for the ends of a cycle.
     Matching,

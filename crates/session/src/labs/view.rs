@@ -342,16 +342,21 @@ impl Sliced for ViewCache {
     }
 
     fn progress(&self) -> Option<(JobKind, f64)> {
-        // Metrics are quick, so no progress is reported.
-        let (_, work) = self.cache.under_way().find(|((_, lock), _)| lock.is_some())?;
+        // Metrics alone are quick, so no progress is reported, except where a worker takes them.
+        let is_long = |motion: &Motion| motion.clip().frames() >= FOR_WORKERS;
+        let mut under_way = self.cache.under_way();
+        let ((_, lock), work) =
+            under_way.find(|((motion, lock), _)| lock.is_some() || is_long(motion))?;
+        let kind = if lock.is_some() { JobKind::HoldingFeet } else { JobKind::Analyzing };
         let progress = match work.here() {
             None | Some(Stage::Before(..)) => 0.0,
             Some(Stage::Locking { locking, .. }) => 0.2 + 0.6 * locking.progress(),
             Some(Stage::Measuring { motion, meter, .. }) => {
-                0.8 + 0.2 * meter.progress(motion.clip())
+                let own = if lock.is_some() { 0.8 } else { 0.0 };
+                own + (1.0 - own) * meter.progress(motion.clip())
             }
         };
-        Some((JobKind::HoldingFeet, f64::from(progress)))
+        Some((kind, f64::from(progress)))
     }
 }
 
