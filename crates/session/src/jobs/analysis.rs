@@ -67,9 +67,4 @@ impl Task for AnalysisTask {
             ground_m: f32::from_bits(head.ground_m),
         })
     }
-
-    fn affinity(&self) -> u64 {
-        // Workers keep nothing but the clip, whose number is counted besides.
-        0
-    }
 }

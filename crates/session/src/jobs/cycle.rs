@@ -29,9 +29,4 @@ impl Task for CycleTask {
     fn unpack(&self, _clips: &[JobClip], parcel: Parcel) -> Result<CutPoints, ParcelError> {
         Ok(serde_json::from_str(&parcel.head)?)
     }
-
-    fn affinity(&self) -> u64 {
-        // Workers keep nothing but the clip, whose number is counted besides.
-        0
-    }
 }

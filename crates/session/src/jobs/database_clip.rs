@@ -106,11 +106,6 @@ impl Task for DatabaseClipTask {
         }
         Ok(MeasuredClip { motions, retargeted: head.retargeted })
     }
-
-    fn affinity(&self) -> u64 {
-        // Workers keep nothing but the clip, whose number is counted besides.
-        0
-    }
 }
 
 impl<'a> MotionHead<'a> {

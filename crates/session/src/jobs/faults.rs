@@ -25,9 +25,4 @@ impl Task for FaultTask {
     fn unpack(&self, _clips: &[JobClip], parcel: Parcel) -> Result<Vec<Fault>, ParcelError> {
         Ok(serde_json::from_str(&parcel.head)?)
     }
-
-    fn affinity(&self) -> u64 {
-        // Workers keep nothing but the clip, whose number is counted besides.
-        0
-    }
 }

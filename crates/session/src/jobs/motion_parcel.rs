@@ -1,6 +1,6 @@
 //! Clips on their way to a worker.
 
-use super::clip_parcel::{ClipHead, put_clip};
+use super::clip_parcel::ClipHead;
 use super::parcel::{put, take};
 use super::{Parcel, ParcelError};
 use glam::DVec2;
@@ -33,16 +33,9 @@ struct Head<'a> {
     ground_m: Option<f32>,
 }
 
-/// Packs a clip with as much of its ground frames, contacts and ground height as is known. A worker
-/// computes the rest when it needs it, with the same bits.
-pub(super) fn pack(motion: &Motion) -> Result<Parcel, ParcelError> {
-    let mut parcel = pack_without_floats(motion)?;
-    put_clip(&mut parcel.floats, motion.clip());
-    Ok(parcel)
-}
-
-/// Packs a clip as [`pack`] does, without its floats
-/// ([`arrays_of`](super::clip_parcel::arrays_of)).
+/// Packs a clip with as much of its ground frames, contacts and ground height as is known, but
+/// without its floats ([`arrays_of`](super::clip_parcel::arrays_of)). A worker computes the rest
+/// when it needs it, with the same bits.
 pub(crate) fn pack_without_floats(motion: &Motion) -> Result<Parcel, ParcelError> {
     let clip = motion.clip();
     let skeleton = clip.skeleton();

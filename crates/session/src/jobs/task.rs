@@ -23,8 +23,11 @@ pub(crate) trait Task {
     /// Restores an answer from its parcel; the clips are those of the job.
     fn unpack(&self, clips: &[JobClip], parcel: Parcel) -> Result<Self::Answer, ParcelError>;
 
-    /// Returns a number that jobs have in common which profit from the memory of one worker.
-    fn affinity(&self) -> u64;
+    /// Returns a number that jobs have in common which profit from the memory of one worker. Jobs
+    /// with the same clips profit from these alone, which are counted besides.
+    fn affinity(&self) -> u64 {
+        0
+    }
 }
 
 /// A clip with the number under which workers keep it.
@@ -37,15 +40,8 @@ pub struct JobClip {
 }
 
 impl JobClip {
-    /// Packs the clip for its transfer to a worker.
-    ///
-    /// # Errors
-    /// [`ParcelError`] when JSON cannot represent its header.
-    pub fn parcel(&self) -> Result<Parcel, ParcelError> {
-        motion_parcel::pack(&self.motion)
-    }
-
-    /// Packs the clip without its floats, which [`piece`](Self::piece) returns.
+    /// Packs the clip for its transfer to a worker, without its floats, which
+    /// [`piece`](Self::piece) returns.
     ///
     /// # Errors
     /// [`ParcelError`] when JSON cannot represent its header.

@@ -62,7 +62,7 @@ impl Workers {
         let worker = &mut self.all[at];
         for clip in &job.clips {
             if self.clips[at].insert(clip.number) {
-                worker.take_clip(clip.number, &clip.parcel().unwrap()).unwrap();
+                worker.take_clip(clip.number, &parcel_of(clip)).unwrap();
             }
         }
         let parcel = worker.run_message(&job.message().unwrap()).unwrap();
@@ -86,6 +86,18 @@ impl Workers {
             }
         }
     }
+}
+
+/// Returns the parcel of a clip, put together from its pieces as a worker does.
+fn parcel_of(clip: &JobClip) -> Parcel {
+    let mut parcel = clip.parcel_without_floats().unwrap();
+    while parcel.floats.len() < clip.floats() {
+        let piece = clip.piece(parcel.floats.len(), 1000);
+        assert!((1..=1000).contains(&piece.len()));
+        parcel.floats.extend_from_slice(piece);
+    }
+    assert!(clip.piece(clip.floats(), 1000).is_empty());
+    parcel
 }
 
 fn set(session: &mut Session, key: Key, value: Value) {
@@ -292,7 +304,7 @@ fn work_for_a_long_clip_is_the_same_by_workers_and_without() {
     assert_eq!(alone.jobs().first().map(|job| &job.kind), Some(&JobKind::Analyzing));
     while alone.work() || alone.has_waiting_jobs() {
         if let Some(job) = alone.take_job(0) {
-            // What a worker has is under way, so that those who need the result wait for it.
+            // A job of a worker is listed: the page's API waits until none is.
             assert!(!alone.jobs().is_empty());
             alone.finish_job(job.number, None, 0.0);
         }
@@ -431,7 +443,7 @@ fn clip_of_a_database_that_is_the_own_one_is_not_sent_back() {
     let (mut own, mut all, mut worker) = (0, 0, Worker::new(0));
     while let Some(job) = session.take_job(0) {
         let clip = &job.clips[0];
-        worker.take_clip(clip.number, &clip.parcel().unwrap()).unwrap();
+        worker.take_clip(clip.number, &parcel_of(clip)).unwrap();
         let parcel = worker.run_message(&job.message().unwrap()).unwrap();
         let measured = DatabaseClipTask::output(job.answer(parcel.clone()).unwrap()).unwrap();
         // A cycle is closed, and is another clip.
@@ -480,19 +492,8 @@ fn motion_in_a_parcel_stays_the_same() {
     assert_eq!(of_forefeet.contacts().feet(), Foot::ALL);
     for motion in [Motion::clone(motion), corrected, fresh, on_four, of_forefeet] {
         let clip = JobClip { number: 1, motion: Arc::new(motion.clone()) };
-        let parcel = clip.parcel().unwrap();
+        let parcel = parcel_of(&clip);
         assert!(motion_parcel::unpack(&parcel).unwrap() == motion);
-        // The same in pieces.
-        let mut pieces = clip.parcel_without_floats().unwrap();
-        loop {
-            let piece = clip.piece(pieces.floats.len(), 1000);
-            pieces.floats.extend_from_slice(piece);
-            if piece.is_empty() {
-                break;
-            }
-            assert!(piece.len() <= 1000);
-        }
-        assert!(pieces == parcel && clip.floats() == parcel.floats.len());
         // A message that is cut off is refused.
         let torn = Parcel { floats: parcel.floats[1..].to_vec(), ..parcel.clone() };
         assert!(motion_parcel::unpack(&torn).is_err());

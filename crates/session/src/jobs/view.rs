@@ -74,9 +74,4 @@ impl Task for ViewTask {
         let locked = locked.map(|head| head.take(skeleton, &mut floats)).transpose()?;
         Ok(ViewAnswer { locked, before, found })
     }
-
-    fn affinity(&self) -> u64 {
-        // Workers keep nothing but the clip, whose number is counted besides.
-        0
-    }
 }

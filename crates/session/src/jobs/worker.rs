@@ -24,7 +24,7 @@ impl Worker {
         Self { clips: BTreeMap::new(), memory: WorkerMemory::new(max_bytes) }
     }
 
-    /// Takes in a clip ([`JobClip::parcel`]).
+    /// Takes in a clip ([`JobClip::parcel_without_floats`], with its floats).
     ///
     /// # Errors
     /// [`ParcelError`] when the parcel contains none.

@@ -15,7 +15,7 @@ const FOR_WORKERS: usize = 8_000;
 /// The analyses of the clips of labs that are under way. A clip keeps its own.
 #[derive(Debug, Default)]
 pub(crate) struct Analyses {
-    /// Whether each clip has learnt it; the others analyse themselves.
+    /// The clips whose job has ended: those that no worker could analyse compute on first use.
     cache: RequestCache<Arc<Motion>, Delegated<AnalysisTask, ()>, ()>,
 }
 

@@ -29,7 +29,7 @@ impl<T: Kind, W> Delegated<T, W> {
         slice: impl FnOnce(Option<W>) -> ControlFlow<M, W>,
     ) -> Step<Self, M> {
         match self {
-            Self::New => match offer().filter(|_| jobs.has_workers()) {
+            Self::New => match jobs.has_workers().then(offer).flatten() {
                 Some((task, clips)) => Step::On(Self::Asked(jobs.offer(task, &clips))),
                 None => Step::On(Self::Here(None)),
             },

@@ -32,6 +32,25 @@ impl<Work, Made> From<ControlFlow<Made, Work>> for Step<Work, Made> {
     }
 }
 
+/// Does one slice of the first work in a list that waits for no worker; work that ends leaves the
+/// list, and its result is returned. `None` where there is no work, or all of it waits.
+pub(super) fn work_on_first<Work, Made>(
+    all: &mut Vec<Work>,
+    mut slice: impl FnMut(Work) -> Step<Work, Made>,
+) -> Option<ControlFlow<Made>> {
+    for at in 0..all.len() {
+        match slice(all.remove(at)) {
+            Step::On(work) => {
+                all.insert(at, work);
+                return Some(ControlFlow::Continue(()));
+            }
+            Step::Waits(work) => all.insert(at, work),
+            Step::Done(made) => return Some(ControlFlow::Break(made)),
+        }
+    }
+    None
+}
+
 #[derive(Debug)]
 struct Entry<Of, T> {
     is_wanted: bool,
@@ -96,23 +115,19 @@ impl<Of, Work, Made> RequestCache<Of, Work, Made> {
         mut slice: impl FnMut(&Of, Work) -> S,
     ) -> bool {
         self.under_way.retain(|entry| entry.is_wanted);
-        for at in 0..self.under_way.len() {
-            let Entry { is_wanted, of, content } = self.under_way.remove(at);
-            let (content, waits) = match slice(&of, content).into() {
-                Step::On(content) => (content, false),
-                Step::Waits(content) => (content, true),
-                Step::Done(made) => {
-                    self.keep(of, made);
-                    self.is_ready = true;
-                    return true;
-                }
-            };
-            self.under_way.insert(at, Entry { is_wanted, of, content });
-            if !waits {
-                return true;
+        let worked = work_on_first(&mut self.under_way, |Entry { is_wanted, of, content }| {
+            match slice(&of, content).into() {
+                Step::On(content) => Step::On(Entry { is_wanted, of, content }),
+                Step::Waits(content) => Step::Waits(Entry { is_wanted, of, content }),
+                Step::Done(made) => Step::Done((of, made)),
             }
+        });
+        let is_at_work = worked.is_some();
+        if let Some((of, made)) = worked.and_then(ControlFlow::break_value) {
+            self.keep(of, made);
+            self.is_ready = true;
         }
-        false
+        is_at_work
     }
 
     /// Returns the work under way, the next first, and what each is for.

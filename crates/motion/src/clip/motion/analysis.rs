@@ -1,4 +1,4 @@
-//! What is derived from a clip, computed elsewhere.
+//! The derived quantities of a motion as data, so that another thread can compute them.
 
 use super::Motion;
 use crate::clip::Contacts;
@@ -63,7 +63,7 @@ mod tests {
         assert!(motion.is_analyzed() && !same.is_analyzed());
         assert!(same.learn(analysis.clone()) && same.is_analyzed());
         assert_eq!((&same.analysis(), &same), (&analysis, &motion));
-        // What is known stays, and nothing is taken of another clip.
+        // Known quantities stay, and the analysis of another clip is refused.
         let raised = Motion::analyze(clip.clone()).with_ground_m(0.5);
         assert!(raised.learn(analysis.clone()));
         assert_eq!((raised.ground_m(), raised.contacts()), (0.5, motion.contacts()));

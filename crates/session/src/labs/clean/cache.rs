@@ -1,7 +1,7 @@
 //! Searches for faults and their mends, computed in slices and kept between results.
 
 use super::super::delegated::Delegated;
-use super::super::request_cache::Step;
+use super::super::request_cache::{Step, work_on_first};
 use super::super::sliced::{JobKind, Sliced};
 use super::{CleanInputs, Mends};
 use crate::jobs::{FaultTask, JobBoard};
@@ -248,22 +248,17 @@ impl Sliced for CleanCache {
 
     fn work(&mut self, jobs: &mut JobBoard) -> bool {
         self.under_way.retain(|at| at.is_wanted);
-        for at in 0..self.under_way.len() {
-            let Pending { is_wanted, work } = self.under_way.remove(at);
-            let (work, waits) = match self.step(work, jobs) {
-                Step::On(work) => (work, false),
-                Step::Waits(work) => (work, true),
-                Step::Done(()) => {
-                    self.is_ready = true;
-                    return true;
-                }
-            };
-            self.under_way.insert(at, Pending { is_wanted, work });
-            if !waits {
-                return true;
+        let mut under_way = std::mem::take(&mut self.under_way);
+        let worked = work_on_first(&mut under_way, |Pending { is_wanted, work }| {
+            match self.step(work, jobs) {
+                Step::On(work) => Step::On(Pending { is_wanted, work }),
+                Step::Waits(work) => Step::Waits(Pending { is_wanted, work }),
+                Step::Done(()) => Step::Done(()),
             }
-        }
-        false
+        });
+        self.under_way = under_way;
+        self.is_ready |= worked.is_some_and(|flow| flow.is_break());
+        worked.is_some()
     }
 
     fn is_ready(&self) -> bool {
