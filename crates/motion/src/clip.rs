@@ -121,7 +121,7 @@ pub(crate) use contacts::{phase_between, stillest_point, stillest_step};
 pub use curves::{CurveKind, joint_curve};
 pub use ground::estimate_ground;
 pub use in_place::{RootMotion, RootMotionError, root_motion_from_feet, take_in_place};
-pub(crate) use jolts::{JoltScan, jolts, turn_change};
+pub(crate) use jolts::{JoltScan, SingleJolts, jolts, turn_change};
 pub use mirror::{MirrorError, mirror};
 pub use motion::{FootOptions, Motion, MotionAnalysis, with_body_plan_of};
 pub use reference::reference_pose;

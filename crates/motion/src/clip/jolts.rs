@@ -36,6 +36,64 @@ fn turn(from: Quat, to: Quat) -> Vec3 {
     v * (2.0 * libm::atan2f(sine, q.w) / sine)
 }
 
+/// Returns the [`turn_change`] of a joint in every frame; 0 in the first and the last one.
+fn turn_changes(clip: &Clip, joint: usize) -> Vec<f32> {
+    let frames = clip.frames();
+    let mut changes = vec![0.0; frames];
+    let turn_into =
+        |frame: usize| turn(clip.rotations(frame - 1)[joint], clip.rotations(frame)[joint]);
+    if frames < 3 {
+        return changes;
+    }
+    let mut before = turn_into(1);
+    for (frame, change) in changes[..frames - 1].iter_mut().enumerate().skip(1) {
+        let after = turn_into(frame + 1);
+        *change = (after - before).length();
+        before = after;
+    }
+    changes
+}
+
+/// Returns the distance of the frames from which the usual change is computed.
+fn stride(clip: &Clip) -> usize {
+    clip.frames().div_ceil(SAMPLES).max(1)
+}
+
+/// Returns the usual change of a joint, radians; the changes are one in every [`stride`] frames.
+fn usual(changes: impl Iterator<Item = f32>) -> f32 {
+    let sampled: Vec<f32> = changes.collect();
+    stats::percentile(&sampled, 0.99).unwrap_or(0.0).max(STILL_RADIANS)
+}
+
+/// The [`jolts`] of single frames of a clip. It does not hold the clip: every call must be given
+/// the same one.
+#[derive(Clone, Debug)]
+pub(crate) struct SingleJolts {
+    /// The usual change of each joint, radians.
+    usual: Vec<f32>,
+}
+
+impl SingleJolts {
+    /// Computes the usual changes, in time that does not depend on the length of a long clip.
+    pub(crate) fn new(clip: &Clip) -> Self {
+        let of_joint = |joint: usize| {
+            let frames = (0..clip.frames()).step_by(stride(clip));
+            usual(frames.map(|frame| turn_change(clip, frame, joint).unwrap_or(0.0)))
+        };
+        Self { usual: (0..clip.skeleton().len()).map(of_joint).collect() }
+    }
+
+    /// Returns the value of a frame, bit for bit as [`jolts`] does; 0 where there is no such frame.
+    pub(crate) fn at(&self, clip: &Clip, frame: usize) -> f32 {
+        let jolts = self
+            .usual
+            .iter()
+            .enumerate()
+            .map(|(joint, usual)| turn_change(clip, frame, joint).unwrap_or(0.0) / usual);
+        jolts.fold(0.0, f32::max)
+    }
+}
+
 /// Returns for every frame the largest ratio over all joints of the [`turn_change`] to its usual
 /// value for that joint, the 99th percentile of the clip. A value above 1 occurs in one frame in a
 /// hundred: a heel strike, or a tremble of the capture. 0 in the first and the last frame.
@@ -63,13 +121,9 @@ impl JoltScan {
     /// do. 30,000 frames of a joint take about 3 ms.
     pub(crate) fn advance(&mut self, clip: &Clip, joints: usize) -> bool {
         let all = clip.skeleton().len();
-        let stride = clip.frames().div_ceil(SAMPLES).max(1);
         for joint in self.joint..self.joint.saturating_add(joints.max(1)).min(all) {
-            let changes: Vec<f32> = (0..clip.frames())
-                .map(|frame| turn_change(clip, frame, joint).unwrap_or(0.0))
-                .collect();
-            let sampled: Vec<f32> = changes.iter().copied().step_by(stride).collect();
-            let usual = stats::percentile(&sampled, 0.99).unwrap_or(0.0).max(STILL_RADIANS);
+            let changes = turn_changes(clip, joint);
+            let usual = usual(changes.iter().copied().step_by(stride(clip)));
             for (jolt, change) in self.jolts.iter_mut().zip(changes) {
                 *jolt = jolt.max(change / usual);
             }
@@ -117,6 +171,11 @@ mod tests {
             assert!(*jolt < 1.1, "{frame} {jolt}");
         }
         assert_eq!((jolts[0], jolts[frames - 1]), (0.0, 0.0));
+        let single = SingleJolts::new(&clip);
+        for (frame, jolt) in jolts.iter().enumerate() {
+            assert_eq!(single.at(&clip, frame).to_bits(), jolt.to_bits());
+        }
+        assert_eq!(single.at(&clip, frames), 0.0);
     }
 
     #[test]
@@ -139,6 +198,7 @@ mod tests {
                 Clip::new("still", Arc::clone(&skeleton), 60.0, rotations, vec![Vec3::Y; frames])
                     .unwrap();
             assert_eq!(jolts(&clip), vec![0.0; frames]);
+            assert_eq!(SingleJolts::new(&clip).at(&clip, 0), 0.0);
         }
     }
 }

@@ -2,11 +2,12 @@
 
 use super::points::checked_sum;
 use super::{Progress, REFERENCE_HEIGHT_M, RegistrationError, SearchOptions};
-use crate::clip::{Clip, jolts};
+use crate::clip::{Clip, SingleJolts};
 use crate::math::Planar;
 use crate::math::sort::sort_by;
 use crate::skeleton::WorldPose;
 use glam::{Quat, Vec3};
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -86,72 +87,131 @@ const CALM_REACH_SECS: f64 = 0.05;
 /// seam would be taken over as a velocity, and swing the joint out. The result's cost is within 5 %
 /// of a mean pair's cost of the smallest over all pairs (tested against them), and is exact for the
 /// pair returned.
+///
+/// Poses are computed for the pairs that are compared, not for all frames: a clip of an hour takes
+/// as long as one of a minute.
 #[derive(Clone, Debug)]
 pub struct PoseSearch {
-    outgoing: Poses,
-    incoming: Poses,
+    outgoing: PoseSource,
+    incoming: PoseSource,
     weights: Vec<f32>,
     /// The factor from metres to those of the reference body.
     scale: f64,
     fps: f64,
     stride: usize,
-    columns: usize,
+    /// The incoming clip's samples; none before the first call of `advance`.
+    columns: Option<Poses>,
     done: usize,
     /// Per pair of samples, row-major: the three mean squares (m², rad², m²/s²).
     terms: Vec<[f32; 3]>,
     sums: [f64; 3],
 }
 
-/// The compared quantities of a clip, frame-major.
+/// A clip whose poses are compared.
 #[derive(Clone, Debug)]
+struct PoseSource {
+    clip: Arc<Clip>,
+    /// The character's frame in each frame.
+    places: Vec<Planar>,
+    jolts: SingleJolts,
+}
+
+/// The compared quantities of some frames of a clip, frame-major.
+#[derive(Clone, Debug, Default)]
 struct Poses {
-    frames: usize,
+    joints: usize,
     positions: Vec<Vec3>,
     rotations: Vec<Quat>,
     velocities: Vec<Vec3>,
-    /// The jolt of each frame ([`jolts`]).
-    jolts: Vec<f32>,
 }
 
-impl Poses {
-    fn new(clip: &Clip, character: &[Planar]) -> Self {
-        let (frames, joints) = (clip.frames().min(character.len()), clip.skeleton().len());
-        let mut poses = Self {
-            frames,
-            positions: Vec::with_capacity(frames * joints),
-            rotations: Vec::with_capacity(frames * joints),
-            velocities: Vec::with_capacity(frames * joints),
-            jolts: jolts(clip),
-        };
-        let mut around: [WorldPose; 3] = Default::default();
-        for (frame, here) in character.iter().enumerate().take(frames) {
-            let to_here = here.inverse();
-            let (before, after) = (frame.saturating_sub(1), (frame + 1).min(frames - 1));
-            if frame == 0 {
-                clip.world_pose_into(0, &mut around[0]);
-                clip.world_pose_into(0, &mut around[1]);
-            } else {
-                around.rotate_left(1);
+/// The compared quantities of one frame, joint by joint.
+struct PoseRow<'a> {
+    positions: &'a [Vec3],
+    rotations: &'a [Quat],
+    velocities: &'a [Vec3],
+}
+
+/// The last world poses of a clip that were computed, each with its frame. Three neighbouring
+/// frames have places of their own.
+#[derive(Debug, Default)]
+struct RecentPoses([(Option<usize>, WorldPose); 3]);
+
+impl RecentPoses {
+    /// Computes the world pose of a frame, unless it is there.
+    fn ensure(&mut self, clip: &Clip, frame: usize) {
+        let (known, world) = &mut self.0[frame % 3];
+        if *known != Some(frame) {
+            clip.world_pose_into(frame, world);
+            *known = Some(frame);
+        }
+    }
+
+    fn positions(&self, frame: usize) -> &[Vec3] {
+        &self.0[frame % 3].1.positions
+    }
+}
+
+impl PoseSource {
+    fn new((clip, places): (&Arc<Clip>, &[Planar])) -> Self {
+        let frames = clip.frames().min(places.len());
+        Self {
+            clip: Arc::clone(clip),
+            places: places[..frames].to_vec(),
+            jolts: SingleJolts::new(clip),
+        }
+    }
+
+    fn frames(&self) -> usize {
+        self.places.len()
+    }
+
+    fn is_finite(&self) -> bool {
+        let tracks = self.clip.translations().iter().flat_map(|track| &track.values);
+        self.clip.root_translations().iter().chain(tracks).all(|v| v.is_finite())
+            && self.clip.all_rotations().iter().all(|q| q.is_finite())
+            && self.places.iter().all(|place| place.yaw.is_finite() && place.shift.is_finite())
+    }
+
+    /// Returns the compared quantities of some frames.
+    fn poses(&self, frames: impl IntoIterator<Item = usize>) -> Poses {
+        let (clip, last) = (&*self.clip, self.frames() - 1);
+        let mut poses = Poses { joints: clip.skeleton().len(), ..Poses::default() };
+        let mut recent = RecentPoses::default();
+        for frame in frames {
+            let to_here = self.places[frame].inverse();
+            let (before, after) = (frame.saturating_sub(1), (frame + 1).min(last));
+            for frame in [before, frame, after] {
+                recent.ensure(clip, frame);
             }
-            clip.world_pose_into(after, &mut around[2]);
-            let [last, now, next] = &around;
             let rate = clip.fps() as f32 / (after - before).max(1) as f32;
-            poses.positions.extend(now.positions.iter().map(|&p| to_here.apply(p)));
-            let moves = last.positions.iter().zip(&next.positions);
+            poses.positions.extend(recent.positions(frame).iter().map(|&p| to_here.apply(p)));
+            let moves = recent.positions(before).iter().zip(recent.positions(after));
             poses
                 .velocities
                 .extend(moves.map(|(&from, &to)| to_here.apply_vector((to - from) * rate)));
+            let root = poses.rotations.len();
             poses.rotations.extend_from_slice(clip.rotations(frame));
-            if let Some(root) = poses.rotations.get_mut(frame * joints) {
+            if let Some(root) = poses.rotations.get_mut(root) {
                 *root = to_here.rotation() * *root;
             }
         }
         poses
     }
+}
 
-    fn is_finite(&self) -> bool {
-        self.positions.iter().chain(&self.velocities).all(|v| v.is_finite())
-            && self.rotations.iter().all(|q| q.is_finite())
+impl Poses {
+    fn row(&self, index: usize) -> PoseRow<'_> {
+        let of = index * self.joints..(index + 1) * self.joints;
+        PoseRow {
+            positions: &self.positions[of.clone()],
+            rotations: &self.rotations[of.clone()],
+            velocities: &self.velocities[of],
+        }
+    }
+
+    fn rows(&self) -> usize {
+        self.rotations.len() / self.joints.max(1)
     }
 }
 
@@ -185,16 +245,14 @@ impl PoseSearch {
                 return Err(RegistrationError::Empty { which });
             }
         }
-        let (outgoing, incoming) =
-            (Poses::new(outgoing.0, outgoing.1), Poses::new(incoming.0, incoming.1));
+        let (outgoing, incoming) = (PoseSource::new(outgoing), PoseSource::new(incoming));
         if !(outgoing.is_finite() && incoming.is_finite()) {
             return Err(RegistrationError::NotFinite);
         }
-        let longest = outgoing.frames.max(incoming.frames);
+        let longest = outgoing.frames().max(incoming.frames());
         let stride =
             ((source_fps / 60.0).ceil() as usize).max(longest.div_ceil(MAX_COARSE_FRAMES)).max(1);
-        let columns = incoming.frames.div_ceil(stride);
-        let pairs = outgoing.frames.div_ceil(stride) * columns;
+        let pairs = outgoing.frames().div_ceil(stride) * incoming.frames().div_ceil(stride);
         Ok(Self {
             outgoing,
             incoming,
@@ -202,7 +260,7 @@ impl PoseSearch {
             scale: if body_height > 0.0 { REFERENCE_HEIGHT_M / body_height } else { 1.0 },
             fps: source_fps,
             stride,
-            columns,
+            columns: None,
             done: 0,
             terms: Vec::with_capacity(pairs),
             sums: [0.0; 3],
@@ -212,38 +270,38 @@ impl PoseSearch {
     /// Compares up to `rows` more frames of the outgoing clip with all of the incoming one, and
     /// returns the progress.
     pub fn advance(&mut self, rows: usize) -> Progress {
-        let total = self.outgoing.frames.div_ceil(self.stride);
-        for row in self.done..self.done.saturating_add(rows).min(total) {
-            for column in 0..self.columns {
-                let terms = self.compare(row * self.stride, column * self.stride);
+        let total = self.outgoing.frames().div_ceil(self.stride);
+        let end = self.done.saturating_add(rows).min(total);
+        let columns = self.columns.take().unwrap_or_else(|| {
+            self.incoming.poses((0..self.incoming.frames()).step_by(self.stride))
+        });
+        let compared = self.outgoing.poses((self.done..end).map(|row| row * self.stride));
+        for row in 0..compared.rows() {
+            for column in 0..columns.rows() {
+                let terms = self.compare(&compared.row(row), &columns.row(column));
                 self.terms.push(terms);
                 for (sum, term) in self.sums.iter_mut().zip(terms) {
                     *sum += f64::from(term);
                 }
             }
-            self.done = row + 1;
         }
+        self.columns = Some(columns);
+        self.done = end;
         Progress { done: self.done, total }
     }
 
     /// Returns the mean squares of one pair of frames.
-    fn compare(&self, i: usize, j: usize) -> [f32; 3] {
-        let joints = self.weights.len();
-        let of = |frame: usize| frame * joints..(frame + 1) * joints;
-        let (a, b) = (of(i), of(j));
+    fn compare(&self, a: &PoseRow<'_>, b: &PoseRow<'_>) -> [f32; 3] {
         let mut terms = [0.0_f32; 3];
         let vectors = |p: &[Vec3], q: &[Vec3]| {
             let squares =
                 p.iter().zip(q).zip(&self.weights).map(|((p, q), w)| w * p.distance_squared(*q));
             squares.sum::<f32>()
         };
-        terms[0] =
-            vectors(&self.outgoing.positions[a.clone()], &self.incoming.positions[b.clone()]);
-        terms[2] =
-            vectors(&self.outgoing.velocities[a.clone()], &self.incoming.velocities[b.clone()]);
+        terms[0] = vectors(a.positions, b.positions);
+        terms[2] = vectors(a.velocities, b.velocities);
         // 4 sin²(θ/2) = 4 (1 - (p·q)²): θ² for small angles, and the same for q and -q.
-        let rotations =
-            self.outgoing.rotations[a].iter().zip(&self.incoming.rotations[b]).zip(&self.weights);
+        let rotations = a.rotations.iter().zip(b.rotations).zip(&self.weights);
         terms[1] = rotations
             .map(|((p, q), w)| {
                 let cosine = p.dot(*q);
@@ -264,12 +322,12 @@ impl PoseSearch {
         weights: PoseWeights,
         options: &SearchOptions,
     ) -> Result<PoseMatch, RegistrationError> {
-        let total = self.outgoing.frames.div_ceil(self.stride);
+        let total = self.outgoing.frames().div_ceil(self.stride);
         if self.done < total {
             return Err(RegistrationError::Unfinished { done: self.done, total });
         }
-        let (leave, leave_grew) = options.leave_starts(self.outgoing.frames)?;
-        let (enter, enter_grew) = options.enter_starts(self.incoming.frames)?;
+        let (leave, leave_grew) = options.leave_starts(self.outgoing.frames())?;
+        let (enter, enter_grew) = options.enter_starts(self.incoming.frames())?;
         let factors = self.factors(weights);
         let mut candidates = self.candidates(&factors, &leave, &enter);
         if candidates.is_empty() {
@@ -282,23 +340,26 @@ impl PoseSearch {
             let around = |at: usize, region: &Range<usize>| {
                 at.saturating_sub(reach).max(region.start)..(at + reach + 1).min(region.end)
             };
-            for i in around(i, &leave) {
-                pairs
-                    .extend(around(j, &enter).map(|j| (cost(&factors, &self.compare(i, j)), i, j)));
+            let (left, entered) = (around(i, &leave), around(j, &enter));
+            let (a, b) = (self.outgoing.poses(left.clone()), self.incoming.poses(entered.clone()));
+            for (row, i) in left.enumerate() {
+                let row = a.row(row);
+                pairs.extend(entered.clone().enumerate().map(|(column, j)| {
+                    (cost(&factors, &self.compare(&row, &b.row(column))), i, j)
+                }));
             }
         }
+        let lowest = pairs.iter().map(|pair| pair.0).min_by(f64::total_cmp);
+        let lowest = lowest.unwrap_or(f64::INFINITY);
+        pairs.retain(|pair| pair.0 <= lowest + lowest.min(MAX_CALM_COST));
         // Equal pairs are sorted by their frames, independent of the order in which they were
         // found.
         sort_by(&mut pairs, |a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-        let lowest = pairs.first().map_or(f64::INFINITY, |pair| pair.0);
-        let alike = pairs.iter().take_while(|pair| pair.0 <= lowest + lowest.min(MAX_CALM_COST));
-        let jolt = |&&(_, i, j): &&(f64, usize, usize)| self.jolt(i, j);
-        let calm = alike.clone().find(|pair| jolt(pair) <= MAX_CALM_JOLT);
-        let best = calm.or_else(|| alike.min_by(|a, b| jolt(a).total_cmp(&jolt(b))));
         let (cost, leave, enter) =
-            best.copied().unwrap_or((f64::INFINITY, leave.start, enter.start));
+            self.calmest(&pairs).unwrap_or((f64::INFINITY, leave.start, enter.start));
+        let (a, b) = (self.outgoing.poses([leave]), self.incoming.poses([enter]));
         let [position, rotation, velocity] =
-            self.compare(leave, enter).map(|term| f64::from(term).sqrt());
+            self.compare(&a.row(0), &b.row(0)).map(|term| f64::from(term).sqrt());
         Ok(PoseMatch {
             leave,
             enter,
@@ -310,13 +371,33 @@ impl PoseSearch {
         })
     }
 
+    /// Returns the first calm pair, or the calmest one where none is.
+    fn calmest(&self, pairs: &[(f64, usize, usize)]) -> Option<(f64, usize, usize)> {
+        // Many pairs have the same frames.
+        let mut known = BTreeMap::new();
+        let mut best: Option<(f32, (f64, usize, usize))> = None;
+        for &pair in pairs {
+            let jolt = self.jolt(pair.1, pair.2, &mut known);
+            if best.is_none_or(|(least, _)| jolt < least) {
+                best = Some((jolt, pair));
+            }
+            if jolt <= MAX_CALM_JOLT {
+                return Some(pair);
+            }
+        }
+        best.map(|(_, pair)| pair)
+    }
+
     /// Returns the greatest jolt at the seam: in the last frame of the outgoing clip, and in the
-    /// first of the incoming one.
-    fn jolt(&self, leave: usize, enter: usize) -> f32 {
-        let of = |poses: &Poses, frame: Option<usize>| {
-            frame.and_then(|frame| poses.jolts.get(frame)).copied().unwrap_or(0.0)
+    /// first of the incoming one. `known` keeps those of each clip's frames.
+    fn jolt(&self, leave: usize, enter: usize, known: &mut BTreeMap<(bool, usize), f32>) -> f32 {
+        let mut of = |source: &PoseSource, is_incoming: bool, frame: usize| {
+            *known
+                .entry((is_incoming, frame))
+                .or_insert_with(|| source.jolts.at(&source.clip, frame))
         };
-        of(&self.outgoing, leave.checked_sub(1)).max(of(&self.incoming, Some(enter)))
+        let entered = of(&self.incoming, true, enter);
+        leave.checked_sub(1).map_or(0.0, |last| of(&self.outgoing, false, last)).max(entered)
     }
 
     /// Returns the factor of every term. A term that is 0 everywhere has the factor 0; if all
@@ -346,10 +427,11 @@ impl PoseSearch {
             region.start.div_ceil(self.stride)..region.end.div_ceil(self.stride)
         };
         let (rows, columns) = (samples(leave), samples(enter));
+        let stored = self.columns.as_ref().map_or(0, Poses::rows);
         let width = columns.len();
         let costs: Vec<f64> = rows
             .clone()
-            .flat_map(|row| self.terms[row * self.columns..][columns.clone()].iter())
+            .flat_map(|row| self.terms[row * stored..][columns.clone()].iter())
             .map(|terms| cost(factors, terms))
             .collect();
         let mut minima: Vec<(f64, usize, usize)> = Vec::new();
@@ -423,6 +505,8 @@ mod tests {
                 ..Walk::default()
             });
             let search = search(&a, &b);
+            let left = search.outgoing.poses(0..a.frames());
+            let entered = search.incoming.poses(0..b.frames());
             for (position, rotation, velocity) in
                 [(0.6, 0.4, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 2.0), (0.2, 0.3, 0.5)]
             {
@@ -432,7 +516,7 @@ mod tests {
                 let factors = search.factors(weights);
                 let best = (frames / 2..frames - 8)
                     .flat_map(|i| (0..b.frames() / 2).map(move |j| (i, j)))
-                    .map(|(i, j)| cost(&factors, &search.compare(i, j)))
+                    .map(|(i, j)| cost(&factors, &search.compare(&left.row(i), &entered.row(j))))
                     .fold(f64::INFINITY, f64::min);
                 assert!(
                     found.cost >= best && found.cost <= best + 0.02 + MAX_CALM_COST,
@@ -484,7 +568,7 @@ mod tests {
         .unwrap();
         let search = search(&Arc::new(jerked), &b);
         let found = search.best(weights, &options).unwrap();
-        let jolt = |found: PoseMatch| search.jolt(found.leave, found.enter);
+        let jolt = |found: PoseMatch| search.jolt(found.leave, found.enter, &mut BTreeMap::new());
         assert!(jolt(smooth) > 3.0 && jolt(found) < 1.1, "{} {}", jolt(smooth), jolt(found));
         assert!(found.cost <= smooth.cost + MAX_CALM_COST, "{found:?} {smooth:?}");
         // A frame that the user chose is used in spite of its jolt.
