@@ -63,6 +63,8 @@ impl StanceSlide {
 #[derive(Debug)]
 pub struct SlideMeter {
     feet: Vec<SlidingFoot>,
+    /// The joints from the root to the points of the feet.
+    needed: Vec<usize>,
     slides: Vec<StanceSlide>,
     frame: usize,
 }
@@ -74,6 +76,7 @@ struct SlidingFoot {
     /// Its points, and their positions in the previous frame.
     points: Vec<(usize, Vec3)>,
     before: Vec<Vec3>,
+    now: Vec<Vec3>,
     slid: Vec3,
     /// The current stance, as far as it is measured.
     stance: Option<StanceSlide>,
@@ -87,12 +90,12 @@ impl SlidingFoot {
         contacts: &Contacts,
         frame: usize,
     ) -> Option<StanceSlide> {
-        let now: Vec<Vec3> =
-            self.points.iter().map(|&(joint, point)| world.point(joint, point)).collect();
+        self.now.clear();
+        self.now.extend(self.points.iter().map(|&(joint, point)| world.point(joint, point)));
         let planted = |frame: usize| contacts.planted(self.foot, frame);
         let stands = planted(frame) && frame > 0 && planted(frame - 1);
-        let step = stillest_step(&self.before, &now).filter(|_| stands);
-        self.before = now;
+        let step = if stands { stillest_step(&self.before, &self.now) } else { None };
+        std::mem::swap(&mut self.before, &mut self.now);
         let Some(step) = step else {
             self.slid = Vec3::ZERO;
             return self.end_stance(frame);
@@ -125,20 +128,20 @@ impl SlideMeter {
     /// Returns a meter that has measured nothing yet.
     #[must_use]
     pub fn new(clip: &Clip, roles: &Roles) -> Self {
-        Self {
-            feet: Foot::of(roles.body_plan())
-                .iter()
-                .map(|&foot| SlidingFoot {
-                    foot,
-                    points: roles.foot_points(clip.skeleton(), foot),
-                    before: Vec::new(),
-                    slid: Vec3::ZERO,
-                    stance: None,
-                })
-                .collect(),
-            slides: Vec::new(),
-            frame: 0,
-        }
+        let feet: Vec<SlidingFoot> = Foot::of(roles.body_plan())
+            .iter()
+            .map(|&foot| SlidingFoot {
+                foot,
+                points: roles.foot_points(clip.skeleton(), foot),
+                before: Vec::new(),
+                now: Vec::new(),
+                slid: Vec3::ZERO,
+                stance: None,
+            })
+            .collect();
+        let joints = feet.iter().flat_map(|foot| foot.points.iter().map(|&(joint, _)| joint));
+        let needed = clip.skeleton().with_ancestors(joints);
+        Self { feet, needed, slides: Vec::new(), frame: 0 }
     }
 
     /// Processes up to `frames` more frames (at least one). Returns `false` when all are done. A
@@ -150,7 +153,7 @@ impl SlideMeter {
         let end = self.frame.saturating_add(frames.max(1)).min(clip.frames());
         let mut world = WorldPose::default();
         for frame in self.frame..end {
-            clip.world_pose_into(frame, &mut world);
+            clip.world_pose_of(frame, &self.needed, &mut world);
             for foot in &mut self.feet {
                 self.slides.extend(foot.advance(&world, contacts, frame));
             }
