@@ -57,7 +57,7 @@
 //!
 //! // The arms of the run over the legs of the walk: the knees are the walk's, bit for bit.
 //! let upper_body = LayerOptions { parts: vec![BodyPart::UpperBody], ..LayerOptions::default() };
-//! let mixed = layer(walk, roles, run, &upper_body)?;
+//! let mixed = layer(&a, &b, &upper_body)?;
 //! let knee = roles.get(Role::LeftShin).ok_or("no knee")?;
 //! let elbow = roles.get(Role::LeftForearm).ok_or("no elbow")?;
 //! assert_eq!(mixed.rotations(40)[knee], walk.rotations(40)[knee]);

@@ -2,10 +2,11 @@
 
 use super::assembly::{Assembly, moving_joints, translation_of};
 use super::{BodyPart, mask};
-use crate::clip::{Clip, ClipError, Interpolation, character_frames};
+use crate::clip::{Clip, ClipError, Motion};
 use crate::math::{Planar, quat, wrap_angle};
-use crate::skeleton::{Pose, Roles, WorldPose, world_pose_into};
+use crate::skeleton::{Pose, WorldPose, world_pose_into};
 use glam::{Quat, Vec3};
+use std::borrow::Cow;
 
 /// The greatest time between the start of a layer and the start of the base, seconds.
 const MAX_START_SECS: f64 = 3_600.0;
@@ -121,7 +122,7 @@ impl Default for LayerOptions {
 }
 
 /// Lays a part of one clip over another, for example the upper body of `over` on the legs of
-/// `base`.
+/// `base`. The parts are those of the base's roles.
 ///
 /// The result has the base's frames and rate; the layer is sampled between its frames where its
 /// rate or start differ. Joints outside the mask, and with them the root, are the base's, bit for
@@ -133,14 +134,10 @@ impl Default for LayerOptions {
 /// # Errors
 /// [`LayerError`] when the clips have different skeletons, the layer does not have a given frame,
 /// or a number is out of range.
-pub fn layer(
-    base: &Clip,
-    roles: &Roles,
-    over: &Clip,
-    options: &LayerOptions,
-) -> Result<Clip, LayerError> {
-    let times: Vec<f64> = (0..base.frames()).map(|frame| base.time_of(frame)).collect();
-    layer_timed(base, roles, over, options, &times)
+pub fn layer(base: &Motion, over: &Motion, options: &LayerOptions) -> Result<Clip, LayerError> {
+    let base_clip = base.clip();
+    let times: Vec<f64> = (0..base_clip.frames()).map(|frame| base_clip.time_of(frame)).collect();
+    layer_timed(base, over, options, &times)
 }
 
 /// Lays one clip over another as [`layer`] does, with a time map: `times` has the layer's time for
@@ -150,38 +147,57 @@ pub fn layer(
 /// # Errors
 /// The same as for [`layer`].
 pub fn layer_timed(
-    base: &Clip,
-    roles: &Roles,
-    over: &Clip,
+    base: &Motion,
+    over: &Motion,
     options: &LayerOptions,
     times: &[f64],
 ) -> Result<Clip, LayerError> {
-    check(base, over, options)?;
-    let mask = mask(base.skeleton(), roles, &options.parts, options.feather);
-    if options.weight == 0.0 || mask.iter().all(|&weight| weight == 0.0) || base.frames() == 0 {
-        return Ok(base.clone());
+    let (base_clip, over_clip) = (&**base.clip(), &**over.clip());
+    check(base_clip, over_clip, options)?;
+    let skeleton = base_clip.skeleton();
+    let mask = mask(skeleton, base.roles(), &options.parts, options.feather);
+    if options.weight == 0.0 || mask.iter().all(|&weight| weight == 0.0) || base_clip.frames() == 0
+    {
+        return Ok(base_clip.clone());
     }
-    let turned = options.keep_orientation && options.mode == LayerMode::Override;
-    // Ground frames are needed only for the root, and for orientations.
-    let stands = |clip: &Clip| {
-        if mask[0] > 0.0 || turned {
-            character_frames(clip, roles)
-        } else {
-            vec![Planar::IDENTITY; clip.frames()]
-        }
+    let joints = skeleton.joints().iter();
+    let is_border = |(joint, parent): (usize, Option<usize>)| {
+        mask[joint] > 0.0 && parent.is_some_and(|parent| mask[parent] < 1.0)
     };
+    let turned = options.keep_orientation
+        && options.mode == LayerMode::Override
+        && joints.map(|joint| joint.parent).enumerate().any(is_border);
+    // Ground frames are needed only for the root, and for orientations.
+    let has_places = mask[0] > 0.0 || turned;
+    let masked = (0..mask.len()).filter(|&joint| mask[joint] > 0.0);
+    let mut wanted = vec![false; mask.len()];
+    // Orientations are those of all joints on the way from the root.
+    let needed = if turned { skeleton.with_ancestors(masked) } else { masked.collect() };
+    for joint in needed {
+        wanted[joint] = true;
+    }
     let layering = LayerBlend {
-        base_frames: stands(base),
-        over_frames: stands(over),
-        moving: moving_joints(base, over),
-        base,
-        over,
+        base_frames: places(base, has_places),
+        over_frames: places(over, has_places),
+        moving: moving_joints(base_clip, over_clip),
+        base: base_clip,
+        over: over_clip,
         mask,
+        wanted,
         options,
         times,
         turned,
     };
     Ok(layering.clip()?)
+}
+
+/// Returns the ground frames of a motion, or as many at the origin.
+fn places(motion: &Motion, are_needed: bool) -> Cow<'_, [Planar]> {
+    if are_needed {
+        motion.ground_frames().into()
+    } else {
+        vec![Planar::IDENTITY; motion.clip().frames()].into()
+    }
 }
 
 fn check(base: &Clip, over: &Clip, options: &LayerOptions) -> Result<(), LayerError> {
@@ -211,10 +227,12 @@ fn check(base: &Clip, over: &Clip, options: &LayerOptions) -> Result<(), LayerEr
 struct LayerBlend<'a> {
     base: &'a Clip,
     over: &'a Clip,
-    base_frames: Vec<Planar>,
-    over_frames: Vec<Planar>,
+    base_frames: Cow<'a, [Planar]>,
+    over_frames: Cow<'a, [Planar]>,
     moving: Vec<usize>,
     mask: Vec<f32>,
+    /// The joints whose rotations in the layer are needed.
+    wanted: Vec<bool>,
     options: &'a LayerOptions,
     times: &'a [f64],
     turned: bool,
@@ -225,21 +243,24 @@ impl LayerBlend<'_> {
         let mut made = Assembly::new(self.base, self.over, self.base.frames());
         let reference = self.reference();
         let mut here = self.base_frames[0];
-        let (mut rotations, mut world) = (Vec::new(), WorldPose::default());
+        let (mut rotations, mut made_so_far, mut world) =
+            (Vec::new(), Vec::new(), WorldPose::default());
+        let mut over = Pose::default();
         let mut before = 0.0;
         for frame in 0..self.base.frames() {
             let time = self.times.get(frame).copied().unwrap_or_else(|| self.base.time_of(frame));
             let secs = self.options.start_secs + time;
-            let Some(over) = self.pose(secs) else {
+            if !self.pose_into(secs, &mut over) {
                 continue;
-            };
+            }
             if frame > 0 {
                 here = here.after(&self.step(frame, before, secs));
             }
             before = secs;
             let root = match self.options.mode {
                 LayerMode::Override => {
-                    self.replace(frame, &over, &here, &mut rotations, &mut world);
+                    let buffers = (&mut rotations, &mut made_so_far, &mut world);
+                    self.replace(frame, &over, &here, buffers);
                     self.root(frame, &over, &here)
                 }
                 LayerMode::Additive(_) => {
@@ -271,11 +292,14 @@ impl LayerBlend<'_> {
         }
     }
 
-    /// Returns the layer's pose at a time, with its root in the character's frame.
-    fn pose(&self, secs: f64) -> Option<Pose> {
+    /// Computes the layer's pose at a time, with its root in the character's frame.
+    fn pose_into(&self, secs: f64, pose: &mut Pose) -> bool {
         let secs = self.local(secs);
-        let pose = self.over.sample(secs, Interpolation::Linear)?;
-        Some(in_character_frame(pose, &self.ground_frame_at(secs)))
+        let is_there = self.over.sample_into(secs, Some(&self.wanted), pose);
+        if is_there {
+            into_character_frame(pose, &self.ground_frame_at(secs));
+        }
+        is_there
     }
 
     /// Returns the layer's ground frame at its own time.
@@ -352,14 +376,14 @@ impl LayerBlend<'_> {
         mean
     }
 
-    /// Computes rotations with the layer in the base's place.
+    /// Computes rotations with the layer in the base's place. The buffers are for these rotations,
+    /// the orientations that they make, and the layer's pose.
     fn replace(
         &self,
         frame: usize,
         over: &Pose,
         here: &Planar,
-        rotations: &mut Vec<Quat>,
-        world: &mut WorldPose,
+        (rotations, made, world): (&mut Vec<Quat>, &mut Vec<Quat>, &mut WorldPose),
     ) {
         let base = self.base.rotations(frame);
         let joints = self.base.skeleton().joints();
@@ -368,8 +392,7 @@ impl LayerBlend<'_> {
             // Orientations of the layer in the character's frame.
             world_pose_into(self.over.skeleton(), Vec3::ZERO, &over.rotations, [], world);
         }
-        // Orientations of the result so far.
-        let mut made: Vec<Quat> = Vec::with_capacity(if self.turned { joints.len() } else { 0 });
+        made.clear();
         rotations.clear();
         for (joint, (&base, &over)) in base.iter().zip(&over.rotations).enumerate() {
             let weight = self.weight(joint);
@@ -442,12 +465,17 @@ fn added(base: Quat, over: Quat, reference: Quat, weight: f32) -> Quat {
 
 /// Returns a pose with its root relative to a ground frame.
 fn in_character_frame(mut pose: Pose, stands: &Planar) -> Pose {
+    into_character_frame(&mut pose, stands);
+    pose
+}
+
+/// Makes the root of a pose relative to a ground frame.
+fn into_character_frame(pose: &mut Pose, stands: &Planar) {
     let here = stands.inverse();
     pose.root_translation = here.apply(pose.root_translation);
     if let Some(root) = pose.rotations.first_mut() {
         *root = quat::renormalize(here.rotation() * *root);
     }
-    pose
 }
 
 #[cfg(test)]

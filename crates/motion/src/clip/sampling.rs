@@ -19,34 +19,31 @@ pub enum Interpolation {
     Cubic,
 }
 
+/// A time is that of a frame if it is closer than this, in frames: what is left of the rounding of
+/// times and rates.
+const SAME_FRAME: f64 = 1e-6;
+
 impl Clip {
-    /// Returns the pose at `time_secs`, clamped to the clip; `None` for a clip without frames.
+    /// Returns the pose at a time, clamped to the clip; `None` for a clip without frames.
     #[must_use]
     pub fn sample(&self, time_secs: f64, interpolation: Interpolation) -> Option<Pose> {
-        let last = self.frames().checked_sub(1)?;
-        // NaN gives frame 0: `max` returns the other operand.
-        let at = (time_secs * self.fps()).max(0.0).min(last as f64);
-        let (frame, part) = (at.floor() as usize, at.fract() as f32);
-        let nearest = at.round() as usize;
+        if interpolation == Interpolation::Linear {
+            let mut pose = Pose::default();
+            return self.sample_into(time_secs, None, &mut pose).then_some(pose);
+        }
+        let (frame, part) = self.place_of(time_secs)?;
         if interpolation == Interpolation::Nearest || part == 0.0 {
-            return Some(self.pose(nearest));
+            return Some(self.pose(if part < 0.5 { frame } else { frame + 1 }));
         }
         // `part > 0` means that there is a next frame.
-        let (before, next, after) = (frame.saturating_sub(1), frame + 1, (frame + 2).min(last));
-        let position = |of: &dyn Fn(usize) -> Vec3| match interpolation {
-            Interpolation::Cubic => {
-                curve::catmull_rom(of(before), of(frame), of(next), of(after), part)
-            }
-            _ => of(frame).lerp(of(next), part),
+        let (before, next) = (frame.saturating_sub(1), frame + 1);
+        let after = (frame + 2).min(self.frames() - 1);
+        let position = |of: &dyn Fn(usize) -> Vec3| {
+            curve::catmull_rom(of(before), of(frame), of(next), of(after), part)
         };
         let rotation = |joint: usize| {
             let of = |f: usize| self.rotations(f)[joint];
-            match interpolation {
-                Interpolation::Cubic => {
-                    cubic_rotation(of(before), of(frame), of(next), of(after), part)
-                }
-                _ => quat::slerp(of(frame), of(next), part),
-            }
+            cubic_rotation(of(before), of(frame), of(next), of(after), part)
         };
         Some(Pose {
             root_translation: position(&|f| self.root_translations()[f]),
@@ -57,6 +54,53 @@ impl Clip {
                 .map(|track| (track.joint, position(&|f| track.values[f])))
                 .collect(),
         })
+    }
+
+    /// Computes the pose at a time, clamped to the clip, into a buffer: [`Interpolation::Linear`].
+    /// A joint for which `wanted` is `false` gets its rotation of the frame before. Returns `false`
+    /// for a clip without frames.
+    pub(crate) fn sample_into(
+        &self,
+        time_secs: f64,
+        wanted: Option<&[bool]>,
+        pose: &mut Pose,
+    ) -> bool {
+        let Some((frame, part)) = self.place_of(time_secs) else {
+            return false;
+        };
+        let next = if part > 0.0 { frame + 1 } else { frame };
+        let position = |values: &[Vec3]| match part {
+            0.0 => values[frame],
+            _ => values[frame].lerp(values[next], part),
+        };
+        pose.root_translation = position(self.root_translations());
+        pose.translations.clear();
+        let tracks = self.translations().iter();
+        pose.translations.extend(tracks.map(|track| (track.joint, position(&track.values))));
+        pose.rotations.clear();
+        pose.rotations.extend_from_slice(self.rotations(frame));
+        if part > 0.0 {
+            let pairs = pose.rotations.iter_mut().zip(self.rotations(next));
+            for (joint, (rotation, &next)) in pairs.enumerate() {
+                if wanted.is_none_or(|wanted| wanted[joint]) {
+                    *rotation = quat::slerp(*rotation, next, part);
+                }
+            }
+        }
+        true
+    }
+
+    /// Returns the frame at or before a time that is clamped to the clip, and the part of the way
+    /// to the next, 0 in a frame; `None` for a clip without frames.
+    fn place_of(&self, time_secs: f64) -> Option<(usize, f32)> {
+        let last = self.frames().checked_sub(1)?;
+        // NaN gives frame 0: `max` returns the other operand.
+        let at = (time_secs * self.fps()).max(0.0).min(last as f64);
+        let nearest = at.round();
+        if (at - nearest).abs() < SAME_FRAME {
+            return Some((nearest as usize, 0.0));
+        }
+        Some((at.floor() as usize, at.fract() as f32))
     }
 }
 

@@ -90,7 +90,8 @@ impl PartialEq for LayerInputs {
 /// A reading of B: a clip, and the time in it for each frame of A.
 #[derive(Clone, Debug)]
 struct Reading {
-    over: Arc<Clip>,
+    /// With the roles of A.
+    over: Arc<Motion>,
     /// The time for every frame of A, seconds.
     times: Arc<Vec<f64>>,
 }
@@ -154,33 +155,37 @@ impl LayerCache {
         pair: &Arc<Pair>,
         wanted: (choices::LayerFit, f64),
     ) -> Result<TimedLayer, LabError> {
-        let (a, b) = (pair.a.clip(), pair.incoming.clip());
+        let (a, b) = (pair.a.clip(), &pair.incoming);
+        let roles = pair.a.roles();
+        let of_clip = |clip: Arc<Clip>| Arc::new(Motion::with_roles(clip, roles));
         let times =
             || Arc::new((0..a.frames()).map(|frame| a.time_of(frame)).collect::<Vec<f64>>());
-        let plain = || Reading { over: Arc::clone(b), times: times() };
+        let whole = || {
+            if b.roles() == roles { Arc::clone(b) } else { of_clip(Arc::clone(b.clip())) }
+        };
+        let plain = || Reading { over: whole(), times: times() };
         let (wanted_fit, start) = wanted;
         let in_step = if wanted_fit == choices::LayerFit::Step { self.in_step(pair) } else { None };
-        let fits = start >= 0.0 && start + a.duration_secs() <= b.duration_secs();
+        let fits = start >= 0.0 && start + a.duration_secs() <= b.clip().duration_secs();
         let (reading, fit) = match (in_step, wanted_fit) {
             (Some(reading), _) => (reading, LayerFit::InStep),
             (None, choices::LayerFit::Hold) => (plain(), LayerFit::Held),
             _ if fits => (plain(), LayerFit::Once),
             _ => {
-                let over = closed(pair).unwrap_or_else(|| Arc::clone(b));
+                let over = closed(pair).map_or_else(whole, of_clip);
                 (Reading { over, times: times() }, LayerFit::Looped)
             }
         };
-        let roles = pair.a.roles();
-        let whole = LayerOptions {
+        let all = LayerOptions {
             parts: vec![BodyPart::Whole],
             feather: 0,
             start_secs: start,
             time: time_of(fit),
             ..LayerOptions::default()
         };
-        let shown = layer_timed(a, roles, &reading.over, &whole, &reading.times)?;
-        let shown =
-            Arc::new(Motion::with_roles(shown.with_name(b.name()), roles).with_feet(pair.b.feet()));
+        let shown = layer_timed(&pair.a, &reading.over, &all, &reading.times)?;
+        let shown = Motion::with_roles(shown.with_name(b.clip().name()), roles);
+        let shown = Arc::new(shown.with_feet(pair.b.feet()));
         Ok(TimedLayer {
             pair: Arc::clone(pair),
             wanted,
@@ -201,8 +206,9 @@ impl LayerCache {
         }
         let reading = GaitCycle::find(&pair.incoming).ok().and_then(|cycle| {
             let phases = strike_phases(pair.a.contacts(), cycle.events().right_strike)?;
+            let over = with_first_frame_repeated(cycle.looped())?;
             Some(Reading {
-                over: with_first_frame_repeated(cycle.looped())?,
+                over: Arc::new(Motion::with_roles(over, pair.a.roles())),
                 times: Arc::new(phases.into_iter().map(|phase| phase * cycle.secs()).collect()),
             })
         });
@@ -268,7 +274,7 @@ impl LabInputs for LayerInputs {
         let (a, roles) = (&pair.a, pair.a.roles().clone());
         let options = LayerOptions { time: time_of(timed.fit), ..self.options.clone() };
         let Reading { over, times } = &timed.reading;
-        let made = layer_timed(a.clip(), &roles, over, &options, times)?;
+        let made = layer_timed(a, over, &options, times)?;
         let free =
             Arc::new(made.with_name(format!("{} + {}", a.clip().name(), pair.b.clip().name())));
         let shares: Vec<f32> = mask(a.clip().skeleton(), &roles, &options.parts, options.feather)

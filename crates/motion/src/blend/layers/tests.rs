@@ -2,11 +2,23 @@
 
 use super::*;
 use crate::clip::JointTranslations;
+use crate::clip::character_frames;
 use crate::clip::fixtures::{wander, wander_by};
-use crate::skeleton::{Role, fixtures};
+use crate::skeleton::{Role, Roles, fixtures};
 use crate::synth::{Action, Params, synthesize};
 use proptest::prelude::*;
 use std::sync::Arc;
+
+/// Lays clips over each other that have the same roles.
+fn layer(
+    base: &Clip,
+    roles: &Roles,
+    over: &Clip,
+    options: &LayerOptions,
+) -> Result<Clip, LayerError> {
+    let [base, over] = [base, over].map(|clip| Motion::with_roles(clip.clone(), roles));
+    super::layer(&base, &over, options)
+}
 
 fn options(parts: &[BodyPart]) -> LayerOptions {
     LayerOptions { parts: parts.to_vec(), feather: 0, ..LayerOptions::default() }
@@ -222,7 +234,8 @@ fn layer_timed_samples_the_given_times() {
     let told = LayerOptions { start_secs: over.time_of(1), ..options(&[BodyPart::Whole]) };
     // Twice as fast, and across its end.
     let times: Vec<f64> = (0..8).map(|frame| over.time_of(2 * frame)).collect();
-    let out = layer_timed(&base, &roles, &over, &told, &times).unwrap();
+    let motions = [&base, &over].map(|clip| Motion::with_roles(clip.clone(), &roles));
+    let out = layer_timed(&motions[0], &motions[1], &told, &times).unwrap();
     let joint = roles.get(Role::RightHand).unwrap();
     for frame in 0..8 {
         let wanted = over.rotations((1 + 2 * frame) % 10)[joint];
