@@ -87,7 +87,7 @@ pub(crate) use section::{
 pub(crate) use segmented::{labelled_segmented_ui, segmented_ui};
 pub(crate) use slider_row::{Mark, SliderResponse, SliderRow, Source, slider_row_ui};
 pub(crate) use stick::{stick_size, stick_ui};
-pub(crate) use strip::{Arc, Fate, Stretch, Strip, strip_ui};
+pub(crate) use strip::{Arc, Fate, Stretch, Strip, drawn_arcs, strip_ui};
 pub(crate) use switch_row::{helped_switch_row_ui, switch_row_ui};
 pub(crate) use tabs::tabs_ui;
 pub(crate) use timeline::{

@@ -47,6 +47,16 @@ pub(crate) struct Arc {
     pub(crate) faint: bool,
 }
 
+/// Returns the indices of the arcs that are drawn: of too many the most probable ones.
+pub(crate) fn drawn_arcs(arcs: &[Arc]) -> Vec<usize> {
+    let mut drawn: Vec<usize> = (0..arcs.len()).collect();
+    if drawn.len() > MAX_ARCS {
+        sort_by(&mut drawn, |&a, &b| arcs[b].weight.total_cmp(&arcs[a].weight));
+        drawn.truncate(MAX_ARCS);
+    }
+    drawn
+}
+
 /// The content of the strip.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Strip<'a> {
@@ -58,6 +68,8 @@ pub(crate) struct Strip<'a> {
     pub(crate) stretches: &'a [Stretch],
     /// The arcs.
     pub(crate) arcs: &'a [Arc],
+    /// The indices of those that are drawn ([`drawn_arcs`]).
+    pub(crate) drawn: &'a [usize],
     /// The current frame.
     pub(crate) now: Option<usize>,
     /// The highlighted part.
@@ -123,20 +135,16 @@ pub(crate) fn strip_ui(strip: &Strip<'_>, height: f32, ui: &mut Ui) -> StripResp
             pos2(to, bars.min),
         ]
     };
-    let mut shown: Vec<usize> = (0..strip.arcs.len()).collect();
-    if shown.len() > MAX_ARCS {
-        sort_by(&mut shown, |&a, &b| strip.arcs[b].weight.total_cmp(&strip.arcs[a].weight));
-        shown.truncate(MAX_ARCS);
-    }
+    let drawn = || strip.drawn.iter().filter_map(|&index| Some((index, strip.arcs.get(index)?)));
     let pointer = response.hover_pos();
     let hovered_arc = pointer.filter(|pos| pos.y < bars.min - 1.0).and_then(|pos| {
-        let off = |index: usize| (index, distance(&curve(&strip.arcs[index]), pos));
-        let nearest = shown.iter().map(|&index| off(index)).min_by(|a, b| a.1.total_cmp(&b.1));
+        let off = drawn().map(|(index, arc)| (index, distance(&curve(arc), pos)));
+        let nearest = off.min_by(|a, b| a.1.total_cmp(&b.1));
         nearest.filter(|(_, off)| *off <= REACH).map(|(index, _)| index)
     });
     let painter = ui.painter_at(whole.expand(2.0));
-    let draw = |index: usize, stroke: Stroke| {
-        let points = curve(&strip.arcs[index]);
+    let draw = |arc: &Arc, stroke: Stroke| {
+        let points = curve(arc);
         painter.add(CubicBezierShape::from_points_stroke(
             points,
             false,
@@ -144,17 +152,16 @@ pub(crate) fn strip_ui(strip: &Strip<'_>, height: f32, ui: &mut Ui) -> StripResp
             stroke,
         ));
     };
-    for &index in &shown {
-        let arc = &strip.arcs[index];
+    for (_, arc) in drawn() {
         let clear = if arc.faint { 0.10 } else { 0.16 + 0.7 * arc.weight.sqrt() };
         draw(
-            index,
+            arc,
             Stroke::new((0.7 + 2.6 * arc.weight) * scale, palette.muted.gamma_multiply(clear)),
         );
     }
     for (index, color) in [(hovered_arc, palette.text), (strip.lit_arc, palette.accent)] {
-        if let Some(index) = index.filter(|&index| index < strip.arcs.len()) {
-            draw(index, Stroke::new(2.4 * scale, color));
+        if let Some(arc) = index.and_then(|index| strip.arcs.get(index)) {
+            draw(arc, Stroke::new(2.4 * scale, color));
         }
     }
     // The first of the other colours is as blue as the main component.

@@ -201,6 +201,9 @@ pub struct MotionGraph {
     pub(super) options: GraphOptions,
     pub(super) graph: DiGraph<Stretch, Way>,
     pub(super) jumps: Vec<Jump>,
+    /// The index of each transition in the graph that this one is a part of; its own in a whole
+    /// one.
+    origins: Vec<usize>,
     left_out: usize,
 }
 
@@ -250,6 +253,7 @@ impl MotionGraph {
             options: *options,
             graph: DiGraph::new(),
             jumps: Vec::new(),
+            origins: Vec::new(),
             left_out: 0,
         };
         made.add_stretches(&chosen);
@@ -272,6 +276,7 @@ impl MotionGraph {
                 made.jumps.push(jump);
             }
         }
+        made.origins = (0..made.jumps.len()).collect();
         Ok(made)
     }
 
@@ -374,6 +379,17 @@ impl MotionGraph {
         }
     }
 
+    /// Returns the index of an edge's transition among those of the graph that this one was
+    /// [pruned](Self::pruned_to) from, or of this one where it is whole; `None` where the clip
+    /// continues, and for an unknown edge.
+    #[must_use]
+    pub fn origin(&self, edge: EdgeIndex) -> Option<usize> {
+        match self.graph.edge_weight(edge)? {
+            Way::Jump(index) => self.origins.get(*index).copied(),
+            Way::Continue => None,
+        }
+    }
+
     /// Returns the number of frames between the starts of the two nodes of an edge.
     #[must_use]
     pub fn frames_of(&self, edge: EdgeIndex) -> usize {
@@ -443,6 +459,7 @@ impl MotionGraph {
             options: self.options,
             graph: DiGraph::new(),
             jumps: Vec::new(),
+            origins: Vec::new(),
             left_out: self.left_out,
         };
         let mut new = vec![None; self.graph.node_count()];
@@ -459,8 +476,9 @@ impl MotionGraph {
                 continue;
             };
             let way = match (edge.weight(), self.jump(edge.id())) {
-                (Way::Jump(_), Some(jump)) => {
+                (Way::Jump(index), Some(jump)) => {
                     pruned.jumps.push(*jump);
+                    pruned.origins.push(self.origins[*index]);
                     Way::Jump(pruned.jumps.len() - 1)
                 }
                 _ => Way::Continue,

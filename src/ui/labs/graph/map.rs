@@ -13,7 +13,6 @@ use segue_motion::graph::{Choices, DistanceDetail, Place};
 use segue_session::LabId;
 use segue_session::{BuiltGraph, DistanceField, Distances, Session, Walk};
 use segue_text::Message;
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Returns the map's share of the room beside the parameters.
@@ -41,6 +40,8 @@ pub(crate) struct MapDrawing {
     pub(super) ends: Vec<[Place; 2]>,
     marks: Vec<MatrixMark>,
     pub(super) arcs: Vec<kit::Arc>,
+    /// The indices of the arcs that are drawn.
+    pub(super) drawn_arcs: Vec<usize>,
     pub(super) stretches: Vec<Stretch>,
 }
 
@@ -66,31 +67,34 @@ impl MapDrawing {
 
     fn new(built: &Arc<BuiltGraph>, choices: Option<&Arc<Choices>>) -> Self {
         let (whole, graph, set) = (built.whole(), built.graph(), built.clips().set());
-        let mut probable: BTreeMap<[Place; 2], f64> = BTreeMap::new();
-        for edge in graph.graph().edge_indices() {
-            if let Some(jump) = graph.jump(edge) {
-                probable.insert([jump.leave, jump.enter], 0.0);
+        // The probability of each transition of the whole graph; `None` where walks cannot take it.
+        let mut probable = vec![None; whole.jumps().len()];
+        let mut set_probable = |edge, p| {
+            if let Some(slot) = graph.origin(edge).and_then(|index| probable.get_mut(index)) {
+                *slot = Some(p);
             }
+        };
+        for edge in graph.graph().edge_indices() {
+            set_probable(edge, 0.0);
         }
         for node in graph.graph().node_indices() {
             for (edge, p) in choices.into_iter().flat_map(|choices| choices.probabilities(node)) {
-                if let Some(jump) = graph.jump(edge) {
-                    probable.insert([jump.leave, jump.enter], p);
-                }
+                set_probable(edge, p);
             }
         }
         let number = |place: Place| set.number(place).unwrap_or(0);
         let ends: Vec<[Place; 2]> =
             whole.jumps().iter().map(|jump| [jump.leave, jump.enter]).collect();
-        let marks = ends.iter().map(|ends| MatrixMark {
+        let marks = ends.iter().zip(&probable).map(|(ends, p)| MatrixMark {
             at: ends.map(|end| number(end) as f32),
-            faint: !probable.contains_key(ends),
+            faint: p.is_none(),
         });
-        let arcs = ends.iter().map(|ends| kit::Arc {
+        let arcs = ends.iter().zip(&probable).map(|(ends, p)| kit::Arc {
             ends: ends.map(number),
-            weight: probable.get(ends).copied().unwrap_or(0.0) as f32,
-            faint: !probable.contains_key(ends),
+            weight: p.unwrap_or(0.0) as f32,
+            faint: p.is_none(),
         });
+        let arcs: Vec<kit::Arc> = arcs.collect();
         let dead = whole.dead_ends();
         let stretches = whole.graph().node_indices().filter_map(|node| {
             let stretch = whole.graph().node_weight(node)?;
@@ -105,7 +109,8 @@ impl MapDrawing {
         });
         Self {
             marks: marks.collect(),
-            arcs: arcs.collect(),
+            drawn_arcs: kit::drawn_arcs(&arcs),
+            arcs,
             stretches: stretches.collect(),
             ends,
             built: Arc::clone(built),

@@ -106,6 +106,7 @@ fn strip_ui(session: &Session, walk: &Arc<Walk>, state: &mut UiState, out: &mut 
         bars: &bars,
         stretches: &drawn.stretches,
         arcs: &drawn.arcs,
+        drawn: &drawn.drawn_arcs,
         now: at.and_then(|at| set.number(at.place)),
         lit_stretch,
         lit_arc: drawn.pointed_or_lit(state.labs.graph.last_jump, Some(walk), session.now_secs()),

@@ -140,6 +140,14 @@ fn walk_in_a_pruned_graph_is_endless_and_determined_by_its_seed() {
     assert_eq!(graph.dead_ends(), []);
     assert_eq!(graph.components().len(), 1);
     assert_eq!(graph.components()[0].len(), graph.graph().node_count());
+    // Each of its transitions is one of the whole graph.
+    assert!(graph.jumps().len() < whole.jumps().len());
+    for made in [&*graph, &whole] {
+        for edge in made.graph().edge_indices() {
+            let origin = made.origin(edge).map(|index| whole.jumps()[index]);
+            assert_eq!(origin.as_ref(), made.jump(edge));
+        }
+    }
     let edges = |seed| {
         let mut walker = walker(&graph, &WeightOptions::default(), seed);
         (0..2_000).map(|_| walker.next_edge().unwrap().index()).collect::<Vec<_>>()
