@@ -132,5 +132,5 @@ pub use retarget::{RetargetError, retarget};
 pub use root_motion::{character_frames, facing, ground_speed};
 pub use sampling::Interpolation;
 pub use storage::{Clip, ClipError, JointTranslations, Provenance, UpAxis};
-pub(crate) use usual::{UsualMotion, turn};
+pub(crate) use usual::{UsualMotion, foot_step_m, turn};
 pub use velocity::{Velocities, velocities};

@@ -3,19 +3,16 @@
 use super::{Motion, stillest_step, turn_change};
 use crate::clip::Clip;
 use crate::math::{quat, stats};
-use crate::skeleton::{Foot, Roles, WorldPose};
+use crate::skeleton::{Foot, WorldPose};
 use glam::{Quat, Vec3};
 
 /// The number of steps from which usual values are computed: enough for a 99th percentile, and
 /// bounded for long clips.
 const SAMPLES: usize = 1_000;
 
-/// The usual speeds of a motion's joints and root, and the motion of its feet.
+/// The usual speeds of a motion's joints and root.
 #[derive(Clone, Debug)]
 pub(crate) struct UsualMotion {
-    /// Per foot ([`Foot::of`]) and frame: the distance that the stillest point of the foot moves
-    /// over the ground in the step into that frame, metres.
-    pub(crate) slides: Vec<Vec<f32>>,
     /// Per joint, the 99th percentile of the turn from one frame to the next, radians.
     pub(crate) turn: Vec<f32>,
     /// Per joint, the 99th percentile of the change of that turn (as a rotation vector) from one
@@ -26,7 +23,7 @@ pub(crate) struct UsualMotion {
 }
 
 impl UsualMotion {
-    /// Measures a motion. O(frames × joints).
+    /// Measures a motion. O(frames + joints).
     pub(super) fn of(motion: &Motion) -> Self {
         let clip = motion.clip();
         let (turn, change) = usual_turns(clip);
@@ -36,7 +33,7 @@ impl UsualMotion {
             .map(|pair| pair[0].shift.distance(pair[1].shift) as f32)
             .collect();
         let step = stats::percentile(&steps, 0.99).unwrap_or(0.0);
-        Self { slides: slides(clip, motion.roles()), turn, change, step }
+        Self { turn, change, step }
     }
 }
 
@@ -63,20 +60,19 @@ fn usual_turns(clip: &Clip) -> (Vec<f32>, Vec<f32>) {
         .unzip()
 }
 
-fn slides(clip: &Clip, roles: &Roles) -> Vec<Vec<f32>> {
-    let feet = Foot::of(roles.body_plan()).iter();
-    let points: Vec<_> = feet.map(|&foot| roles.foot_points(clip.skeleton(), foot)).collect();
-    let mut slides = vec![Vec::with_capacity(clip.frames()); points.len()];
-    let mut before: Vec<Vec<Vec3>> = vec![Vec::new(); points.len()];
+/// Returns the distance that the stillest point of a foot moves over the ground in the step into a
+/// frame, metres; 0 in the first frame, and where there is no such frame or foot.
+pub(crate) fn foot_step_m(motion: &Motion, foot: Foot, frame: usize) -> f32 {
+    let clip = motion.clip();
+    let Some(before) = frame.checked_sub(1).filter(|_| frame < clip.frames()) else {
+        return 0.0;
+    };
+    let points = motion.roles().foot_points(clip.skeleton(), foot);
+    let needed = clip.skeleton().with_ancestors(points.iter().map(|&(joint, _)| joint));
     let mut world = WorldPose::default();
-    for frame in 0..clip.frames() {
-        clip.world_pose_into(frame, &mut world);
-        for ((points, slides), before) in points.iter().zip(&mut slides).zip(&mut before) {
-            let now: Vec<Vec3> =
-                points.iter().map(|&(joint, point)| world.point(joint, point)).collect();
-            slides.push(stillest_step(before, &now).map_or(0.0, Vec3::length));
-            *before = now;
-        }
-    }
-    slides
+    let [before, after] = [before, frame].map(|frame| {
+        clip.world_pose_of(frame, &needed, &mut world);
+        points.iter().map(|&(joint, point)| world.point(joint, point)).collect::<Vec<Vec3>>()
+    });
+    stillest_step(&before, &after).map_or(0.0, Vec3::length)
 }

@@ -3,7 +3,9 @@
 use super::Extreme;
 use super::lowest::LowPoints;
 use crate::blend::Concatenation;
-use crate::clip::{Clip, Motion, UsualMotion, facing, stillest_step, turn, turn_change};
+use crate::clip::{
+    Clip, Motion, UsualMotion, facing, foot_step_m, stillest_step, turn, turn_change,
+};
 use crate::math::{Planar, wrap_angle};
 use crate::skeleton::{Foot, Roles, WorldPose};
 use glam::{DVec2, Vec3};
@@ -184,10 +186,7 @@ impl Subject<'_> {
     fn foot_in_source(&self, foot: Foot, frame: usize) -> (bool, f32) {
         let (motion, frame) =
             if frame < self.handover { (self.a, Some(frame)) } else { (self.b, self.in_b(frame)) };
-        let slide = frame
-            .and_then(|frame| motion.usual().slides.get(foot.index())?.get(frame))
-            .copied()
-            .unwrap_or(0.0);
+        let slide = frame.map_or(0.0, |frame| foot_step_m(motion, foot, frame));
         (frame.is_some_and(|frame| motion.contacts().planted(foot, frame)), slide)
     }
 }
