@@ -68,12 +68,13 @@ pub(crate) struct LabSet {
 
 impl LabSet {
     /// Returns all sliced work, in the order of scheduling.
-    fn sliced(&self) -> [&dyn Sliced; 12] {
+    fn sliced(&self) -> [&dyn Sliced; 13] {
         [
             &self.analyses,
             &self.pairs,
             &self.blends,
             &self.cycles,
+            &self.layers,
             &self.registrations,
             &self.views,
             &self.cleaned,
@@ -85,12 +86,13 @@ impl LabSet {
         ]
     }
 
-    fn sliced_mut(&mut self) -> ([&mut dyn Sliced; 12], &mut JobBoard) {
-        let sliced: [&mut dyn Sliced; 12] = [
+    fn sliced_mut(&mut self) -> ([&mut dyn Sliced; 13], &mut JobBoard) {
+        let sliced: [&mut dyn Sliced; 13] = [
             &mut self.analyses,
             &mut self.pairs,
             &mut self.blends,
             &mut self.cycles,
+            &mut self.layers,
             &mut self.registrations,
             &mut self.views,
             &mut self.cleaned,

@@ -3,11 +3,14 @@
 use super::feet::{Lock, slide, slide_before, with_feet};
 use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs};
 use super::pair::{Pair, Pairs};
+use super::request_cache::RequestCache;
+use super::sliced::{JobKind, Sliced};
 use super::{LabFacts, Outcome, PlacedClip, Slot};
 use crate::choices;
+use crate::jobs::JobBoard;
 use crate::labs::LabError;
 use crate::metrics::{Metric, MetricId};
-use crate::params::{Key, MAX_PANES, Params};
+use crate::params::{Key, Params};
 use segue_motion::blend::{
     BodyPart, LayerMode, LayerOptions, LayerTime, Reference, layer_timed, mask,
 };
@@ -17,6 +20,7 @@ use segue_motion::math::Planar;
 use segue_motion::metrics::{Deviations, deepest_penetration, worst_foot_slide};
 use segue_motion::transition::{Loop, LoopOptions, close_loop};
 use segue_text::{Message, msg};
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// The Layers lab: a part of one clip over another.
@@ -41,7 +45,8 @@ impl<S: HasPart<Pairs> + HasPart<LayerCache>> Lab<S> for LayersLab {
         let Some(pair) = HasPart::<Pairs>::part(labs).of_slots(&clips.slots, params)? else {
             return Ok(None);
         };
-        Ok(Some(Inputs::new(HasPart::<LayerCache>::part(labs).inputs(&pair, params)?)))
+        let inputs = HasPart::<LayerCache>::part(labs).inputs(&pair, params)?;
+        Ok(inputs.map(Inputs::new))
     }
 }
 
@@ -99,9 +104,6 @@ struct Reading {
 /// B in A's time.
 #[derive(Debug)]
 struct TimedLayer {
-    pair: Arc<Pair>,
-    /// The chosen fit, and the start in seconds.
-    wanted: (choices::LayerFit, f64),
     reading: Reading,
     fit: LayerFit,
     has_no_steps: bool,
@@ -109,52 +111,88 @@ struct TimedLayer {
     shown: Arc<Motion>,
 }
 
+/// The parameters of B in A's time: the chosen fit, and the start in seconds.
+type Timing = (choices::LayerFit, f64);
+
+/// A clip of up to this number of frames gets its layer in the frame in which it is chosen: about
+/// 6 ms in a browser.
+const AT_ONCE: usize = 1_500;
+
 /// A cache of B in A's time.
 #[derive(Debug, Default)]
 pub(crate) struct LayerCache {
-    /// B in step with A, if both have steps.
-    in_step: Option<(Arc<Pair>, Option<Reading>)>,
-    /// The last ones requested, at most one for each pane.
-    timed: Vec<Arc<TimedLayer>>,
+    in_step: InStep,
+    timed: RequestCache<(Arc<Pair>, Timing), (), Result<Arc<TimedLayer>, LabError>>,
 }
 
+/// The last B in step with A, if both have steps.
+#[derive(Debug, Default)]
+struct InStep(Option<(Arc<Pair>, Option<Reading>)>);
+
 impl LayerCache {
-    /// Prepares the inputs, with which the layer itself is a pure function.
+    /// Prepares the inputs, with which the layer itself is a pure function; `None` if that takes
+    /// longer than a frame: call [`work`](Self::work), then ask again.
     pub(crate) fn inputs(
         &mut self,
         pair: &Arc<Pair>,
         params: &Params,
-    ) -> Result<LayerInputs, LabError> {
-        Ok(LayerInputs {
+    ) -> Result<Option<LayerInputs>, LabError> {
+        let timed = self.timed(pair, (params.choice(), params.number(Key::LayerStart)))?;
+        Ok(timed.map(|timed| LayerInputs {
             pair: Arc::clone(pair),
-            timed: self.timed(pair, params)?,
+            timed,
             options: options_of(params),
             foot_lock: Lock::of(params),
+        }))
+    }
+
+    fn timed(
+        &mut self,
+        pair: &Arc<Pair>,
+        timing: Timing,
+    ) -> Result<Option<Arc<TimedLayer>>, LabError> {
+        let is_it = |(known, by): &(Arc<Pair>, Timing)| Arc::ptr_eq(known, pair) && *by == timing;
+        if let Some(known) = self.timed.request(|of, _| is_it(of)) {
+            return known.clone().map(Some);
+        }
+        if self.timed.is_under_way(is_it) {
+            return Ok(None);
+        }
+        let of = (Arc::clone(pair), timing);
+        if pair.a.clip().frames() > AT_ONCE {
+            self.timed.begin(of, ());
+            return Ok(None);
+        }
+        let timed = Arc::new(self.in_step.layer(pair, timing)?);
+        self.timed.keep(of, Ok(Arc::clone(&timed)));
+        Ok(Some(timed))
+    }
+}
+
+impl Sliced for LayerCache {
+    fn clear_requests(&mut self) {
+        self.timed.clear_requests();
+    }
+
+    fn work(&mut self, _jobs: &mut JobBoard) -> bool {
+        let Self { in_step, timed } = self;
+        timed.work(|(pair, timing), ()| {
+            ControlFlow::Break(in_step.layer(pair, *timing).map(Arc::new))
         })
     }
 
-    fn timed(&mut self, pair: &Arc<Pair>, params: &Params) -> Result<Arc<TimedLayer>, LabError> {
-        let wanted = (params.choice(), params.number(Key::LayerStart));
-        let known = self
-            .timed
-            .iter()
-            .find(|timed| Arc::ptr_eq(&timed.pair, pair) && timed.wanted == wanted);
-        if let Some(known) = known {
-            return Ok(Arc::clone(known));
-        }
-        let timed = Arc::new(self.read(pair, wanted)?);
-        if self.timed.len() >= MAX_PANES {
-            self.timed.remove(0);
-        }
-        self.timed.push(Arc::clone(&timed));
-        Ok(timed)
+    fn is_ready(&self) -> bool {
+        self.timed.is_ready()
     }
 
-    fn read(
-        &mut self,
-        pair: &Arc<Pair>,
-        wanted: (choices::LayerFit, f64),
-    ) -> Result<TimedLayer, LabError> {
+    fn progress(&self) -> Option<(JobKind, f64)> {
+        self.timed.under_way().next().map(|_| (JobKind::Analyzing, 0.0))
+    }
+}
+
+impl InStep {
+    /// Returns B in A's time.
+    fn layer(&mut self, pair: &Arc<Pair>, (chosen, start): Timing) -> Result<TimedLayer, LabError> {
         let (a, b) = (pair.a.clip(), &pair.incoming);
         let roles = pair.a.roles();
         let of_clip = |clip: Arc<Clip>| Arc::new(Motion::with_roles(clip, roles));
@@ -164,10 +202,9 @@ impl LayerCache {
             if b.roles() == roles { Arc::clone(b) } else { of_clip(Arc::clone(b.clip())) }
         };
         let plain = || Reading { over: whole(), times: times() };
-        let (wanted_fit, start) = wanted;
-        let in_step = if wanted_fit == choices::LayerFit::Step { self.in_step(pair) } else { None };
+        let in_step = if chosen == choices::LayerFit::Step { self.reading(pair) } else { None };
         let fits = start >= 0.0 && start + a.duration_secs() <= b.clip().duration_secs();
-        let (reading, fit) = match (in_step, wanted_fit) {
+        let (reading, fit) = match (in_step, chosen) {
             (Some(reading), _) => (reading, LayerFit::InStep),
             (None, choices::LayerFit::Hold) => (plain(), LayerFit::Held),
             _ if fits => (plain(), LayerFit::Once),
@@ -187,19 +224,17 @@ impl LayerCache {
         let shown = Motion::with_roles(shown.with_name(b.clip().name()), roles);
         let shown = Arc::new(shown.with_feet(pair.b.feet()));
         Ok(TimedLayer {
-            pair: Arc::clone(pair),
-            wanted,
             reading,
             fit,
-            has_no_steps: wanted_fit == choices::LayerFit::Step && fit != LayerFit::InStep,
+            has_no_steps: chosen == choices::LayerFit::Step && fit != LayerFit::InStep,
             shown,
         })
     }
 
     /// Returns one cycle of B, and for every frame of A the time in that cycle at which B's feet
     /// are where A's are.
-    fn in_step(&mut self, pair: &Arc<Pair>) -> Option<Reading> {
-        if let Some((known, reading)) = &self.in_step
+    fn reading(&mut self, pair: &Arc<Pair>) -> Option<Reading> {
+        if let Some((known, reading)) = &self.0
             && Arc::ptr_eq(known, pair)
         {
             return reading.clone();
@@ -212,7 +247,7 @@ impl LayerCache {
                 times: Arc::new(phases.into_iter().map(|phase| phase * cycle.secs()).collect()),
             })
         });
-        self.in_step = Some((Arc::clone(pair), reading.clone()));
+        self.0 = Some((Arc::clone(pair), reading.clone()));
         reading
     }
 }

@@ -105,3 +105,24 @@ fn layers_update_at_once_and_report_how_their_time_fits() {
         off("rest")
     );
 }
+
+#[test]
+fn layer_on_a_long_clip_is_prepared_between_frames() {
+    let mut session = Session::new();
+    let link = "lab=layers&a=walk(make_seconds:30)".to_owned();
+    session.apply(Command::OpenLink(link)).unwrap();
+    let is_prepared =
+        |session: &Session| session.main_outcome().is_some_and(|outcome| outcome.layer().is_some());
+    assert!(!is_prepared(&session));
+    assert!(session.jobs().iter().any(|job| job.kind == crate::JobKind::Analyzing));
+    while session.work() {}
+    assert!(is_prepared(&session) && session.jobs().is_empty());
+    let outcome = session.main_outcome().unwrap();
+    assert_eq!(outcome.layer().unwrap().fit, crate::LayerFit::InStep);
+    // What is prepared serves all weights: a change of them shows at once.
+    session.apply(Command::Set(vec![(Key::LayerWeight, Value::Number(0.5))])).unwrap();
+    assert_eq!(
+        session.main_outcome().unwrap().layer().unwrap().shares.iter().copied().fold(0.0, f32::max),
+        0.5
+    );
+}
