@@ -2,6 +2,7 @@
 
 use super::feet::{Lock, locking, slide, slide_before};
 use super::lab::{Beside, HasPart, Inputs, Lab, LabClips, LabInputs};
+use super::request_cache::RequestCache;
 use super::sliced::{JobKind, Sliced};
 use super::{LabFacts, Outcome, PlacedClip, Slot};
 use crate::choices;
@@ -9,7 +10,7 @@ use crate::extra_characters::MAX_CHARACTERS;
 use crate::jobs::JobBoard;
 use crate::labs::LabError;
 use crate::metrics::{Metric, MetricId};
-use crate::params::{Key, List, MAX_PANES, Params, Value};
+use crate::params::{Key, List, Params, Value};
 use locked_feet::{LockedFeet, LockedFeetCache};
 use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::math::Planar;
@@ -20,6 +21,7 @@ use segue_motion::path::{
 };
 use segue_motion::transition::FootLocking;
 use segue_text::{Message, msg};
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 mod locked_feet;
@@ -73,7 +75,8 @@ impl<S: HasPart<Paths>> Lab<S> for PathLab {
         params: &Params,
         _match_window: usize,
     ) -> Result<Option<Inputs>, LabError> {
-        Ok(Some(Inputs::new(HasPart::<Paths>::part(labs).inputs(clips.first()?, params)?)))
+        let inputs = HasPart::<Paths>::part(labs).inputs(clips.first()?, params)?;
+        Ok(inputs.map(Inputs::new))
     }
 }
 
@@ -82,7 +85,6 @@ impl<S: HasPart<Paths>> Lab<S> for PathLab {
 #[derive(Debug)]
 pub struct FittedMotion {
     motion: Arc<Motion>,
-    options: FitOptions,
     editor: PathEditor,
     curve: Arc<ArcLengthPath>,
     error: FitError,
@@ -95,7 +97,6 @@ impl FittedMotion {
         let off = path.residuals().map(|residual| residual.shift.length() * 100.0);
         Ok(Self {
             motion: Arc::clone(motion),
-            options,
             curve: Arc::new(path.curve().clone()),
             error: path.error(),
             errors_cm: path
@@ -203,28 +204,36 @@ impl PartialEq for PathInputs {
     }
 }
 
+/// A clip of up to this number of frames gets its path in the frame in which it is chosen: about
+/// 4 ms in a browser.
+const FITTED_AT_ONCE: usize = 1_500;
+
 /// A cache of the last fitted paths: dragging a point changes none of them.
 #[derive(Debug, Default)]
 pub(crate) struct Paths {
-    fitted: Vec<Arc<FittedMotion>>,
+    fitted: RequestCache<(Arc<Motion>, FitOptions), (), Result<Arc<FittedMotion>, LabError>>,
     locked_feet: LockedFeetCache,
 }
 
 impl Paths {
-    /// Returns the motion on a path of the parameters for a clip.
+    /// Returns the motion on a path of the parameters for a clip; `None` if the path is not fitted
+    /// yet: call [`work`](Self::work), then ask again.
     pub(crate) fn inputs(
         &mut self,
         motion: &Arc<Motion>,
         params: &Params,
-    ) -> Result<PathInputs, LabError> {
+    ) -> Result<Option<PathInputs>, LabError> {
         let options = FitOptions {
             control_points: params.number(Key::ControlPoints) as usize,
             smoothing: params.number(Key::PathSmoothing),
             pin_ends: false,
             ends: spline_ends(params),
         };
+        let Some(fitted) = self.fitted(motion, options)? else {
+            return Ok(None);
+        };
         let mut inputs = PathInputs {
-            fitted: self.fitted(motion, options)?,
+            fitted,
             edited: params.edited_path().cloned(),
             carry: carry_options(params),
             lock: Lock::of(params),
@@ -237,43 +246,54 @@ impl Paths {
                 self.locked_feet.get_or_schedule(&inputs).map_or(Feet::Awaited, Feet::Locked)
             };
         }
-        Ok(inputs)
+        Ok(Some(inputs))
     }
 
     fn fitted(
         &mut self,
         motion: &Arc<Motion>,
         options: FitOptions,
-    ) -> Result<Arc<FittedMotion>, LabError> {
-        let is_it = |known: &&Arc<FittedMotion>| {
-            Arc::ptr_eq(&known.motion, motion) && known.options == options
-        };
-        if let Some(known) = self.fitted.iter().find(is_it) {
-            return Ok(Arc::clone(known));
+    ) -> Result<Option<Arc<FittedMotion>>, LabError> {
+        let is_it =
+            |(of, by): &(Arc<Motion>, FitOptions)| Arc::ptr_eq(of, motion) && *by == options;
+        if let Some(known) = self.fitted.request(|of, _| is_it(of)) {
+            return known.clone().map(Some);
+        }
+        if self.fitted.is_under_way(is_it) {
+            return Ok(None);
+        }
+        let of = (Arc::clone(motion), options);
+        if motion.clip().frames() > FITTED_AT_ONCE {
+            self.fitted.begin(of, ());
+            return Ok(None);
         }
         let fitted = Arc::new(FittedMotion::new(motion, options)?);
-        if self.fitted.len() >= MAX_PANES {
-            self.fitted.remove(0);
-        }
-        self.fitted.push(Arc::clone(&fitted));
-        Ok(fitted)
+        self.fitted.keep(of, Ok(Arc::clone(&fitted)));
+        Ok(Some(fitted))
     }
 }
 
 impl Sliced for Paths {
     fn clear_requests(&mut self) {
+        self.fitted.clear_requests();
         self.locked_feet.clear_requests();
     }
 
     fn work(&mut self, _jobs: &mut JobBoard) -> bool {
-        self.locked_feet.work()
+        let fit = |(motion, options): &(Arc<Motion>, FitOptions), ()| {
+            ControlFlow::Break(FittedMotion::new(motion, *options).map(Arc::new))
+        };
+        self.fitted.work(fit) || self.locked_feet.work()
     }
 
     fn is_ready(&self) -> bool {
-        self.locked_feet.is_ready()
+        self.fitted.is_ready() || self.locked_feet.is_ready()
     }
 
     fn progress(&self) -> Option<(JobKind, f64)> {
+        if self.fitted.under_way().next().is_some() {
+            return Some((JobKind::Analyzing, 0.0));
+        }
         Some((JobKind::HoldingFeet, f64::from(self.locked_feet.progress()?)))
     }
 }

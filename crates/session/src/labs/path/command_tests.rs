@@ -308,3 +308,22 @@ fn feet_of_a_long_walk_are_locked_when_dragging_ends() {
         session.main_outcome().unwrap().motion.clip().rotations(300)
     );
 }
+
+#[test]
+fn path_of_a_long_clip_is_fitted_between_frames() {
+    let mut session = Session::new();
+    let link = "lab=path&a=walk(make_seconds:30)".to_owned();
+    session.apply(Command::OpenLink(link)).unwrap();
+    assert!(session.main_outcome().is_none_or(|outcome| outcome.path().is_none()));
+    assert!(session.jobs().iter().any(|job| job.kind == JobKind::Analyzing));
+    while session.work() {}
+    assert!(session.jobs().is_empty());
+    let fitted = Arc::clone(&path(&session).fitted);
+    // The fit stays while points move, and another number of them is fitted between frames, too.
+    let value = moved(&session, 3, DVec2::new(0.3, 0.0));
+    set(&mut session, Key::Path, value);
+    assert!(Arc::ptr_eq(&path(&session).fitted, &fitted) && path(&session).is_edited);
+    set(&mut session, Key::ControlPoints, Value::Number(6.0));
+    while session.work() {}
+    assert!(!Arc::ptr_eq(&path(&session).fitted, &fitted));
+}
