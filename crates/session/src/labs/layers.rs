@@ -114,6 +114,10 @@ struct TimedLayer {
 /// The parameters of B in A's time: the chosen fit, and the start in seconds.
 type Timing = (choices::LayerFit, f64);
 
+/// What B in A's time is made of, and what is made of it.
+type LayerOf = (Arc<Pair>, Timing);
+type Layered = Result<Arc<TimedLayer>, LabError>;
+
 /// A clip of up to this number of frames gets its layer in the frame in which it is chosen: about
 /// 6 ms in a browser.
 const AT_ONCE: usize = 1_500;
@@ -122,7 +126,7 @@ const AT_ONCE: usize = 1_500;
 #[derive(Debug, Default)]
 pub(crate) struct LayerCache {
     in_step: InStep,
-    timed: RequestCache<(Arc<Pair>, Timing), (), Result<Arc<TimedLayer>, LabError>>,
+    timed: RequestCache<LayerOf, (), Layered>,
 }
 
 /// The last B in step with A, if both have steps.
@@ -151,7 +155,7 @@ impl LayerCache {
         pair: &Arc<Pair>,
         timing: Timing,
     ) -> Result<Option<Arc<TimedLayer>>, LabError> {
-        let is_it = |(known, by): &(Arc<Pair>, Timing)| Arc::ptr_eq(known, pair) && *by == timing;
+        let is_it = |(known, by): &LayerOf| Arc::ptr_eq(known, pair) && *by == timing;
         if let Some(known) = self.timed.request(|of, _| is_it(of)) {
             return known.clone().map(Some);
         }

@@ -208,10 +208,13 @@ impl PartialEq for PathInputs {
 /// 4 ms in a browser.
 const FITTED_AT_ONCE: usize = 1_500;
 
+/// What a path is fitted to, and how.
+type FittedOf = (Arc<Motion>, FitOptions);
+
 /// A cache of the last fitted paths: dragging a point changes none of them.
 #[derive(Debug, Default)]
 pub(crate) struct Paths {
-    fitted: RequestCache<(Arc<Motion>, FitOptions), (), Result<Arc<FittedMotion>, LabError>>,
+    fitted: RequestCache<FittedOf, (), Result<Arc<FittedMotion>, LabError>>,
     locked_feet: LockedFeetCache,
 }
 
@@ -254,8 +257,7 @@ impl Paths {
         motion: &Arc<Motion>,
         options: FitOptions,
     ) -> Result<Option<Arc<FittedMotion>>, LabError> {
-        let is_it =
-            |(of, by): &(Arc<Motion>, FitOptions)| Arc::ptr_eq(of, motion) && *by == options;
+        let is_it = |(of, by): &FittedOf| Arc::ptr_eq(of, motion) && *by == options;
         if let Some(known) = self.fitted.request(|of, _| is_it(of)) {
             return known.clone().map(Some);
         }
@@ -280,7 +282,7 @@ impl Sliced for Paths {
     }
 
     fn work(&mut self, _jobs: &mut JobBoard) -> bool {
-        let fit = |(motion, options): &(Arc<Motion>, FitOptions), ()| {
+        let fit = |(motion, options): &FittedOf, ()| {
             ControlFlow::Break(FittedMotion::new(motion, *options).map(Arc::new))
         };
         self.fitted.work(fit) || self.locked_feet.work()
