@@ -184,6 +184,7 @@ impl Lines {
     pub(super) fn line(&mut self, text: &[u8], at: usize, row: &mut [f64]) -> Option<usize> {
         self.divisors.resize(row.len(), 1.0);
         let usual = UsualDecimals::new(self.decimals)?;
+        let fewer = UsualDecimals::new(self.decimals.saturating_sub(1))?;
         let mut points = OtherPoints { decimals: self.decimals, ..OtherPoints::default() };
         let mut at = at;
         for (digits, divisor) in row.iter_mut().zip(&mut self.divisors) {
@@ -192,7 +193,7 @@ impl Lines {
                 at = end + 1;
                 continue;
             }
-            (*digits, *divisor, at) = other_number(text, at, &mut points)?;
+            (*digits, *divisor, at) = other_number(text, at, &fewer, &mut points)?;
         }
         let end = past_blanks(text, at)?;
         if !matches!(text.get(end), Some(b'\n' | b'\r')) {
@@ -217,11 +218,16 @@ struct OtherPoints {
     whole: usize,
 }
 
-/// Reads a number that is not a usual one, after blanks. Returns its digits, their divisor and the
-/// offset of the next number.
+/// Reads a number that is not a usual one, after blanks; `fewer` has one decimal less. Returns its
+/// digits, their divisor and the offset of the next number.
 // Not inlined: the loop over the usual numbers is faster by a fifth without it.
 #[inline(never)]
-fn other_number(text: &[u8], at: usize, points: &mut OtherPoints) -> Option<(f64, f64, usize)> {
+fn other_number(
+    text: &[u8],
+    at: usize,
+    fewer: &UsualDecimals,
+    points: &mut OtherPoints,
+) -> Option<(f64, f64, usize)> {
     // Zeros of joints that do not turn are a quarter of some files.
     let signed = text.get(at..)?.first_chunk()?;
     let (sign, digit, length) = match *signed {
@@ -232,6 +238,12 @@ fn other_number(text: &[u8], at: usize, points: &mut OtherPoints) -> Option<(f64
     if digit.is_ascii_digit() {
         points.whole += 1;
         return Some((f64::from(digit - b'0'), sign, at + length));
+    }
+    // Where zeros at the end are left out, a tenth of the numbers have one decimal less.
+    if let Some((number, power, end)) = fewer.number(text, at) {
+        points.numbers += 1;
+        points.decimals = fewer.decimals;
+        return Some((number, power, end + 1));
     }
     let at = past_blanks(text, at)?;
     let end = end_of_word(text, at)?;

@@ -145,7 +145,7 @@ impl SlideMeter {
     }
 
     /// Processes up to `frames` more frames (at least one). Returns `false` when all are done. A
-    /// frame of 31 joints takes 1 µs.
+    /// frame of 31 joints takes less than 1 µs.
     pub fn advance(&mut self, clip: &Clip, contacts: &Contacts, frames: usize) -> bool {
         if self.frame >= clip.frames() {
             return false;

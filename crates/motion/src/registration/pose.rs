@@ -89,7 +89,7 @@ const CALM_REACH_SECS: f64 = 0.05;
 /// pair returned.
 ///
 /// Poses are computed for the pairs that are compared, not for all frames: a clip of an hour takes
-/// as long as one of a minute.
+/// hardly longer than one of a minute.
 #[derive(Clone, Debug)]
 pub struct PoseSearch {
     outgoing: PoseSource,

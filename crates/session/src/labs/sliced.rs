@@ -5,7 +5,8 @@ use crate::jobs::JobBoard;
 /// The kinds of work that is done in slices.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum JobKind {
-    /// The reading of the feet and places of a long clip, and its measurement.
+    /// The reading of the feet and places of a long clip, its measurement, and what a lab makes of
+    /// it before any result: a fitted path, a layer in time.
     Analyzing,
     /// A search for the best place of a transition, or for the ends of a cycle.
     Matching,
