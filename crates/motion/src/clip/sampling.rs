@@ -112,3 +112,43 @@ fn cubic_rotation(q0: Quat, q1: Quat, q2: Quat, q3: Quat, t: f32) -> Quat {
     let v3 = v2 + quat::log(q3 * q2.conjugate());
     quat::renormalize(quat::exp(curve::catmull_rom(v0, Vec3::ZERO, v2, v3, t)) * q1)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clip::fixtures::wander;
+    use crate::skeleton::fixtures;
+
+    #[test]
+    fn time_of_a_frame_gives_its_pose_in_spite_of_rounding() {
+        let clip = wander(&fixtures::lafan(), 40, 3);
+        let all = [Interpolation::Nearest, Interpolation::Linear, Interpolation::Cubic];
+        for interpolation in all {
+            for frame in 0..40 {
+                for off in [-1e-9, 0.0, 1e-9] {
+                    let pose = clip.sample(clip.time_of(frame) + off, interpolation).unwrap();
+                    assert_eq!(pose, clip.pose(frame), "{interpolation:?}, frame {frame}");
+                }
+            }
+            let between = clip.sample(clip.time_of(7) + 0.4 / clip.fps(), interpolation).unwrap();
+            assert_eq!(between == clip.pose(7), interpolation == Interpolation::Nearest);
+        }
+        assert_eq!(clip.sample(f64::NAN, Interpolation::Linear), Some(clip.pose(0)));
+    }
+
+    #[test]
+    fn pose_of_some_joints_is_that_of_all_there() {
+        let clip = wander(&fixtures::lafan(), 20, 5);
+        let wanted: Vec<bool> = (0..clip.skeleton().len()).map(|joint| joint % 3 == 0).collect();
+        let mut some = Pose::default();
+        for at in 0..57 {
+            let secs = f64::from(at) / 3.0 / clip.fps();
+            let all = clip.sample(secs, Interpolation::Linear).unwrap();
+            assert!(clip.sample_into(secs, Some(&wanted), &mut some));
+            assert_eq!(some.root_translation, all.root_translation);
+            for joint in (0..wanted.len()).filter(|&joint| wanted[joint]) {
+                assert_eq!(some.rotations[joint], all.rotations[joint], "{at} {joint}");
+            }
+        }
+    }
+}
