@@ -102,6 +102,7 @@ mod path;
 mod path_error;
 mod points;
 mod pose;
+mod posed_clip;
 mod row_terms;
 mod self_terms;
 mod sweep;

@@ -1,12 +1,11 @@
 //! The search for the two frames that are most alike as single poses.
 
 use super::points::checked_sum;
+use super::posed_clip::{PosedClip, PosedFrames};
 use super::{Progress, REFERENCE_HEIGHT_M, RegistrationError, SearchOptions};
-use crate::clip::{Clip, SingleJolts};
+use crate::clip::Clip;
 use crate::math::Planar;
 use crate::math::sort::sort_by;
-use crate::skeleton::WorldPose;
-use glam::{Quat, Vec3};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
@@ -60,7 +59,7 @@ pub struct PoseMatch {
 const CANDIDATES: usize = 8;
 /// The greatest number of frames of a clip in the coarse comparison.
 const MAX_COARSE_FRAMES: usize = 1_000;
-/// The greatest jolt ([`jolts`]) of a calm frame: a transition adds the motion of its two frames,
+/// The greatest jolt ([`crate::clip::jolts`]) of a calm frame: a transition adds the motion of its two frames,
 /// including any trembling, to its own.
 const MAX_CALM_JOLT: f32 = 0.7;
 /// Calm frames may cost this much more than the lowest cost, 1 being that of an average pair, and
@@ -92,127 +91,19 @@ const CALM_REACH_SECS: f64 = 0.05;
 /// hardly longer than one of a minute.
 #[derive(Clone, Debug)]
 pub struct PoseSearch {
-    outgoing: PoseSource,
-    incoming: PoseSource,
+    outgoing: PosedClip,
+    incoming: PosedClip,
     weights: Vec<f32>,
     /// The factor from metres to those of the reference body.
     scale: f64,
     fps: f64,
     stride: usize,
     /// The incoming clip's samples; none before the first call of `advance`.
-    columns: Option<Poses>,
+    columns: Option<PosedFrames>,
     done: usize,
     /// Per pair of samples, row-major: the three mean squares (m², rad², m²/s²).
     terms: Vec<[f32; 3]>,
     sums: [f64; 3],
-}
-
-/// A clip whose poses are compared.
-#[derive(Clone, Debug)]
-struct PoseSource {
-    clip: Arc<Clip>,
-    /// The character's frame in each frame.
-    places: Vec<Planar>,
-    jolts: SingleJolts,
-}
-
-/// The compared quantities of some frames of a clip, frame-major.
-#[derive(Clone, Debug, Default)]
-struct Poses {
-    joints: usize,
-    positions: Vec<Vec3>,
-    rotations: Vec<Quat>,
-    velocities: Vec<Vec3>,
-}
-
-/// The compared quantities of one frame, joint by joint.
-struct PoseRow<'a> {
-    positions: &'a [Vec3],
-    rotations: &'a [Quat],
-    velocities: &'a [Vec3],
-}
-
-/// The last world poses of a clip that were computed, each with its frame. Three neighbouring
-/// frames have places of their own.
-#[derive(Debug, Default)]
-struct RecentPoses([(Option<usize>, WorldPose); 3]);
-
-impl RecentPoses {
-    /// Computes the world pose of a frame, unless it is there.
-    fn ensure(&mut self, clip: &Clip, frame: usize) {
-        let (known, world) = &mut self.0[frame % 3];
-        if *known != Some(frame) {
-            clip.world_pose_into(frame, world);
-            *known = Some(frame);
-        }
-    }
-
-    fn positions(&self, frame: usize) -> &[Vec3] {
-        &self.0[frame % 3].1.positions
-    }
-}
-
-impl PoseSource {
-    fn new((clip, places): (&Arc<Clip>, &[Planar])) -> Self {
-        let frames = clip.frames().min(places.len());
-        Self {
-            clip: Arc::clone(clip),
-            places: places[..frames].to_vec(),
-            jolts: SingleJolts::new(clip),
-        }
-    }
-
-    fn frames(&self) -> usize {
-        self.places.len()
-    }
-
-    fn is_finite(&self) -> bool {
-        let tracks = self.clip.translations().iter().flat_map(|track| &track.values);
-        self.clip.root_translations().iter().chain(tracks).all(|v| v.is_finite())
-            && self.clip.all_rotations().iter().all(|q| q.is_finite())
-            && self.places.iter().all(|place| place.yaw.is_finite() && place.shift.is_finite())
-    }
-
-    /// Returns the compared quantities of some frames.
-    fn poses(&self, frames: impl IntoIterator<Item = usize>) -> Poses {
-        let (clip, last) = (&*self.clip, self.frames() - 1);
-        let mut poses = Poses { joints: clip.skeleton().len(), ..Poses::default() };
-        let mut recent = RecentPoses::default();
-        for frame in frames {
-            let to_here = self.places[frame].inverse();
-            let (before, after) = (frame.saturating_sub(1), (frame + 1).min(last));
-            for frame in [before, frame, after] {
-                recent.ensure(clip, frame);
-            }
-            let rate = clip.fps() as f32 / (after - before).max(1) as f32;
-            poses.positions.extend(recent.positions(frame).iter().map(|&p| to_here.apply(p)));
-            let moves = recent.positions(before).iter().zip(recent.positions(after));
-            poses
-                .velocities
-                .extend(moves.map(|(&from, &to)| to_here.apply_vector((to - from) * rate)));
-            let root = poses.rotations.len();
-            poses.rotations.extend_from_slice(clip.rotations(frame));
-            if let Some(root) = poses.rotations.get_mut(root) {
-                *root = to_here.rotation() * *root;
-            }
-        }
-        poses
-    }
-}
-
-impl Poses {
-    fn row(&self, index: usize) -> PoseRow<'_> {
-        let of = index * self.joints..(index + 1) * self.joints;
-        PoseRow {
-            positions: &self.positions[of.clone()],
-            rotations: &self.rotations[of.clone()],
-            velocities: &self.velocities[of],
-        }
-    }
-
-    fn rows(&self) -> usize {
-        self.rotations.len() / self.joints.max(1)
-    }
 }
 
 impl PoseSearch {
@@ -245,7 +136,7 @@ impl PoseSearch {
                 return Err(RegistrationError::Empty { which });
             }
         }
-        let (outgoing, incoming) = (PoseSource::new(outgoing), PoseSource::new(incoming));
+        let (outgoing, incoming) = (PosedClip::new(outgoing), PosedClip::new(incoming));
         if !(outgoing.is_finite() && incoming.is_finite()) {
             return Err(RegistrationError::NotFinite);
         }
@@ -273,12 +164,12 @@ impl PoseSearch {
         let total = self.outgoing.frames().div_ceil(self.stride);
         let end = self.done.saturating_add(rows).min(total);
         let columns = self.columns.take().unwrap_or_else(|| {
-            self.incoming.poses((0..self.incoming.frames()).step_by(self.stride))
+            self.incoming.posed((0..self.incoming.frames()).step_by(self.stride))
         });
-        let compared = self.outgoing.poses((self.done..end).map(|row| row * self.stride));
+        let compared = self.outgoing.posed((self.done..end).map(|row| row * self.stride));
         for row in 0..compared.rows() {
             for column in 0..columns.rows() {
-                let terms = self.compare(&compared.row(row), &columns.row(column));
+                let terms = compared.row(row).mean_squares(&columns.row(column), &self.weights);
                 self.terms.push(terms);
                 for (sum, term) in self.sums.iter_mut().zip(terms) {
                     *sum += f64::from(term);
@@ -288,27 +179,6 @@ impl PoseSearch {
         self.columns = Some(columns);
         self.done = end;
         Progress { done: self.done, total }
-    }
-
-    /// Returns the mean squares of one pair of frames.
-    fn compare(&self, a: &PoseRow<'_>, b: &PoseRow<'_>) -> [f32; 3] {
-        let mut terms = [0.0_f32; 3];
-        let vectors = |p: &[Vec3], q: &[Vec3]| {
-            let squares =
-                p.iter().zip(q).zip(&self.weights).map(|((p, q), w)| w * p.distance_squared(*q));
-            squares.sum::<f32>()
-        };
-        terms[0] = vectors(a.positions, b.positions);
-        terms[2] = vectors(a.velocities, b.velocities);
-        // 4 sin²(θ/2) = 4 (1 - (p·q)²): θ² for small angles, and the same for q and -q.
-        let rotations = a.rotations.iter().zip(b.rotations).zip(&self.weights);
-        terms[1] = rotations
-            .map(|((p, q), w)| {
-                let cosine = p.dot(*q);
-                w * 4.0 * (1.0 - cosine * cosine).max(0.0)
-            })
-            .sum();
-        terms
     }
 
     /// Returns the best pair for these weights and regions. The window of `options` only limits the
@@ -341,11 +211,11 @@ impl PoseSearch {
                 at.saturating_sub(reach).max(region.start)..(at + reach + 1).min(region.end)
             };
             let (left, entered) = (around(i, &leave), around(j, &enter));
-            let (a, b) = (self.outgoing.poses(left.clone()), self.incoming.poses(entered.clone()));
+            let (a, b) = (self.outgoing.posed(left.clone()), self.incoming.posed(entered.clone()));
             for (row, i) in left.enumerate() {
                 let row = a.row(row);
                 pairs.extend(entered.clone().enumerate().map(|(column, j)| {
-                    (cost(&factors, &self.compare(&row, &b.row(column))), i, j)
+                    (cost(&factors, &row.mean_squares(&b.row(column), &self.weights)), i, j)
                 }));
             }
         }
@@ -357,9 +227,9 @@ impl PoseSearch {
         sort_by(&mut pairs, |a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
         let (cost, leave, enter) =
             self.calmest(&pairs).unwrap_or((f64::INFINITY, leave.start, enter.start));
-        let (a, b) = (self.outgoing.poses([leave]), self.incoming.poses([enter]));
+        let (a, b) = (self.outgoing.posed([leave]), self.incoming.posed([enter]));
         let [position, rotation, velocity] =
-            self.compare(&a.row(0), &b.row(0)).map(|term| f64::from(term).sqrt());
+            a.row(0).mean_squares(&b.row(0), &self.weights).map(|term| f64::from(term).sqrt());
         Ok(PoseMatch {
             leave,
             enter,
@@ -391,10 +261,8 @@ impl PoseSearch {
     /// Returns the greatest jolt at the seam: in the last frame of the outgoing clip, and in the
     /// first of the incoming one. `known` keeps those of each clip's frames.
     fn jolt(&self, leave: usize, enter: usize, known: &mut BTreeMap<(bool, usize), f32>) -> f32 {
-        let mut of = |source: &PoseSource, is_incoming: bool, frame: usize| {
-            *known
-                .entry((is_incoming, frame))
-                .or_insert_with(|| source.jolts.at(&source.clip, frame))
+        let mut of = |source: &PosedClip, is_incoming: bool, frame: usize| {
+            *known.entry((is_incoming, frame)).or_insert_with(|| source.jolt(frame))
         };
         let entered = of(&self.incoming, true, enter);
         leave.checked_sub(1).map_or(0.0, |last| of(&self.outgoing, false, last)).max(entered)
@@ -427,7 +295,7 @@ impl PoseSearch {
             region.start.div_ceil(self.stride)..region.end.div_ceil(self.stride)
         };
         let (rows, columns) = (samples(leave), samples(enter));
-        let stored = self.columns.as_ref().map_or(0, Poses::rows);
+        let stored = self.columns.as_ref().map_or(0, PosedFrames::rows);
         let width = columns.len();
         let costs: Vec<f64> = rows
             .clone()
@@ -476,6 +344,7 @@ mod tests {
     use crate::registration::fixtures::Walk;
     use crate::registration::{Region, limb_weights};
     use crate::skeleton::Roles;
+    use glam::{Quat, Vec3};
 
     fn search(a: &Arc<Clip>, b: &Arc<Clip>) -> PoseSearch {
         let roles = Roles::detect(a.skeleton());
@@ -505,8 +374,8 @@ mod tests {
                 ..Walk::default()
             });
             let search = search(&a, &b);
-            let left = search.outgoing.poses(0..a.frames());
-            let entered = search.incoming.poses(0..b.frames());
+            let left = search.outgoing.posed(0..a.frames());
+            let entered = search.incoming.posed(0..b.frames());
             for (position, rotation, velocity) in
                 [(0.6, 0.4, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 2.0), (0.2, 0.3, 0.5)]
             {
@@ -516,7 +385,9 @@ mod tests {
                 let factors = search.factors(weights);
                 let best = (frames / 2..frames - 8)
                     .flat_map(|i| (0..b.frames() / 2).map(move |j| (i, j)))
-                    .map(|(i, j)| cost(&factors, &search.compare(&left.row(i), &entered.row(j))))
+                    .map(|(i, j)| {
+                        cost(&factors, &left.row(i).mean_squares(&entered.row(j), &search.weights))
+                    })
                     .fold(f64::INFINITY, f64::min);
                 assert!(
                     found.cost >= best && found.cost <= best + 0.02 + MAX_CALM_COST,

@@ -114,9 +114,8 @@ struct TimedLayer {
 /// The parameters of B in A's time: the chosen fit, and the start in seconds.
 type Timing = (choices::LayerFit, f64);
 
-/// What B in A's time is made of, and what is made of it.
+/// The two clips and the parameters of a layer in A's time.
 type LayerOf = (Arc<Pair>, Timing);
-type Layered = Result<Arc<TimedLayer>, LabError>;
 
 /// A clip of up to this number of frames gets its layer in the frame in which it is chosen: about
 /// 6 ms in a browser.
@@ -126,7 +125,7 @@ const AT_ONCE: usize = 1_500;
 #[derive(Debug, Default)]
 pub(crate) struct LayerCache {
     in_step: InStep,
-    timed: RequestCache<LayerOf, (), Layered>,
+    timed: RequestCache<LayerOf, (), Result<Arc<TimedLayer>, LabError>>,
 }
 
 /// The last B in step with A, if both have steps.
@@ -155,21 +154,14 @@ impl LayerCache {
         pair: &Arc<Pair>,
         timing: Timing,
     ) -> Result<Option<Arc<TimedLayer>>, LabError> {
+        let Self { in_step, timed } = self;
         let is_it = |(known, by): &LayerOf| Arc::ptr_eq(known, pair) && *by == timing;
-        if let Some(known) = self.timed.request(|of, _| is_it(of)) {
-            return known.clone().map(Some);
-        }
-        if self.timed.is_under_way(is_it) {
-            return Ok(None);
-        }
-        let of = (Arc::clone(pair), timing);
-        if pair.a.clip().frames() > AT_ONCE {
-            self.timed.begin(of, ());
-            return Ok(None);
-        }
-        let timed = Arc::new(self.in_step.layer(pair, timing)?);
-        self.timed.keep(of, Ok(Arc::clone(&timed)));
-        Ok(Some(timed))
+        timed.request_or_begin((Arc::clone(pair), timing), is_it, |_| {
+            if pair.a.clip().frames() > AT_ONCE {
+                return Ok(ControlFlow::Continue(()));
+            }
+            Ok(ControlFlow::Break(Arc::new(in_step.layer(pair, timing)?)))
+        })
     }
 }
 

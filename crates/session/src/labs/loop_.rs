@@ -123,21 +123,12 @@ impl CycleCache {
         given: [Option<usize>; 2],
     ) -> Result<Option<Arc<FoundCycle>>, LabError> {
         let is_it = |(of, ends): &CycleOf| Arc::ptr_eq(of, motion) && *ends == given;
-        if let Some(found) = self.cache.request(|of, _| is_it(of)) {
-            return found.clone().map(Some);
-        }
-        if self.cache.is_under_way(is_it) {
-            return Ok(None);
-        }
-        let of = (Arc::clone(motion), given);
-        if motion.clip().frames() > AT_ONCE {
-            self.cache.begin(of, Delegated::New);
-            return Ok(None);
-        }
-        let cut = find_cycle(motion, &search_of(&of))?;
-        let found = found_in(&of, cut);
-        self.cache.keep(of, Ok(Arc::clone(&found)));
-        Ok(Some(found))
+        self.cache.request_or_begin((Arc::clone(motion), given), is_it, |of| {
+            if motion.clip().frames() > AT_ONCE {
+                return Ok(ControlFlow::Continue(Delegated::New));
+            }
+            Ok(ControlFlow::Break(found_in(of, find_cycle(motion, &search_of(of))?)))
+        })
     }
 }
 

@@ -233,32 +233,22 @@ impl Pairs {
         let is_it = |(known_a, known_b, by): &PairOf| {
             Arc::ptr_eq(known_a, a) && Arc::ptr_eq(known_b, b) && *by == options
         };
-        let known = self.cache.request(|of, pair| {
-            is_it(of) || pair.as_ref().is_ok_and(|pair| pair.is_of(a, b, options))
-        });
-        if let Some(pair) = known {
+        let alike =
+            self.cache.request(|_, pair| pair.as_ref().is_ok_and(|pair| pair.is_of(a, b, options)));
+        if let Some(pair) = alike {
             return pair.clone().map(Some);
         }
-        if self.cache.is_under_way(is_it) {
-            return Ok(None);
-        }
-        let of = (Arc::clone(a), Arc::clone(b), options);
-        let mut next = Fitting::new(a, b, options)?;
-        let fitted = loop {
-            next = match next {
-                ControlFlow::Break(fitted) => break fitted,
-                ControlFlow::Continue(fitting) if fitting.source.clip().frames() <= AT_ONCE => {
-                    fitting.advance(AT_ONCE)?
-                }
-                ControlFlow::Continue(fitting) => {
-                    self.cache.begin(of, fitting);
-                    return Ok(None);
-                }
-            };
-        };
-        let pair = pair_of(&of, fitted);
-        self.cache.keep(of, Ok(Arc::clone(&pair)));
-        Ok(Some(pair))
+        self.cache.request_or_begin((Arc::clone(a), Arc::clone(b), options), is_it, |of| {
+            let mut next = Fitting::new(a, b, options)?;
+            loop {
+                next = match next {
+                    ControlFlow::Continue(fitting) if fitting.source.clip().frames() <= AT_ONCE => {
+                        fitting.advance(AT_ONCE)?
+                    }
+                    done_or_long => return Ok(done_or_long.map_break(|made| pair_of(of, made))),
+                };
+            }
+        })
     }
 }
 

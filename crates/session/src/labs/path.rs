@@ -208,7 +208,7 @@ impl PartialEq for PathInputs {
 /// 4 ms in a browser.
 const FITTED_AT_ONCE: usize = 1_500;
 
-/// What a path is fitted to, and how.
+/// The motion and the options of a fit.
 type FittedOf = (Arc<Motion>, FitOptions);
 
 /// A cache of the last fitted paths: dragging a point changes none of them.
@@ -258,20 +258,12 @@ impl Paths {
         options: FitOptions,
     ) -> Result<Option<Arc<FittedMotion>>, LabError> {
         let is_it = |(of, by): &FittedOf| Arc::ptr_eq(of, motion) && *by == options;
-        if let Some(known) = self.fitted.request(|of, _| is_it(of)) {
-            return known.clone().map(Some);
-        }
-        if self.fitted.is_under_way(is_it) {
-            return Ok(None);
-        }
-        let of = (Arc::clone(motion), options);
-        if motion.clip().frames() > FITTED_AT_ONCE {
-            self.fitted.begin(of, ());
-            return Ok(None);
-        }
-        let fitted = Arc::new(FittedMotion::new(motion, options)?);
-        self.fitted.keep(of, Ok(Arc::clone(&fitted)));
-        Ok(Some(fitted))
+        self.fitted.request_or_begin((Arc::clone(motion), options), is_it, |_| {
+            if motion.clip().frames() > FITTED_AT_ONCE {
+                return Ok(ControlFlow::Continue(()));
+            }
+            Ok(ControlFlow::Break(Arc::new(FittedMotion::new(motion, options)?)))
+        })
     }
 }
 

@@ -141,6 +141,34 @@ impl<Of, Work, Made> RequestCache<Of, Work, Made> {
     }
 }
 
+impl<Of, Work, Made: Clone, E: Clone> RequestCache<Of, Work, Result<Made, E>> {
+    /// Requests a result; `None` while it is being computed. Where it is neither known nor under
+    /// way, `begin` returns the result, if that takes no longer than a frame, or the work for it.
+    pub(super) fn request_or_begin(
+        &mut self,
+        of: Of,
+        is_it: impl Fn(&Of) -> bool,
+        begin: impl FnOnce(&Of) -> Result<ControlFlow<Made, Work>, E>,
+    ) -> Result<Option<Made>, E> {
+        if let Some(known) = self.request(|of, _| is_it(of)) {
+            return known.clone().map(Some);
+        }
+        if self.is_under_way(is_it) {
+            return Ok(None);
+        }
+        Ok(match begin(&of)? {
+            ControlFlow::Continue(work) => {
+                self.begin(of, work);
+                None
+            }
+            ControlFlow::Break(made) => {
+                self.keep(of, Ok(made.clone()));
+                Some(made)
+            }
+        })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -188,5 +216,20 @@ mod tests {
         assert!(cache.is_under_way(|&of| of == 2));
         assert!(cache.work(slice) && !cache.work(slice));
         assert!(cache.known(|&of| of == 2).is_some() && cache.known(|&of| of == 1).is_none());
+    }
+
+    #[test]
+    fn result_that_takes_no_longer_than_a_frame_is_there_at_once() {
+        let mut cache = RequestCache::<u32, u32, Result<u32, String>>::default();
+        let at_once = |of: &u32| Ok(ControlFlow::Break(of + 1));
+        let long = |of: &u32| Ok(ControlFlow::Continue(*of));
+        let refused = |_: &u32| Err("no".to_owned());
+        assert_eq!(cache.request_or_begin(1, |of| *of == 1, at_once), Ok(Some(2)));
+        assert_eq!(cache.request_or_begin(1, |of| *of == 1, refused), Ok(Some(2)), "it is kept");
+        assert_eq!(cache.request_or_begin(5, |of| *of == 5, refused), Err("no".to_owned()));
+        assert_eq!(cache.request_or_begin(5, |of| *of == 5, long), Ok(None));
+        assert_eq!(cache.request_or_begin(5, |of| *of == 5, refused), Ok(None), "it is under way");
+        assert!(cache.work(|of, work| ControlFlow::Break(Ok(of + work))));
+        assert_eq!(cache.request_or_begin(5, |of| *of == 5, refused), Ok(Some(10)));
     }
 }

@@ -119,7 +119,7 @@ fn layer_on_a_long_clip_is_prepared_between_frames() {
     assert!(is_prepared(&session) && session.jobs().is_empty());
     let outcome = session.main_outcome().unwrap();
     assert_eq!(outcome.layer().unwrap().fit, crate::LayerFit::InStep);
-    // What is prepared serves all weights: a change of them shows at once.
+    // B in A's time does not depend on the weight: a new weight shows at once.
     session.apply(Command::Set(vec![(Key::LayerWeight, Value::Number(0.5))])).unwrap();
     assert_eq!(
         session.main_outcome().unwrap().layer().unwrap().shares.iter().copied().fold(0.0, f32::max),
