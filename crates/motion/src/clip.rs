@@ -107,6 +107,7 @@ mod motion;
 mod poses;
 #[cfg(test)]
 mod quadruped_tests;
+mod recent_poses;
 mod reference;
 mod resample;
 mod retarget;
@@ -124,6 +125,7 @@ pub use in_place::{RootMotion, RootMotionError, root_motion_from_feet, take_in_p
 pub(crate) use jolts::{JoltScan, SingleJolts, jolts, turn_change};
 pub use mirror::{MirrorError, mirror};
 pub use motion::{FootOptions, Motion, MotionAnalysis, with_body_plan_of};
+pub(crate) use recent_poses::RecentPoses;
 pub use reference::reference_pose;
 pub(crate) use reference::stance_for_rest;
 pub use resample::resample;
@@ -132,5 +134,5 @@ pub use retarget::{RetargetError, retarget};
 pub use root_motion::{character_frames, facing, ground_speed};
 pub use sampling::Interpolation;
 pub use storage::{Clip, ClipError, JointTranslations, Provenance, UpAxis};
-pub(crate) use usual::{UsualMotion, foot_step_m, turn};
+pub(crate) use usual::{FootSteps, UsualMotion, turn};
 pub use velocity::{Velocities, velocities};

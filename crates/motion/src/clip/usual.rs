@@ -1,9 +1,9 @@
 //! Usual speeds in a clip, against which transitions are measured.
 
-use super::{Motion, stillest_step, turn_change};
+use super::{Motion, RecentPoses, stillest_step, turn_change};
 use crate::clip::Clip;
 use crate::math::{quat, stats};
-use crate::skeleton::{Foot, WorldPose};
+use crate::skeleton::Foot;
 use glam::{Quat, Vec3};
 
 /// The number of steps from which usual values are computed: enough for a 99th percentile, and
@@ -60,19 +60,34 @@ fn usual_turns(clip: &Clip) -> (Vec<f32>, Vec<f32>) {
         .unzip()
 }
 
-/// Returns the distance that the stillest point of a foot moves over the ground in the step into a
-/// frame, metres; 0 in the first frame, and where there is no such frame or foot.
-pub(crate) fn foot_step_m(motion: &Motion, foot: Foot, frame: usize) -> f32 {
-    let clip = motion.clip();
-    let Some(before) = frame.checked_sub(1).filter(|_| frame < clip.frames()) else {
-        return 0.0;
-    };
-    let points = motion.roles().foot_points(clip.skeleton(), foot);
-    let needed = clip.skeleton().with_ancestors(points.iter().map(|&(joint, _)| joint));
-    let mut world = WorldPose::default();
-    let [before, after] = [before, frame].map(|frame| {
-        clip.world_pose_of(frame, &needed, &mut world);
-        points.iter().map(|&(joint, point)| world.point(joint, point)).collect::<Vec<Vec3>>()
-    });
-    stillest_step(&before, &after).map_or(0.0, Vec3::length)
+/// The steps of a foot over the ground, frame by frame.
+#[derive(Debug)]
+pub(crate) struct FootSteps<'a> {
+    motion: &'a Motion,
+    points: Vec<(usize, Vec3)>,
+    poses: RecentPoses,
+}
+
+impl<'a> FootSteps<'a> {
+    pub(crate) fn new(motion: &'a Motion, foot: Foot) -> Self {
+        let skeleton = motion.clip().skeleton();
+        let points = motion.roles().foot_points(skeleton, foot);
+        let joints = skeleton.with_ancestors(points.iter().map(|&(joint, _)| joint));
+        Self { motion, points, poses: RecentPoses::of(joints) }
+    }
+
+    /// Returns the distance that the stillest point of the foot moves in the step into a frame,
+    /// metres; 0 in the first frame, where there is no such frame, and without a foot.
+    pub(crate) fn length_m(&mut self, frame: usize) -> f32 {
+        let clip = self.motion.clip();
+        let Some(before) = frame.checked_sub(1).filter(|_| frame < clip.frames()) else {
+            return 0.0;
+        };
+        let [before, after] = [before, frame].map(|frame| {
+            self.poses.ensure(clip, frame);
+            let world = self.poses.get(frame);
+            self.points.iter().map(|&(joint, point)| world.point(joint, point)).collect::<Vec<_>>()
+        });
+        stillest_step(&before, &after).map_or(0.0, Vec3::length)
+    }
 }

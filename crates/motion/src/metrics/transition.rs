@@ -3,9 +3,7 @@
 use super::Extreme;
 use super::lowest::LowPoints;
 use crate::blend::Concatenation;
-use crate::clip::{
-    Clip, Motion, UsualMotion, facing, foot_step_m, stillest_step, turn, turn_change,
-};
+use crate::clip::{Clip, FootSteps, Motion, UsualMotion, facing, stillest_step, turn, turn_change};
 use crate::math::{Planar, wrap_angle};
 use crate::skeleton::{Foot, Roles, WorldPose};
 use glam::{DVec2, Vec3};
@@ -181,13 +179,16 @@ impl Subject<'_> {
         get(self.a).max(get(self.b))
     }
 
-    /// Returns whether this foot is planted in the source of `frame`, and how far it moves there in
-    /// the step into the frame.
-    fn foot_in_source(&self, foot: Foot, frame: usize) -> (bool, f32) {
-        let (motion, frame) =
-            if frame < self.handover { (self.a, Some(frame)) } else { (self.b, self.in_b(frame)) };
-        let slide = frame.map_or(0.0, |frame| foot_step_m(motion, foot, frame));
-        (frame.is_some_and(|frame| motion.contacts().planted(foot, frame)), slide)
+    /// Returns the clip that contacts are taken from in a frame, 0 for A and 1 for B, and its own
+    /// frame there, if it has one.
+    fn source_of(&self, frame: usize) -> (usize, Option<usize>) {
+        if frame < self.handover { (0, Some(frame)) } else { (1, self.in_b(frame)) }
+    }
+
+    /// Returns whether a foot is planted in the source of a frame.
+    fn is_planted(&self, foot: Foot, frame: usize) -> bool {
+        let (source, frame) = self.source_of(frame);
+        frame.is_some_and(|frame| [self.a, self.b][source].contacts().planted(foot, frame))
     }
 }
 
@@ -343,22 +344,24 @@ fn skate(subject: &Subject<'_>, steps: &RangeInclusive<usize>, around: &SeamPose
         if feet.first().is_none_or(Vec::is_empty) {
             continue;
         }
+        let mut in_sources = [subject.a, subject.b].map(|source| FootSteps::new(source, foot));
         let mut drift = Vec3::ZERO;
         let mut farthest = None;
         for (at, frame) in around.frames.clone().enumerate() {
-            let (planted, in_source) = subject.foot_in_source(foot, frame);
-            if !planted {
+            if !subject.is_planted(foot, frame) {
                 (drift, farthest) = (Vec3::ZERO, None);
                 continue;
             }
             let stance = farthest.get_or_insert((0.0_f32, false));
             // Only between two planted frames: the step onto the ground is not a slide.
-            let before_planted = at > 0 && subject.foot_in_source(foot, frame - 1).0;
+            let before_planted = at > 0 && subject.is_planted(foot, frame - 1);
             if let Some(step) =
                 before_planted.then(|| stillest_step(&feet[at - 1], &feet[at])).flatten()
             {
                 let length = step.length();
                 if length > 0.0 {
+                    let (source, frame) = subject.source_of(frame);
+                    let in_source = frame.map_or(0.0, |frame| in_sources[source].length_m(frame));
                     drift += step * ((length - in_source).max(0.0) / length);
                 }
             }

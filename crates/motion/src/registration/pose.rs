@@ -59,8 +59,8 @@ pub struct PoseMatch {
 const CANDIDATES: usize = 8;
 /// The greatest number of frames of a clip in the coarse comparison.
 const MAX_COARSE_FRAMES: usize = 1_000;
-/// The greatest jolt ([`crate::clip::jolts`]) of a calm frame: a transition adds the motion of its two frames,
-/// including any trembling, to its own.
+/// The greatest jolt ([`crate::clip::jolts`]) of a calm frame: a transition adds the motion of its
+/// two frames, including any trembling, to its own.
 const MAX_CALM_JOLT: f32 = 0.7;
 /// Calm frames may cost this much more than the lowest cost, 1 being that of an average pair, and
 /// at most twice the lowest cost: identical frames need no replacement.
