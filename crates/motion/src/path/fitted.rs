@@ -156,17 +156,12 @@ fn smoothed(way: &[DVec2], deviation: f64) -> Vec<DVec2> {
             way[index as usize]
         }
     };
-    let mean = |index: isize| {
-        let here = way[index as usize];
-        if index >= reach && index + reach < count {
-            // Far from the ends, without the questions of `at`: the same sum.
-            let (before, after) = (&way[(index - reach) as usize..], &way[index as usize + 1..]);
-            let before = before[..reach as usize].iter().rev();
-            let sides = before.zip(after).zip(&weights[1..]).map(|((a, b), w)| (a + b) * *w);
-            return (sides.sum::<DVec2>() + here) / sum;
-        }
-        let sides = (1..=reach).map(|k| (at(index - k) + at(index + k)) * weights[k as usize]);
-        (sides.sum::<DVec2>() + here) / sum
+    let continued: Vec<DVec2> = (-reach..count + reach).map(at).collect();
+    let reach = reach as usize;
+    let mean = |around: &[DVec2]| {
+        let (before, here, after) = (&around[..reach], around[reach], &around[reach + 1..]);
+        let sides = before.iter().rev().zip(after).zip(&weights[1..]);
+        (sides.map(|((a, b), weight)| (a + b) * *weight).sum::<DVec2>() + here) / sum
     };
-    (0..count).map(mean).collect()
+    continued.windows(2 * reach + 1).map(mean).collect()
 }
