@@ -255,4 +255,15 @@ mod tests {
         assert!(distance(&points, pos2(45.0, 40.0)) < 0.5);
         assert!(distance(&points, pos2(45.0, 90.0)) > 30.0);
     }
+
+    #[test]
+    fn of_too_many_arcs_the_most_probable_are_drawn() {
+        let arc = |weight: f32| Arc { ends: [0, 1], weight, faint: false };
+        let few: Vec<Arc> = [0.2, 0.9, 0.1].map(arc).into();
+        assert_eq!(drawn_arcs(&few), [0, 1, 2]);
+        let many: Vec<Arc> = (0..MAX_ARCS + 40).map(|index| arc(index as f32)).collect();
+        let drawn = drawn_arcs(&many);
+        assert_eq!((drawn.len(), drawn[0]), (MAX_ARCS, MAX_ARCS + 39));
+        assert!(drawn.iter().all(|&index| index >= 40));
+    }
 }
