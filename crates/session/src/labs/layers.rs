@@ -118,7 +118,8 @@ type Timing = (choices::LayerFit, f64);
 type LayerOf = (Arc<Pair>, Timing);
 
 /// A clip of up to this number of frames gets its layer in the frame in which it is chosen: about
-/// 6 ms in a browser.
+/// 6 ms in a browser. Another time for the same clips always shows in its own frame: a stage that
+/// waits is dimmed, and would flicker while a slider is dragged.
 const AT_ONCE: usize = 1_500;
 
 /// A cache of B in A's time.
@@ -155,9 +156,10 @@ impl LayerCache {
         timing: Timing,
     ) -> Result<Option<Arc<TimedLayer>>, LabError> {
         let Self { in_step, timed } = self;
+        let is_new = timed.known(|(known, _)| Arc::ptr_eq(known, pair)).is_none();
         let is_it = |(known, by): &LayerOf| Arc::ptr_eq(known, pair) && *by == timing;
         timed.request_or_begin((Arc::clone(pair), timing), is_it, |_| {
-            if pair.a.clip().frames() > AT_ONCE {
+            if is_new && pair.a.clip().frames() > AT_ONCE {
                 return Ok(ControlFlow::Continue(()));
             }
             Ok(ControlFlow::Break(Arc::new(in_step.layer(pair, timing)?)))

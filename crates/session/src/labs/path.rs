@@ -205,7 +205,8 @@ impl PartialEq for PathInputs {
 }
 
 /// A clip of up to this number of frames gets its path in the frame in which it is chosen: about
-/// 4 ms in a browser.
+/// 4 ms in a browser. A change of the fit always shows in its own frame: a stage that waits is
+/// dimmed, and would flicker while a slider is dragged.
 const FITTED_AT_ONCE: usize = 1_500;
 
 /// The motion and the options of a fit.
@@ -257,9 +258,10 @@ impl Paths {
         motion: &Arc<Motion>,
         options: FitOptions,
     ) -> Result<Option<Arc<FittedMotion>>, LabError> {
+        let is_new = self.fitted.known(|(of, _)| Arc::ptr_eq(of, motion)).is_none();
         let is_it = |(of, by): &FittedOf| Arc::ptr_eq(of, motion) && *by == options;
         self.fitted.request_or_begin((Arc::clone(motion), options), is_it, |_| {
-            if motion.clip().frames() > FITTED_AT_ONCE {
+            if is_new && motion.clip().frames() > FITTED_AT_ONCE {
                 return Ok(ControlFlow::Continue(()));
             }
             Ok(ControlFlow::Break(Arc::new(FittedMotion::new(motion, options)?)))

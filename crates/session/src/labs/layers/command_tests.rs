@@ -119,10 +119,14 @@ fn layer_on_a_long_clip_is_prepared_between_frames() {
     assert!(is_prepared(&session) && session.jobs().is_empty());
     let outcome = session.main_outcome().unwrap();
     assert_eq!(outcome.layer().unwrap().fit, crate::LayerFit::InStep);
-    // B in A's time does not depend on the weight: a new weight shows at once.
+    // Another weight, and another time for the same clips, show at once.
+    let shown = Arc::clone(&outcome.sources[1].motion);
     session.apply(Command::Set(vec![(Key::LayerWeight, Value::Number(0.5))])).unwrap();
-    assert_eq!(
-        session.main_outcome().unwrap().layer().unwrap().shares.iter().copied().fold(0.0, f32::max),
-        0.5
-    );
+    let outcome = session.main_outcome().unwrap();
+    assert_eq!(outcome.layer().unwrap().shares.iter().copied().fold(0.0, f32::max), 0.5);
+    assert!(Arc::ptr_eq(&outcome.sources[1].motion, &shown));
+    session.apply(Command::Set(vec![(Key::LayerStart, Value::Number(0.3))])).unwrap();
+    let outcome = session.main_outcome().unwrap();
+    assert_ne!(outcome.sources[1].motion.clip(), shown.clip());
+    assert!(session.jobs().iter().all(|job| job.kind != crate::JobKind::Analyzing));
 }
