@@ -57,14 +57,7 @@ pub(super) fn separate(contour: &mut Contour, neighbours: &Neighbours) -> bool {
         if around.len() > 2 {
             order_around(contour, around);
         }
-        // Each upwards edge is joined to the downwards one before it, with the inside between them.
-        for place in 0..around.len() {
-            let (one, other) = (around[place], around[(place + around.len() - 1) % around.len()]);
-            if one.is_upwards && !other.is_upwards {
-                sheets.join(one.corner, next(other.corner));
-                sheets.join(next(one.corner), other.corner);
-            }
-        }
+        sheets.join_around(around);
     }
     sheets.assign(contour, &is_shared);
     true
@@ -113,6 +106,35 @@ impl Sheets {
         let (one, other) = (self.root(one), self.root(other));
         // The smaller is the root, so that the result does not depend on the order.
         self.above[one.max(other) as usize] = one.min(other);
+    }
+
+    /// Joins the triangles around an edge in pairs, each upwards edge to a downwards one before it,
+    /// with the inside between them. Triangles that are folded may lie in any order: each upwards
+    /// edge takes the last one that no other has taken, like closing brackets.
+    fn join_around(&mut self, around: &[HalfEdge]) {
+        let mut waiting: Vec<HalfEdge> = Vec::new();
+        let mut is_joined = vec![false; around.len()];
+        // In the second turn, the first ones find those before them.
+        for (edge, is_joined) in around.iter().zip(&mut is_joined) {
+            if !edge.is_upwards {
+                waiting.push(*edge);
+            } else if let Some(other) = waiting.pop() {
+                self.join_edges(edge, &other);
+                *is_joined = true;
+            }
+        }
+        for (edge, is_joined) in around.iter().zip(is_joined) {
+            if let (true, false, Some(other)) = (edge.is_upwards, is_joined, waiting.last()) {
+                self.join_edges(edge, other);
+                waiting.pop();
+            }
+        }
+    }
+
+    /// Joins two triangles at an edge that they share in opposite directions.
+    fn join_edges(&mut self, one: &HalfEdge, other: &HalfEdge) {
+        self.join(one.corner, next(other.corner));
+        self.join(next(one.corner), other.corner);
     }
 
     /// Gives the corners of every set but the first at a shared vertex a copy of it.

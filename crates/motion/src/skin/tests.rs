@@ -371,6 +371,29 @@ fn character_of_another_rig_stands_where_the_clip_stands() {
     assert!(Drive::new(&walk, &roles, &rope).is_none());
 }
 
+/// Returns a skeleton of any shape; its bones are up to 10^`scale` metres long.
+fn random_tree(seed: u64, joints: usize, scale: f32) -> Skeleton {
+    let mut next = fixtures::noise(seed);
+    let list = (0..joints)
+        .map(|index| Joint {
+            name: format!("j{index}"),
+            parent: index
+                .checked_sub(1)
+                .map(|last| (next().abs() * (last + 1) as f32) as usize % (last + 1)),
+            offset: Vec3::new(next(), next(), next()) * 10f32.powf(scale) * next().abs(),
+            end_site: None,
+            channels: vec![],
+        })
+        .collect();
+    Skeleton::new(list).unwrap()
+}
+
+#[test]
+fn body_whose_triangles_fold_is_closed() {
+    let skeleton = random_tree(13_108_890_028_104_798_581, 3, 0.0);
+    check("folded", &skeleton, &SkinnedMesh::around(&skeleton, &Roles::default(), 1.0));
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
     #[test]
@@ -379,19 +402,7 @@ proptest! {
         joints in 2usize..16,
         scale in -2.0f32..2.0,
     ) {
-        let mut next = fixtures::noise(seed);
-        let list = (0..joints)
-            .map(|index| Joint {
-                name: format!("j{index}"),
-                parent: index
-                    .checked_sub(1)
-                    .map(|last| (next().abs() * (last + 1) as f32) as usize % (last + 1)),
-                offset: Vec3::new(next(), next(), next()) * 10f32.powf(scale) * next().abs(),
-                end_site: None,
-                channels: vec![],
-            })
-            .collect();
-        let skeleton = Skeleton::new(list).unwrap();
+        let skeleton = random_tree(seed, joints, scale);
         let mesh = SkinnedMesh::around(&skeleton, &Roles::detect(&skeleton), 1.0);
         check("random", &skeleton, &mesh);
         prop_assert!(mesh.positions.len() < 60_000, "{}", mesh.positions.len());
