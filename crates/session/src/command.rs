@@ -18,6 +18,9 @@ use segue_motion::skeleton::Role;
 pub enum Command {
     /// Sets parameters, all or none.
     Set(Vec<(Key, Value)>),
+    /// Moves the camera so that what has changed can be seen: no step of undo, because the user did
+    /// not ask for it.
+    Frame(Vec<(Key, Value)>),
     /// Brings one parameter back to its default.
     Reset(Key),
     /// Ends a gesture: all changes of a slider since it was pressed are one step for undo.

@@ -10,7 +10,7 @@ use crate::bone_map::BoneMap;
 use crate::built_in::preset_entries;
 use crate::labs::Slot;
 use crate::library::{Entry, Library};
-use crate::params::{Key, Kind, ListKind, Mark, Params, Value, ValueError};
+use crate::params::{Group, Key, Kind, ListKind, Mark, Params, Value, ValueError};
 use history::History;
 use places::forget_places;
 use std::collections::{BTreeMap, BTreeSet};
@@ -148,6 +148,20 @@ impl Document {
     pub(crate) fn set_unchecked(&mut self, key: Key, value: Value) {
         let result = self.params.set(key, value);
         debug_assert!(result.is_ok(), "{result:?}");
+    }
+
+    /// Sets parameters of the camera, all or none, without a step for undo.
+    ///
+    /// # Errors
+    /// [`ValueError`] names the invalid value.
+    pub(crate) fn frame(&mut self, values: Vec<(Key, Value)>) -> Result<(), ValueError> {
+        let mut params = self.params.clone();
+        for (key, value) in values {
+            debug_assert!(key.param().group == Group::Camera, "{key:?} is not of the camera");
+            params.set(key, value)?;
+        }
+        self.params = params;
+        Ok(())
     }
 
     /// Sets parameters, all or none, as a step for undo if any of them takes part in undo.

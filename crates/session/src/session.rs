@@ -266,6 +266,7 @@ impl Session {
     fn route(&mut self, command: Command) -> Result<(), CommandError> {
         match command {
             Command::Set(values) => self.set(values)?,
+            Command::Frame(values) => self.document.frame(values)?,
             Command::Reset(key) => self.set_as_step(vec![(key, key.param().default_value())])?,
             Command::Settle => self.document.settle(),
             Command::OpenLink(query) => {

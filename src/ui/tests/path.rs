@@ -3,8 +3,8 @@
 use super::*;
 use eframe::egui::{Event, Modifiers, Pos2, TouchDeviceId, TouchId, TouchPhase};
 use glam::DVec2;
-use segue_session::PathFacts;
 use segue_session::choices;
+use segue_session::{Group, PathFacts};
 
 fn path(harness: &Harness<'_, Page>) -> Arc<PathFacts> {
     outcome(harness.state()).path().cloned().expect("a path")
@@ -283,4 +283,21 @@ fn camera_is_restored_when_the_path_lab_is_left() {
     // A camera that was moved by hand stays.
     let harness = lab(DESK, DARK, "lab=path&a=walk&play=off&camera_yaw=10");
     assert_eq!(harness.state().session.params().choice::<choices::Follow>().word(), "result");
+}
+
+#[test]
+fn one_step_back_leaves_the_path_lab_and_restores_the_camera() {
+    let mut harness = lab(DESK, DARK, "lab=blend&play=off");
+    let camera = |harness: &Harness<'_, Page>| -> Vec<(Key, Value)> {
+        let changed = harness.state().session.params().changed();
+        let camera = changed.filter(|(param, _)| param.group == Group::Camera);
+        camera.map(|(param, value)| (param.key, value.clone())).collect()
+    };
+    press("Path", &mut harness);
+    harness.run_steps(4);
+    assert!(!camera(&harness).is_empty());
+    harness.state_mut().session.apply(Command::Undo).expect("a step");
+    harness.run_steps(4);
+    assert_eq!(harness.state().session.params().lab(), LabId::Blend);
+    assert_eq!(camera(&harness), []);
 }

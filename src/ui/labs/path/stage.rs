@@ -2,7 +2,7 @@
 
 use crate::ui::kit;
 use crate::ui::labs::path::ground_line::View;
-use crate::ui::labs::path::hand::{DraggedPoint, path_of, snapped};
+use crate::ui::labs::path::hand::{DraggedPoint, FramedPath, path_of, snapped};
 use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::stage::framing::framing;
@@ -15,7 +15,7 @@ use eframe::egui::{
 use glam::DVec2;
 use segue_motion::path::{GroundSpline, PathEdit, SplineEnds};
 use segue_session::LabId;
-use segue_session::{Command, Group, Key, PathFacts, Session};
+use segue_session::{Command, Group, Key, PathFacts, Session, Value};
 use segue_text::Message;
 
 /// Side of the square in which a control point is taken hold of, points: fingers need more than the
@@ -214,25 +214,30 @@ pub(crate) fn note(state: &UiState) -> Option<Message> {
 /// Brings the whole path into sight when the lab opens, unless the camera was moved before, and
 /// restores the camera when the lab is left.
 pub(crate) fn frame_once(session: &Session, state: &mut UiState, out: &mut Out) {
-    let is_open = session.params().lab() == LabId::Path;
-    let untouched = || session.params().changed().all(|(param, _)| param.group != Group::Camera);
-    match (is_open, &state.labs.path.framed) {
-        (true, None) if !untouched() => state.labs.path.framed = Some(Vec::new()),
+    let params = session.params();
+    let is_moved = || params.changed().any(|(param, _)| param.group == Group::Camera);
+    match (params.lab() == LabId::Path, &state.labs.path.framed) {
+        (true, None) if is_moved() => {
+            state.labs.path.framed = Some(FramedPath::default());
+        }
         (true, None) => {
             if session.main_outcome().is_some_and(|outcome| outcome.path().is_some())
-                && let Some(values) = framing(session, state, Some(PITCH_DEG))
+                && let Some(camera) = framing(session, state, Some(PITCH_DEG))
             {
-                state.labs.path.framed = Some(values.clone());
-                out.commands.push(Command::Set(values));
+                let before = camera.iter().map(|(key, _)| (*key, params.get(*key).clone()));
+                let before = before.collect();
+                out.commands.push(Command::Frame(camera.clone()));
+                state.labs.path.framed = Some(FramedPath { camera, before });
             }
         }
-        (false, Some(values)) => {
-            let as_set = values.iter().all(|(key, value)| {
-                key.param().check(value.clone()).as_ref() == Ok(session.params().get(*key))
-            });
-            if as_set && !values.is_empty() {
-                let defaults = values.iter().map(|(key, _)| (*key, key.param().default_value()));
-                out.commands.push(Command::Set(defaults.collect()));
+        (false, Some(FramedPath { camera, before })) => {
+            // Undo has restored what the camera follows, and nothing else of it.
+            let is_as_framed = |(key, value): &(Key, Value)| {
+                let value = key.param().check(value.clone());
+                *key == Key::Follow || value.as_ref() == Ok(params.get(*key))
+            };
+            if camera.iter().all(is_as_framed) && !before.is_empty() {
+                out.commands.push(Command::Frame(before.clone()));
             }
             state.labs.path.framed = None;
             state.labs.path.said = None;
