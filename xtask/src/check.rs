@@ -76,26 +76,16 @@ fn install_for_tests() -> Result<()> {
     tools::software_vulkan()?;
     tools::chromium()?;
     tools::browser_packages()?;
-    python_with_bvhio()?;
-    python_with_numpy()?;
-    python_for_package()?;
+    python_with_packages()?;
     Ok(())
 }
 
-fn python_with_bvhio() -> Result<PathBuf> {
-    tools::python("bvhio", &["bvhio==1.5.4"])
-}
-
-fn python_with_numpy() -> Result<PathBuf> {
-    tools::python("numpy", &["numpy==1.26.4"])
-}
-
-/// Returns a Python with what builds and tests `import segue`.
-fn python_for_package() -> Result<PathBuf> {
+/// Returns a Python with what builds and tests `import segue`, and with what reads exported files.
+fn python_with_packages() -> Result<PathBuf> {
     let listed = fs::read_to_string(python_package().join("tests/requirements.txt"))?;
     let is_package = |line: &&str| !line.is_empty() && !line.starts_with('#');
     let packages: Vec<&str> = listed.lines().map(str::trim).filter(is_package).collect();
-    tools::python("segue", &packages)
+    tools::python(&packages)
 }
 
 fn python_package() -> PathBuf {
@@ -182,20 +172,21 @@ fn without_ui(call: &[&str]) -> Result<Command> {
 fn oracles(report: &mut Report) {
     report.step("exported files in three.js, bvhio and NumPy", || {
         tools::browser_packages()?;
-        let python = python_with_bvhio()?;
+        let python = python_with_packages()?;
         shell::run(tests_without_ui()?.arg("--test=exchange"))?;
         let files = shell::target().join("tmp/exchange");
         shell::run(command("node", &["tests/browser/read_back.mjs"]).arg(&files))?;
-        shell::run(command(python, &["crates/formats/tests/oracles/read_back.py"]).arg(&files))?;
-        let numpy = python_with_numpy()?;
-        shell::run(command(numpy, &["crates/formats/tests/oracles/read_back_npz.py"]).arg(&files))
+        ["read_back.py", "read_back_npz.py"].iter().try_for_each(|script| {
+            let script = root().join("crates/formats/tests/oracles").join(script);
+            shell::run(command(&python, &[]).arg(script).arg(&files))
+        })
     });
 }
 
 fn python(report: &mut Report) {
     report.step("import segue", || {
         let package = python_package();
-        let python = python_for_package()?;
+        let python = python_with_packages()?;
         // By the profile of the tests: what lies below the libraries is built already, and the
         // wheel that users get takes minutes to optimise.
         let wheels = shell::target().join("wheels");

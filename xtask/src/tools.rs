@@ -79,9 +79,9 @@ pub fn browser_packages() -> Result<()> {
 }
 
 /// Finds or installs Python packages of exact versions, and returns the path of the Python that has
-/// them, in an environment of this name.
-pub fn python(name: &str, packages: &[&str]) -> Result<PathBuf> {
-    let folder = target().join("python").join(name);
+/// them.
+pub fn python(packages: &[&str]) -> Result<PathBuf> {
+    let folder = target().join("python");
     let bin = folder.join(if cfg!(windows) { "Scripts" } else { "bin" });
     let python = bin.join("python");
     // Written last, so that an incomplete installation is repeated, and one of other packages too.
