@@ -16,6 +16,9 @@ pub(crate) use crate::{Lesson, LoadedFile, NoResult, Pane, PaneContent, Session}
 pub(crate) use segue_motion::clip::Motion;
 pub(crate) use std::sync::Arc;
 
+use crate::params::{Kind, PARAMS};
+use proptest::prelude::{BoxedStrategy, Strategy, any};
+
 /// A skeleton with two bones.
 pub(crate) const ASF: &str = include_str!("fixtures/toy.asf");
 /// A motion of [`ASF`] with two frames.
@@ -106,4 +109,39 @@ pub(crate) fn read_clip(session: &mut Session, id: &str) {
 /// Sets the blend window, in frames.
 pub(crate) fn blend_window(session: &mut Session, frames: f64) {
     session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(frames))])).unwrap();
+}
+
+/// Returns any valid value of a parameter, by its row in the table.
+pub(crate) fn any_value(row: usize) -> BoxedStrategy<(Key, Value)> {
+    let param = &PARAMS[row];
+    let key = param.key;
+    match param.kind {
+        Kind::Number { min, max, auto, .. } => (any::<bool>(), min..=max)
+            .prop_map(move |(left_to_segue, number)| {
+                (
+                    key,
+                    if auto && left_to_segue {
+                        Value::Auto
+                    } else {
+                        key.param().check(Value::Number(number)).unwrap()
+                    },
+                )
+            })
+            .boxed(),
+        Kind::Switch => any::<bool>().prop_map(move |on| (key, Value::Switch(on))).boxed(),
+        Kind::Choice(choices) => {
+            (0..choices.len()).prop_map(move |i| (key, Value::Choice(choices[i].key))).boxed()
+        }
+        Kind::Clip | Kind::Joint | Kind::Character | Kind::Text => {
+            "[^\\pC]{0,12}".prop_map(move |text| (key, Value::Text(text))).boxed()
+        }
+        Kind::List(kind) => "[0-9:,.\\-a-z() ]{0,12}"
+            .prop_map(move |text| (key, kind.read(&text).unwrap_or(kind.empty()).into()))
+            .boxed(),
+        Kind::Compare => (1.0f64..120.0, 1.0f64..120.0)
+            .prop_map(move |(x, y)| {
+                (key, key.param().parse(&format!("blend_window:{x},{y}")).unwrap())
+            })
+            .boxed(),
+    }
 }

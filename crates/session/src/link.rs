@@ -102,42 +102,9 @@ fn add(query: &mut String, key: &str, text: &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::params::{Compare, Kind, PARAMS};
+    use crate::fixtures::any_value;
+    use crate::params::{Compare, PARAMS};
     use proptest::prelude::*;
-
-    fn any_value(row: usize) -> BoxedStrategy<(Key, Value)> {
-        let param = &PARAMS[row];
-        let key = param.key;
-        match param.kind {
-            Kind::Number { min, max, auto, .. } => (any::<bool>(), min..=max)
-                .prop_map(move |(left_to_segue, number)| {
-                    (
-                        key,
-                        if auto && left_to_segue {
-                            Value::Auto
-                        } else {
-                            key.param().check(Value::Number(number)).unwrap()
-                        },
-                    )
-                })
-                .boxed(),
-            Kind::Switch => any::<bool>().prop_map(move |on| (key, Value::Switch(on))).boxed(),
-            Kind::Choice(choices) => {
-                (0..choices.len()).prop_map(move |i| (key, Value::Choice(choices[i].key))).boxed()
-            }
-            Kind::Clip | Kind::Joint | Kind::Character | Kind::Text => {
-                "[^\\pC]{0,12}".prop_map(move |text| (key, Value::Text(text))).boxed()
-            }
-            Kind::List(kind) => "[0-9:,.\\-a-z() ]{0,12}"
-                .prop_map(move |text| (key, kind.read(&text).unwrap_or(kind.empty()).into()))
-                .boxed(),
-            Kind::Compare => (1.0f64..120.0, 1.0f64..120.0)
-                .prop_map(move |(x, y)| {
-                    (key, key.param().parse(&format!("blend_window:{x},{y}")).unwrap())
-                })
-                .boxed(),
-        }
-    }
 
     proptest! {
         #[test]

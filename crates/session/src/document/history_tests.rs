@@ -1,6 +1,104 @@
 //! Tests of the steps of undo.
 
 use crate::fixtures::*;
+use crate::params::{Mark, PARAMS};
+use proptest::prelude::*;
+use proptest::sample::Index;
+
+/// What undo restores: parameters, and the ids and names of the clips.
+fn restored(session: &Session) -> (Vec<(Key, Value)>, Vec<(String, String)>) {
+    let params = PARAMS.iter().filter(|param| !param.has(Mark::NoUndo));
+    let values = params.map(|param| (param.key, session.params().get(param.key).clone()));
+    let clips = session.library().entries().iter();
+    (values.collect(), clips.map(|clip| (clip.id.clone(), clip.name.clone())).collect())
+}
+
+/// A command about clips that are chosen among those of the library.
+#[derive(Clone, Debug)]
+enum Change {
+    Set(Vec<(Key, Value)>),
+    Reset(Index),
+    Assign(Slot, Index),
+    Remove(Index),
+    Rename(Index, String),
+    Keep,
+    Load(u8),
+    Settle,
+    Undo,
+    Redo,
+}
+
+impl Change {
+    fn any() -> impl Strategy<Value = Self> {
+        let row = any::<Index>().prop_map(|index| index.index(PARAMS.len()));
+        let outside = [Key::Src, Key::Lesson, Key::Corpus];
+        let value = row
+            .prop_flat_map(any_value)
+            .prop_filter("outside", move |(key, _)| !outside.contains(key));
+        let slot = prop_oneof![Just(Slot::A), Just(Slot::B)];
+        prop_oneof![
+            6 => prop::collection::vec(value, 1..4).prop_map(Self::Set),
+            1 => any::<Index>().prop_map(Self::Reset),
+            2 => (slot, any::<Index>()).prop_map(|(slot, clip)| Self::Assign(slot, clip)),
+            1 => any::<Index>().prop_map(Self::Remove),
+            1 => (any::<Index>(), "[a-z]{1,4}").prop_map(|(clip, name)| Self::Rename(clip, name)),
+            1 => Just(Self::Keep),
+            1 => (0..3_u8).prop_map(Self::Load),
+            1 => Just(Self::Settle),
+            2 => Just(Self::Undo),
+            1 => Just(Self::Redo),
+        ]
+    }
+
+    /// Returns whether the session has carried it out.
+    fn apply(self, session: &mut Session) -> bool {
+        let clips = session.library().entries();
+        let id = |clip: Index| clips[clip.index(clips.len())].id.clone();
+        let command = match self {
+            Self::Set(values) => Command::Set(values),
+            Self::Reset(index) => Command::Reset(PARAMS[index.index(PARAMS.len())].key),
+            Self::Assign(slot, clip) => Command::Assign(slot, id(clip)),
+            Self::Remove(clip) => Command::Remove(id(clip)),
+            Self::Rename(clip, name) => Command::Rename(id(clip), name),
+            Self::Keep => Command::Keep(0),
+            Self::Load(seed) => {
+                return session.load(&format!("{seed}.bvh"), made_bvh(f64::from(seed))).is_ok();
+            }
+            Self::Settle => Command::Settle,
+            Self::Undo => Command::Undo,
+            Self::Redo => Command::Redo,
+        };
+        session.apply(command).is_ok()
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+    #[test]
+    fn all_steps_are_taken_back_and_made_again(changes in prop::collection::vec(Change::any(), 1..16)) {
+        let mut session = Session::new();
+        let first = restored(&session);
+        for change in changes {
+            let before = restored(&session);
+            if !change.clone().apply(&mut session) {
+                prop_assert_eq!(&restored(&session), &before, "{:?} was refused", change);
+            }
+        }
+        let last = restored(&session);
+        while session.can_undo() {
+            session.apply(Command::Undo).unwrap();
+        }
+        prop_assert_eq!(&restored(&session), &first);
+        while session.can_redo() {
+            session.apply(Command::Redo).unwrap();
+        }
+        // Steps that were taken back before are made again, too: only then the last state differs.
+        while session.can_undo() && restored(&session) != last {
+            session.apply(Command::Undo).unwrap();
+        }
+        prop_assert_eq!(&restored(&session), &last);
+    }
+}
 
 #[test]
 fn drag_of_a_slider_is_one_step() {
