@@ -36,7 +36,8 @@ pub struct Take {
     pub name: String,
     /// The time range in which it plays, seconds; `None` if the file states none.
     pub span_secs: Option<Range<f64>>,
-    /// The times of all keys of all moving nodes, seconds, ascending.
+    /// The times of all keys of all moving nodes, seconds, ascending; where no node moves, those of
+    /// all nodes, which say how long they are held.
     pub key_secs: Vec<f64>,
     /// Node by node.
     pub movements: Vec<Movement>,
@@ -92,7 +93,7 @@ pub(crate) fn takes(
 fn take(root: &SceneRoot, stack: &AnimStack, curves: &dyn Curves) -> Take {
     // Without the root node of ufbx.
     let mut movements = vec![Movement::Still; root.nodes.len().saturating_sub(1)];
-    let mut times = Times::default();
+    let (mut times, mut held) = (Times::default(), Vec::new());
     for layer in &stack.layers {
         for prop in layer.anim_props.as_ref() {
             let node = ufbx::as_node(&prop.element);
@@ -109,12 +110,16 @@ fn take(root: &SceneRoot, stack: &AnimStack, curves: &dyn Curves) -> Take {
                 }
                 if curves.is_constant(curve) && !layer.weight_is_animated {
                     *movement = (*movement).max(Movement::Held);
+                    held.push(curve);
                 } else {
                     *movement = Movement::Moves;
                     times.add(|| curves.key_secs(curve));
                 }
             }
         }
+    }
+    if times.all.is_empty() {
+        held.into_iter().for_each(|curve| times.add(|| curves.key_secs(curve)));
     }
     follow_scales(root, &mut movements);
     let span = stack.time_begin..stack.time_end;

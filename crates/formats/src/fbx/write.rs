@@ -248,6 +248,14 @@ impl Take {
                 values.truncate(1);
             }
         }
+        let is_held = |channel: &Channel| channel.values.iter().all(|values| values.len() < 2);
+        if channels.iter().all(is_held)
+            && let Some(Channel { values: [x, ..], .. }) = channels.first_mut()
+            && let Some(&place) = x.first()
+        {
+            // The keys say how long a take is.
+            x.resize(frames, place);
+        }
         Self { name, times: (0..frames).map(ticks).collect(), channels }
     }
 

@@ -173,6 +173,17 @@ fn fbx_of_unrelated_clips_or_none_is_refused() {
 }
 
 #[test]
+fn fbx_of_a_still_clip_keeps_its_frames() {
+    let walk = made(Action::Walk);
+    let still =
+        Clip::from_poses("still", Arc::clone(walk.skeleton()), 24.0, vec![walk.pose(3); 50]);
+    let still = still.unwrap();
+    let back = read_one(&write_fbx(&[&still], &FbxOptions::default()).unwrap());
+    assert_eq!((back.frames(), back.fps()), (50, 24.0));
+    assert!(apart(&still, &back) < TOLERANCE);
+}
+
+#[test]
 fn fbx_of_one_frame_and_of_none_is_read() {
     let walk = made(Action::Walk);
     let one = walk.crop(5..6).unwrap();
