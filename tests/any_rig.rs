@@ -135,7 +135,7 @@ fn file() -> impl Strategy<Value = AnyFile> {
 fn noise(seed: u64) -> f64 {
     let mixed = (seed ^ seed >> 31).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     let mixed = (mixed ^ mixed >> 29).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    ((mixed ^ mixed >> 32) as u32) as f64 / f64::from(u32::MAX) * 2.0 - 1.0
+    f64::from((mixed ^ mixed >> 32) as u32) / f64::from(u32::MAX) * 2.0 - 1.0
 }
 
 impl AnyFile {

@@ -119,7 +119,9 @@ fn take(root: &SceneRoot, stack: &AnimStack, curves: &dyn Curves) -> Take {
         }
     }
     if times.all.is_empty() {
-        held.into_iter().for_each(|curve| times.add(|| curves.key_secs(curve)));
+        for curve in held {
+            times.add(|| curves.key_secs(curve));
+        }
     }
     follow_scales(root, &mut movements);
     let span = stack.time_begin..stack.time_end;

@@ -5,12 +5,13 @@ use crate::params::{Mark, PARAMS};
 use proptest::prelude::*;
 use proptest::sample::Index;
 
-/// What undo restores: parameters, and the ids and names of the clips.
-fn restored(session: &Session) -> (Vec<(Key, Value)>, Vec<(String, String)>) {
+/// Returns what undo restores: parameters, and the ids and names of the clips.
+fn restored(session: &Session) -> Vec<String> {
     let params = PARAMS.iter().filter(|param| !param.has(Mark::NoUndo));
-    let values = params.map(|param| (param.key, session.params().get(param.key).clone()));
+    let values =
+        params.map(|param| format!("{}={:?}", param.name, session.params().get(param.key)));
     let clips = session.library().entries().iter();
-    (values.collect(), clips.map(|clip| (clip.id.clone(), clip.name.clone())).collect())
+    values.chain(clips.map(|clip| format!("{}: {}", clip.id, clip.name))).collect()
 }
 
 /// A command about clips that are chosen among those of the library.
