@@ -286,7 +286,7 @@ fn camera_is_restored_when_the_path_lab_is_left() {
 }
 
 #[test]
-fn one_step_back_leaves_the_path_lab_and_restores_the_camera() {
+fn step_out_of_the_path_lab_and_back_moves_the_camera_with_it() {
     let mut harness = lab(DESK, DARK, "lab=blend&play=off");
     let camera = |harness: &Harness<'_, Page>| -> Vec<(Key, Value)> {
         let changed = harness.state().session.params().changed();
@@ -295,9 +295,19 @@ fn one_step_back_leaves_the_path_lab_and_restores_the_camera() {
     };
     press("Path", &mut harness);
     harness.run_steps(4);
-    assert!(!camera(&harness).is_empty());
-    harness.state_mut().session.apply(Command::Undo).expect("a step");
+    let whole_path = camera(&harness);
+    assert!(whole_path.len() > 3, "{whole_path:?}");
+    for _ in 0..2 {
+        harness.state_mut().session.apply(Command::Undo).expect("a step");
+        harness.run_steps(4);
+        assert_eq!(harness.state().session.params().lab(), LabId::Blend);
+        assert_eq!(camera(&harness), []);
+        harness.state_mut().session.apply(Command::Redo).expect("a step");
+        harness.run_steps(4);
+        assert_eq!(harness.state().session.params().lab(), LabId::Path);
+        assert_eq!(camera(&harness), whole_path);
+    }
+    press("Blend", &mut harness);
     harness.run_steps(4);
-    assert_eq!(harness.state().session.params().lab(), LabId::Blend);
     assert_eq!(camera(&harness), []);
 }

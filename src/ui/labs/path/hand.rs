@@ -23,17 +23,8 @@ pub(crate) struct PathHand {
     pub(crate) held: Option<DraggedPoint>,
     /// The reason why the last edit was refused.
     pub(crate) said: Option<Message>,
-    /// How the whole path was framed; `None` before.
-    pub(crate) framed: Option<FramedPath>,
-}
-
-/// The camera that shows the whole path; empty if the user had moved it before.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct FramedPath {
-    /// Its values.
-    pub(crate) camera: Vec<(Key, Value)>,
-    /// Those before.
-    pub(crate) before: Vec<(Key, Value)>,
+    /// The camera values set when the whole path was framed; `None` before.
+    pub(crate) framed: Option<Vec<(Key, Value)>>,
 }
 
 /// A control point that is dragged.

@@ -2,7 +2,7 @@
 
 use crate::ui::kit;
 use crate::ui::labs::path::ground_line::View;
-use crate::ui::labs::path::hand::{DraggedPoint, FramedPath, path_of, snapped};
+use crate::ui::labs::path::hand::{DraggedPoint, path_of, snapped};
 use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::stage::framing::framing;
@@ -15,7 +15,7 @@ use eframe::egui::{
 use glam::DVec2;
 use segue_motion::path::{GroundSpline, PathEdit, SplineEnds};
 use segue_session::LabId;
-use segue_session::{Command, Group, Key, PathFacts, Session, Value};
+use segue_session::{Command, Group, Key, PathFacts, Session};
 use segue_text::Message;
 
 /// Side of the square in which a control point is taken hold of, points: fingers need more than the
@@ -215,29 +215,29 @@ pub(crate) fn note(state: &UiState) -> Option<Message> {
 /// restores the camera when the lab is left.
 pub(crate) fn frame_once(session: &Session, state: &mut UiState, out: &mut Out) {
     let params = session.params();
-    let is_moved = || params.changed().any(|(param, _)| param.group == Group::Camera);
+    // Undo and redo restore what the camera follows, and nothing else of it: that alone says
+    // neither that it was moved nor that it is as it was framed.
+    let is_place = |key: Key| key.param().group == Group::Camera && key != Key::Follow;
     match (params.lab() == LabId::Path, &state.labs.path.framed) {
-        (true, None) if is_moved() => {
-            state.labs.path.framed = Some(FramedPath::default());
+        (true, None) if params.changed().any(|(param, _)| is_place(param.key)) => {
+            state.labs.path.framed = Some(Vec::new());
         }
         (true, None) => {
             if session.main_outcome().is_some_and(|outcome| outcome.path().is_some())
-                && let Some(camera) = framing(session, state, Some(PITCH_DEG))
+                && let Some(values) = framing(session, state, Some(PITCH_DEG))
             {
-                let before = camera.iter().map(|(key, _)| (*key, params.get(*key).clone()));
-                let before = before.collect();
-                out.commands.push(Command::Frame(camera.clone()));
-                state.labs.path.framed = Some(FramedPath { camera, before });
+                state.labs.path.framed = Some(values.clone());
+                out.commands.push(Command::Frame(values));
             }
         }
-        (false, Some(FramedPath { camera, before })) => {
-            // Undo has restored what the camera follows, and nothing else of it.
-            let is_as_framed = |(key, value): &(Key, Value)| {
+        (false, Some(values)) => {
+            let is_as_framed = values.iter().all(|(key, value)| {
                 let value = key.param().check(value.clone());
-                *key == Key::Follow || value.as_ref() == Ok(params.get(*key))
-            };
-            if camera.iter().all(is_as_framed) && !before.is_empty() {
-                out.commands.push(Command::Frame(before.clone()));
+                !is_place(*key) || value.as_ref() == Ok(params.get(*key))
+            });
+            if is_as_framed && !values.is_empty() {
+                let defaults = values.iter().map(|(key, _)| (*key, key.param().default_value()));
+                out.commands.push(Command::Frame(defaults.collect()));
             }
             state.labs.path.framed = None;
             state.labs.path.said = None;
