@@ -7,6 +7,7 @@
 use proptest::prelude::*;
 use segue_formats::{ImportOptions, import};
 use segue_motion::clip::Clip;
+use segue_motion::skeleton::fixtures;
 use segue_session::export::{ExportFormat, ExportOptions, export};
 use segue_session::{Command, Key, Kind, PARAMS, Param, Session, Value};
 use std::fmt::Write as _;
@@ -54,7 +55,7 @@ enum Curve {
 /// A joint of a file.
 #[derive(Clone, Debug)]
 struct AnyJoint {
-    /// Its parent, as a share of those before it.
+    /// The place of its parent among the joints before it: 0 for the first, 1 for the last.
     parent: f64,
     /// An index of [`NAMES`].
     name: usize,
@@ -62,9 +63,9 @@ struct AnyJoint {
     offset: [f64; 3],
     /// A kind of [`AnyFile::channels`].
     channels: usize,
-    /// That of its angles.
+    /// The curve of its angles.
     curve: Curve,
-    /// Degrees.
+    /// The greatest angle, degrees.
     amplitude: f64,
 }
 
@@ -78,7 +79,7 @@ struct AnyFile {
     fps: f64,
     /// The curve of the root's place.
     way: Curve,
-    /// The length of the way, sizes.
+    /// How far the root moves, as a multiple of the size.
     length: f64,
     seed: u64,
 }
@@ -133,9 +134,7 @@ fn file() -> impl Strategy<Value = AnyFile> {
 
 /// Returns a number from -1 to 1.
 fn noise(seed: u64) -> f64 {
-    let mixed = (seed ^ seed >> 31).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    let mixed = (mixed ^ mixed >> 29).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    f64::from((mixed ^ mixed >> 32) as u32) / f64::from(u32::MAX) * 2.0 - 1.0
+    f64::from(fixtures::noise(seed)())
 }
 
 impl AnyFile {
@@ -169,7 +168,7 @@ impl AnyFile {
         }
     }
 
-    /// Writes a joint and what hangs on it, and returns their indices in the order of the file.
+    /// Writes a joint and the joints below it, and returns their indices in the order of the file.
     fn joint_text(
         &self,
         index: usize,
@@ -280,27 +279,24 @@ fn cases() -> u32 {
 
 /// Returns any values for half of the parameters of a lab.
 fn settings(lab: &str, seed: u64) -> Vec<(Key, Value)> {
+    let mut next = fixtures::noise(seed);
+    let mut share = || f64::from(next().abs()).min(0.999_999);
     let own = PARAMS.iter().filter(|param| param.group.name() == lab);
-    let choose = |(row, param): (usize, &Param)| {
-        let at = |salt: u64| {
-            noise(seed.wrapping_add(row as u64 * 15_485_863 + salt)).abs().min(0.999_999)
-        };
+    let choose = |param: &Param| {
+        let is_set = share() < 0.5;
         let value = match param.kind {
-            Kind::Number { min, max, .. } => {
-                // Small values are as likely as large ones.
-                let share = at(1) * at(2);
-                Value::Number(min + (max - min) * share)
-            }
-            Kind::Switch => Value::Switch(at(1) < 0.5),
+            // More often near the least value than near the greatest.
+            Kind::Number { min, max, .. } => Value::Number(min + (max - min) * share() * share()),
+            Kind::Switch => Value::Switch(share() < 0.5),
             Kind::Choice(choices) => {
-                Value::Choice(choices[(at(1) * choices.len() as f64) as usize].key)
+                Value::Choice(choices[(share() * choices.len() as f64) as usize].key)
             }
             _ => return None,
         };
         let value = param.check(value).ok()?;
-        (at(3) < 0.5).then_some((param.key, value))
+        is_set.then_some((param.key, value))
     };
-    own.enumerate().filter_map(choose).collect()
+    own.filter_map(choose).collect()
 }
 
 proptest! {
@@ -340,7 +336,7 @@ proptest! {
                 check(&session, &set)?;
             }
         }
-        // What is written is as long when it is read again.
+        // Each file that an export writes has the duration of its motion.
         for id in &ids {
             let Some(motion) = session.library().get(id).and_then(|entry| entry.motion.clone()) else {
                 continue;

@@ -18,8 +18,8 @@ use segue_motion::skeleton::Role;
 pub enum Command {
     /// Sets parameters, all or none.
     Set(Vec<(Key, Value)>),
-    /// Moves the camera so that what has changed can be seen: no step of undo, because the user did
-    /// not ask for it.
+    /// Sets parameters of the camera, all or none, where the app moves it by itself, as when the
+    /// Path lab shows the whole path: no step of undo.
     Frame(Vec<(Key, Value)>),
     /// Brings one parameter back to its default.
     Reset(Key),

@@ -108,31 +108,28 @@ impl Sheets {
         self.above[one.max(other) as usize] = one.min(other);
     }
 
-    /// Joins the triangles around an edge in pairs, each upwards edge to a downwards one before it,
-    /// with the inside between them. Triangles that are folded may lie in any order: each upwards
-    /// edge takes the last one that no other has taken, like closing brackets.
+    /// Joins the triangles around an edge in pairs: each upwards edge and a downwards one before it,
+    /// with the inside between them. They alternate unless triangles are folded over each other;
+    /// in any order, they pair like brackets.
     fn join_around(&mut self, around: &[HalfEdge]) {
-        let mut waiting: Vec<HalfEdge> = Vec::new();
-        let mut is_joined = vec![false; around.len()];
-        // In the second turn, the first ones find those before them.
-        for (edge, is_joined) in around.iter().zip(&mut is_joined) {
+        let (mut downwards, mut upwards) = (Vec::new(), Vec::new());
+        for &edge in around {
             if !edge.is_upwards {
-                waiting.push(*edge);
-            } else if let Some(other) = waiting.pop() {
-                self.join_edges(edge, &other);
-                *is_joined = true;
+                downwards.push(edge);
+            } else if let Some(other) = downwards.pop() {
+                self.join_edges(edge, other);
+            } else {
+                upwards.push(edge);
             }
         }
-        for (edge, is_joined) in around.iter().zip(is_joined) {
-            if let (true, false, Some(other)) = (edge.is_upwards, is_joined, waiting.last()) {
-                self.join_edges(edge, other);
-                waiting.pop();
-            }
+        // The order is circular: the last downwards edges come before the first upwards ones.
+        for (edge, other) in upwards.into_iter().zip(downwards.into_iter().rev()) {
+            self.join_edges(edge, other);
         }
     }
 
     /// Joins two triangles at an edge that they share in opposite directions.
-    fn join_edges(&mut self, one: &HalfEdge, other: &HalfEdge) {
+    fn join_edges(&mut self, one: HalfEdge, other: HalfEdge) {
         self.join(one.corner, next(other.corner));
         self.join(next(one.corner), other.corner);
     }

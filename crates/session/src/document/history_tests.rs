@@ -14,7 +14,7 @@ fn restored(session: &Session) -> Vec<String> {
     values.chain(clips.map(|clip| format!("{}: {}", clip.id, clip.name))).collect()
 }
 
-/// A command about clips that are chosen among those of the library.
+/// A command. An [`Index`] chooses one of the clips that the library then has, or a parameter.
 #[derive(Clone, Debug)]
 enum Change {
     Set(Vec<(Key, Value)>),

@@ -215,8 +215,8 @@ pub(crate) fn note(state: &UiState) -> Option<Message> {
 /// restores the camera when the lab is left.
 pub(crate) fn frame_once(session: &Session, state: &mut UiState, out: &mut Out) {
     let params = session.params();
-    // Undo and redo restore what the camera follows, and nothing else of it: that alone says
-    // neither that it was moved nor that it is as it was framed.
+    // What the camera follows does not count: undo and redo restore it without the rest of the
+    // camera, whoever moved that.
     let is_place = |key: Key| key.param().group == Group::Camera && key != Key::Follow;
     match (params.lab() == LabId::Path, &state.labs.path.framed) {
         (true, None) if params.changed().any(|(param, _)| is_place(param.key)) => {
