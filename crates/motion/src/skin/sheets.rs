@@ -108,9 +108,9 @@ impl Sheets {
         self.above[one.max(other) as usize] = one.min(other);
     }
 
-    /// Joins the triangles around an edge in pairs: each upwards edge and a downwards one before it,
-    /// with the inside between them. They alternate unless triangles are folded over each other;
-    /// in any order, they pair like brackets.
+    /// Joins the triangles around an edge in pairs: each upwards edge and a downwards one before
+    /// it, with the inside between them. They alternate unless triangles are folded over each
+    /// other; in any order, they pair like brackets.
     fn join_around(&mut self, around: &[HalfEdge]) {
         let (mut downwards, mut upwards) = (Vec::new(), Vec::new());
         for &edge in around {
