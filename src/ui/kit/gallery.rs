@@ -1,7 +1,7 @@
 //! The kit laid out as a whole lab. With `SEGUE_GALLERY` set to a folder, pictures are written
 //! there.
 
-mod mock_page;
+mod fixtures;
 
 use crate::ui::theme::Theme;
 use eframe::egui::{self, Rect, UiBuilder, Vec2, pos2, vec2};
@@ -9,7 +9,7 @@ use egui_kittest::{
     Harness,
     kittest::{NodeT as _, Queryable as _},
 };
-use mock_page::{Mock, lab_ui};
+use fixtures::{Mock, lab_ui};
 
 fn harness(size: Vec2, theme: Theme, mock: Mock) -> Harness<'static, Mock> {
     let builder = Harness::builder()
