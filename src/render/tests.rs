@@ -23,7 +23,6 @@ use segue_scene::{
 use segue_session::Session;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Instant;
 
 /// Returns a ball of a colour.
 fn ball(center: Vec3, radius: f32, color: Color) -> Limb {
@@ -81,10 +80,8 @@ impl Gpu {
     /// Draws with full quality, and saves the picture.
     fn draw(&mut self, name: &str, stage: &Stage, size: [u32; 2]) -> Image {
         self.renderer.set_quality(Quality::Full);
-        let start = Instant::now();
         let image =
             render_to_image(&mut self.renderer, &self.device, &self.queue, stage, size).unwrap();
-        eprintln!("{name}: {:.2} s", start.elapsed().as_secs_f64());
         let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("target/stage");
         std::fs::create_dir_all(&folder).unwrap();
         std::fs::write(folder.join(format!("{name}.png")), image.to_png().unwrap()).unwrap();

@@ -1,13 +1,12 @@
-//! Tests of pictures to the pixel, and measurements of the time to draw them.
+//! Tests of pictures to the pixel.
 
-use super::{A, B, actors, ball, gpu, gpu_for, stage};
+use super::{actors, ball, gpu, gpu_for, stage};
 use crate::render::frame::Frame;
 use crate::render::image::read_texture;
 use crate::render::{Quality, Refinement, render_to_image};
 use eframe::wgpu;
 use glam::Vec3;
-use segue_scene::{Camera, Lens, Look, Pane, Stage, Viewport, rgb};
-use std::time::Instant;
+use segue_scene::{Camera, Lens, Look, Pane, Stage, Viewport};
 
 #[test]
 fn stage_in_software_is_coarse_in_motion_and_fine_at_rest() {
@@ -262,53 +261,4 @@ fn page_gets_the_stage_pixel_by_pixel_in_encoded_and_linear_targets() {
             }
         }
     }
-}
-
-#[test]
-fn time_to_build_and_encode() {
-    let Some(mut gpu) = gpu() else { return };
-    let actors = actors();
-    let mut stage = stage(&actors, [1440, 900], 3, false, 1.0);
-    let mut frame = Frame::default();
-    frame.build(&stage, [1440, 900], [1440, 900], Quality::Full);
-    gpu.renderer.set_quality(Quality::Full);
-    let rounds = 200u32;
-    let (mut bodies, mut build, mut prepare) = (0.0, 0.0, 0.0);
-    let pose = actors.walk.world_pose(50);
-    for round in 0..rounds {
-        let start = Instant::now();
-        for pane in &mut stage.panes {
-            let kept = (pane.strokes.clone(), pane.rings.clone());
-            pane.clear();
-            (pane.strokes, pane.rings) = kept;
-            for _ in 0..4 {
-                pane.add_ghost(&actors.body, &pose, rgb(A[0]));
-            }
-            pane.add_body(&actors.body, &pose, rgb(B[0]));
-            pane.camera.yaw += 1e-3 * round as f32;
-        }
-        bodies += start.elapsed().as_secs_f64();
-        let start = Instant::now();
-        frame.build(&stage, [1440, 900], [1440, 900], Quality::Full);
-        build += start.elapsed().as_secs_f64();
-        let mut encoder =
-            gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let start = Instant::now();
-        assert!(
-            gpu.renderer
-                .prepare(&gpu.device, &gpu.queue, &mut encoder, 7, &stage, [1440, 900])
-                .drawn
-        );
-        prepare += start.elapsed().as_secs_f64();
-        // Nothing is submitted, because this measures only the processor's time.
-        drop(encoder);
-    }
-    let limbs: usize = stage.panes.iter().map(|p| p.limbs.len()).sum();
-    let each = |secs: f64| secs * 1e6 / f64::from(rounds);
-    eprintln!(
-        "{limbs} limbs: bodies {:.0} µs, frame {:.0} µs, build + upload + encode {:.0} µs",
-        each(bodies),
-        each(build),
-        each(prepare)
-    );
 }
