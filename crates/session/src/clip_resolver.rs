@@ -188,10 +188,7 @@ impl ClipResolver<'_> {
     /// Returns the inputs of a pane's result; `None` while they are being computed.
     fn inputs(&mut self, params: &Params, match_window: usize) -> Result<Option<Inputs>, LabError> {
         let clips = self.lab_clips(params)?;
-        if !self.labs.knows(&clips) {
-            return Ok(None);
-        }
-        lab_of(params.lab()).inputs(self.labs, clips, params, match_window)
+        self.labs.inputs(clips, params, match_window)
     }
 
     /// Returns the answer to the parameters of a pane; `shown` are the inputs of its present

@@ -25,6 +25,7 @@ mod faults;
 mod motion_parcel;
 mod parcel;
 mod registration;
+mod result;
 mod stream;
 mod task;
 #[cfg(test)]
@@ -47,6 +48,7 @@ pub(crate) use motion_parcel::{pack_without_floats, unpack as unpack_motion};
 pub(crate) use parcel::take;
 pub use parcel::{Parcel, ParcelError};
 pub(crate) use registration::{RegistrationAnswer, RegistrationTask};
+pub(crate) use result::ResultTask;
 pub(crate) use stream::StreamTask;
 pub use task::JobClip;
 pub(crate) use view::{ViewAnswer, ViewTask};

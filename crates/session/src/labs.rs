@@ -14,6 +14,7 @@ mod in_place;
 pub(super) mod lab;
 mod lab_set;
 mod layers;
+mod long_results;
 mod loop_;
 mod make;
 mod match_;
@@ -46,6 +47,7 @@ pub(super) use graph::{clips_of, visits_of};
 pub(super) use lab::{Inputs, LabClips, MoreClip, slots_of};
 pub(super) use lab_set::{LabSet, lab_of};
 pub use layers::{LayerFacts, LayerFit};
+pub(super) use long_results::PairLabs;
 pub(super) use make::{has as made_motion_has, preset_motion, range_of, synth_action};
 #[cfg(test)]
 pub(super) use match_::options_of;

@@ -166,7 +166,7 @@ impl MetricId {
 }
 
 /// One measured number.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Metric {
     /// The metric.
     pub id: MetricId,

@@ -7,6 +7,7 @@ use super::distances::DistanceTask;
 use super::error::JobError;
 use super::faults::FaultTask;
 use super::registration::RegistrationTask;
+use super::result::ResultTask;
 use super::stream::StreamTask;
 use super::task::{JobClip, Task};
 use super::view::ViewTask;
@@ -149,6 +150,7 @@ tasks! {
     Distances(DistanceTask),
     Faults(FaultTask),
     Registration(RegistrationTask),
+    Result(ResultTask),
     Stream(StreamTask),
     View(ViewTask),
 }

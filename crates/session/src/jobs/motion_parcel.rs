@@ -69,10 +69,22 @@ pub(crate) fn pack_without_floats(motion: &Motion) -> Result<Parcel, ParcelError
 
 /// Restores a clip.
 pub(crate) fn unpack(parcel: &Parcel) -> Result<Motion, ParcelError> {
-    let head: Head<'_> = serde_json::from_str(&parcel.head)?;
-    let (frames, mut floats, mut bytes) = (head.clip.frames, &parcel.floats[..], &parcel.bytes[..]);
+    unpack_on(&parcel.head, &parcel.floats, &parcel.bytes, std::iter::empty())
+}
+
+/// Restores a clip from the parts of its parcel, on the first of the skeletons that is its own.
+pub(super) fn unpack_on<'a>(
+    head: &str,
+    mut floats: &[f32],
+    mut bytes: &[u8],
+    mut skeletons: impl Iterator<Item = &'a Arc<Skeleton>>,
+) -> Result<Motion, ParcelError> {
+    let head: Head<'_> = serde_json::from_str(head)?;
+    let frames = head.clip.frames;
     let skeleton = Skeleton::new(head.joints.into_owned()).map_err(|_| ParcelError::Arrays)?;
-    let skeleton = Arc::new(skeleton.with_folded_chain(head.above.into_owned()));
+    let skeleton = skeleton.with_folded_chain(head.above.into_owned());
+    let known = skeletons.find(|known| ***known == skeleton);
+    let skeleton = known.map_or_else(|| Arc::new(skeleton), Arc::clone);
     let clip = head.clip.take(&skeleton, &mut floats)?;
     let places = take::<[f64; 3]>(&mut bytes, if head.knows_places { frames } else { 0 })?;
     let places =

@@ -1,5 +1,6 @@
 //! The memory of a worker between jobs.
 
+use crate::labs::PairLabs;
 use segue_motion::graph::{StreamComputer, TileComputer};
 use segue_motion::registration::{DistanceMatrix, PairTerms};
 use std::sync::Arc;
@@ -18,6 +19,8 @@ pub(crate) struct WorkerMemory {
     pub(super) pairs: Vec<([u32; 2], usize, PairTerms)>,
     /// The last distances of two clips, by their numbers and the stride.
     pub(super) matrix: Option<([u32; 2], usize, Arc<DistanceMatrix>)>,
+    /// What the labs keep of the last clips, by the numbers of these.
+    pub(super) labs: Option<(Vec<u32>, PairLabs)>,
 }
 
 impl WorkerMemory {
@@ -29,6 +32,7 @@ impl WorkerMemory {
             stream: None,
             pairs: Vec::new(),
             matrix: None,
+            labs: None,
         }
     }
 
@@ -43,6 +47,9 @@ impl WorkerMemory {
         self.pairs.retain(|(clips, _, _)| !clips.contains(&clip));
         if self.matrix.as_ref().is_some_and(|(clips, _, _)| clips.contains(&clip)) {
             self.matrix = None;
+        }
+        if self.labs.as_ref().is_some_and(|(clips, _)| clips.contains(&clip)) {
+            self.labs = None;
         }
     }
 }

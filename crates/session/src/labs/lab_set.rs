@@ -5,8 +5,9 @@ use super::artefact_meter::ArtefactMeter;
 use super::blend::{self, BlendCache};
 use super::clean::{self, CleanCache};
 use super::graph::{self, GraphScheduler};
-use super::lab::{HasPart, Lab, LabClips};
+use super::lab::{HasPart, Inputs, Lab, LabClips};
 use super::layers::{self, LayerCache};
+use super::long_results::LongResults;
 use super::loop_::{self, CycleCache};
 use super::match_::{self, DriveScheduler};
 use super::on_character::CharacterMotions;
@@ -16,11 +17,13 @@ use super::register::{self, RegistrationSchedulers};
 use super::sliced::{JobKind, Sliced};
 use super::speed::{self, GaitFinder};
 use super::view::{self, ViewCache};
-use super::{edit, in_place, make, transition};
+use super::{LabError, edit, in_place, make, transition};
 use crate::LabId;
 use crate::jobs::JobBoard;
 use crate::motion::FeetReader;
+use crate::params::Params;
 use segue_motion::clip::Motion;
+use std::ops::ControlFlow;
 
 /// Returns the definition of a lab.
 pub(crate) fn lab_of(lab: LabId) -> &'static dyn Lab<LabSet> {
@@ -52,6 +55,7 @@ pub(crate) struct LabSet {
     gaits: GaitFinder,
     cycles: CycleCache,
     layers: LayerCache,
+    long_results: LongResults,
     pub(crate) registrations: RegistrationSchedulers,
     paths: Paths,
     pub(crate) graphs: GraphScheduler,
@@ -68,13 +72,14 @@ pub(crate) struct LabSet {
 
 impl LabSet {
     /// Returns all sliced work, in the order of scheduling.
-    fn sliced(&self) -> [&dyn Sliced; 13] {
+    fn sliced(&self) -> [&dyn Sliced; 14] {
         [
             &self.analyses,
             &self.pairs,
             &self.blends,
             &self.cycles,
             &self.layers,
+            &self.long_results,
             &self.registrations,
             &self.views,
             &self.cleaned,
@@ -86,13 +91,14 @@ impl LabSet {
         ]
     }
 
-    fn sliced_mut(&mut self) -> ([&mut dyn Sliced; 13], &mut JobBoard) {
-        let sliced: [&mut dyn Sliced; 13] = [
+    fn sliced_mut(&mut self) -> ([&mut dyn Sliced; 14], &mut JobBoard) {
+        let sliced: [&mut dyn Sliced; 14] = [
             &mut self.analyses,
             &mut self.pairs,
             &mut self.blends,
             &mut self.cycles,
             &mut self.layers,
+            &mut self.long_results,
             &mut self.registrations,
             &mut self.views,
             &mut self.cleaned,
@@ -107,10 +113,29 @@ impl LabSet {
 
     /// Returns whether everything that is derived from these clips is known or takes no longer than
     /// a frame. Otherwise it is requested: call [`work`](Self::work), then ask again.
-    pub(crate) fn knows(&mut self, clips: &LabClips) -> bool {
+    fn knows(&mut self, clips: &LabClips) -> bool {
         let all = clips.slots.iter().chain(clips.more.iter().map(|clip| &clip.motion));
         let are_known: Vec<bool> = all.map(|clip| self.analyses.knows(clip, &self.jobs)).collect();
         are_known.into_iter().all(|is_known| is_known)
+    }
+
+    /// Returns the inputs of a result; `None` while they are being computed: call
+    /// [`work`](Self::work), then ask again.
+    pub(crate) fn inputs(
+        &mut self,
+        clips: LabClips,
+        params: &Params,
+        match_window: usize,
+    ) -> Result<Option<Inputs>, LabError> {
+        if !self.knows(&clips) {
+            return Ok(None);
+        }
+        match self.long_results.inputs(&clips, params, match_window, &self.jobs) {
+            ControlFlow::Break(inputs) => Ok(inputs),
+            ControlFlow::Continue(()) => {
+                lab_of(params.lab()).inputs(self, clips, params, match_window)
+            }
+        }
     }
 
     /// Returns whether a worker is at what is derived from a motion.

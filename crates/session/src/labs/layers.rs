@@ -20,6 +20,7 @@ use segue_motion::math::Planar;
 use segue_motion::metrics::{Deviations, deepest_penetration, worst_foot_slide};
 use segue_motion::transition::{Loop, LoopOptions, close_loop};
 use segue_text::{Message, msg};
+use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -51,7 +52,7 @@ impl<S: HasPart<Pairs> + HasPart<LayerCache>> Lab<S> for LayersLab {
 }
 
 /// The fit of the layer's time to that of the clip below.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LayerFit {
     /// One cycle of B is repeated so that its feet would strike when A's do.
     InStep,
@@ -64,7 +65,7 @@ pub enum LayerFit {
 }
 
 /// Facts about a layer that was laid over a clip.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LayerFacts {
     /// The share of B in each joint, 0 to 1.
     pub shares: Vec<f32>,

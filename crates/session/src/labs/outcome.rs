@@ -7,12 +7,13 @@ use segue_motion::gait::GaitFacts;
 use segue_motion::math::Planar;
 use segue_motion::metrics::{MotionTrace, ResultMetrics};
 use segue_motion::retarget::{RetargetErrors, RetargetOptions};
+use serde::{Deserialize, Serialize};
 use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
 
 /// One of the two clips of a lab.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Slot {
     /// The clip that plays first; drawn in a warm colour.
     A,
@@ -66,7 +67,7 @@ impl PlacedClip {
 }
 
 /// The transition from one clip to the other.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Transition {
     /// First time of the window in the result, seconds.
     pub start_secs: f64,
@@ -86,7 +87,7 @@ pub struct Transition {
 }
 
 /// A search for the frames at which A is left and B is entered.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MatchSearch {
     /// Whether single poses were compared instead of windows.
     pub by_pose: bool,
@@ -103,7 +104,7 @@ pub struct MatchSearch {
 }
 
 /// A report on retargeting B.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RetargetReport {
     /// The joints of A's skeleton without a counterpart in B, by name, parents first: they keep
     /// their rest pose.

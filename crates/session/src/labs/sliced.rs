@@ -6,7 +6,7 @@ use crate::jobs::JobBoard;
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum JobKind {
     /// The reading of the feet and places of a long clip, its measurement, and what a lab makes of
-    /// it before any result: a fitted path, a layer in time.
+    /// it before any result: a fitted path, a layer in time. Results that workers make, too.
     Analyzing,
     /// A search for the best place of a transition, or for the ends of a cycle.
     Matching,

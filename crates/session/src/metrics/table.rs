@@ -6,7 +6,7 @@ macro_rules! metrics {
     ($($id:ident $name:literal $label:literal $(or $short:literal)?, $unit:ident,
         $better:ident $(by $noticeable:literal)?, $help:literal, $good:literal;)*) => {
         /// The name of a metric inside the program; its row is [`MetricId::row`].
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
         #[expect(missing_docs, reason = "the help sentence of the row says it")]
         pub enum MetricId { $($id),* }
 

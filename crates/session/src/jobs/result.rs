@@ -1,0 +1,194 @@
+//! The result of a lab from long clips.
+
+use super::error::JobError;
+use super::motion_parcel::{pack_without_floats, unpack_on};
+use super::parcel::split_floats;
+use super::task::{JobClip, Task};
+use super::worker_memory::WorkerMemory;
+use super::{Parcel, ParcelError, arrays_of};
+use crate::labs::{LabFacts, LayerFacts, MeasuredMotion, Outcome, PairLabs, PlacedClip};
+use crate::labs::{RetargetReport, Slot, Transition, recipe_ingredients};
+use crate::metrics::Metric;
+use crate::params::{Key, Kind, Params};
+use segue_motion::clip::{Clip, Motion};
+use segue_motion::math::Planar;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// The result of a lab. The clips are those in its slots.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct ResultTask {
+    /// The lab, and the parameters from which its result is made, as in a link.
+    params: Vec<(String, String)>,
+    /// The length of the windows that an automatic match compares, frames.
+    match_window: usize,
+}
+
+impl ResultTask {
+    /// Returns the task for the result of the parameters.
+    pub(crate) fn new(params: &Params, match_window: usize) -> Self {
+        let is_clip = |key: Key| matches!(key.param().kind, Kind::Clip);
+        let keys = recipe_ingredients(params.lab()).filter(|&key| !is_clip(key));
+        let text = |key: Key| (key.param().name.to_owned(), key.param().format(params.get(key)));
+        Self { params: std::iter::once(Key::Lab).chain(keys).map(text).collect(), match_window }
+    }
+
+    fn params(&self) -> Option<Params> {
+        let mut params = Params::default();
+        for (name, text) in &self.params {
+            let key = Key::from_name(name)?;
+            params.set(key, key.param().parse(text).ok()?).ok()?;
+        }
+        Some(params)
+    }
+}
+
+/// A motion of an outcome: a clip of the job, or one of the outcome's own, by its place.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+enum Place {
+    Job(usize),
+    Own(usize),
+}
+
+/// An outcome without its motions.
+#[derive(Serialize, Deserialize)]
+struct Head {
+    /// The heads of the outcome's own motions, with the lengths of their floats and bytes.
+    own: Vec<(String, usize, usize)>,
+    motion: Place,
+    sources: Vec<(Slot, Place, f64, Planar)>,
+    transition: Option<Transition>,
+    retargeted: Option<RetargetReport>,
+    layer: Option<LayerFacts>,
+    metrics: Vec<Metric>,
+    beside: Vec<Place>,
+    /// The clip on which the metrics of every lab are measured, if it is another one.
+    measured: Option<Place>,
+}
+
+/// The motions of an outcome that are not clips of its job.
+struct OwnMotions<'a> {
+    job: &'a [JobClip],
+    own: Vec<Arc<Motion>>,
+}
+
+impl OwnMotions<'_> {
+    fn place(&mut self, motion: &Arc<Motion>) -> Place {
+        self.find(|known| Arc::ptr_eq(known, motion)).unwrap_or_else(|| {
+            self.own.push(Arc::clone(motion));
+            Place::Own(self.own.len() - 1)
+        })
+    }
+
+    /// Returns the place of a clip: that of a motion which has it.
+    fn place_of_clip(&mut self, clip: &Arc<Clip>, like: &Motion) -> Place {
+        self.find(|known| Arc::ptr_eq(known.clip(), clip)).unwrap_or_else(|| {
+            self.own.push(Arc::new(Motion::with_roles(Arc::clone(clip), like.roles())));
+            Place::Own(self.own.len() - 1)
+        })
+    }
+
+    fn find(&self, is_it: impl Fn(&Arc<Motion>) -> bool) -> Option<Place> {
+        let job = self.job.iter().position(|clip| is_it(&clip.motion)).map(Place::Job);
+        job.or_else(|| self.own.iter().position(is_it).map(Place::Own))
+    }
+}
+
+impl Task for ResultTask {
+    type Answer = Outcome;
+
+    fn run(&self, clips: &[JobClip], memory: &mut WorkerMemory) -> Result<Outcome, JobError> {
+        let params = self.params().ok_or(JobError::NoResult)?;
+        let numbers: Vec<u32> = clips.iter().map(|clip| clip.number).collect();
+        let slots: Vec<_> = clips.iter().map(|clip| Arc::clone(&clip.motion)).collect();
+        let kept = memory.labs.take().filter(|(known, _)| *known == numbers);
+        let mut labs = kept.map_or_else(PairLabs::default, |(_, labs)| labs);
+        let made = labs.result(&slots, &params, self.match_window);
+        memory.labs = Some((numbers, labs));
+        // The reason why there is none is found where the result is made in slices.
+        let outcome = made.ok_or(JobError::NoResult)?;
+        // What is looked at next is computed here, too.
+        for motion in outcome.sources.iter().map(|source| &source.motion).chain([&outcome.motion]) {
+            let (_, _, _) = (motion.ground_frames(), motion.contacts(), motion.ground_m());
+        }
+        Ok(outcome)
+    }
+
+    fn pack(clips: &[JobClip], answer: Outcome) -> Result<Parcel, ParcelError> {
+        let mut motions = OwnMotions { job: clips, own: Vec::new() };
+        let motion = motions.place(&answer.motion);
+        let sources = (answer.sources.iter())
+            .map(|source| {
+                let place = motions.place(&source.motion);
+                (source.slot, place, source.starts_at_secs, source.world_from_clip)
+            })
+            .collect();
+        let mut of_clip = |clip| motions.place_of_clip(clip, &answer.motion);
+        let beside = answer.beside.iter().map(&mut of_clip).collect();
+        let measured = match &answer.measured {
+            MeasuredMotion::Motion => None,
+            MeasuredMotion::Clip(clip) => Some(of_clip(clip)),
+            // A driven result, which no job makes.
+            MeasuredMotion::Trace(_) => return Err(ParcelError::Arrays),
+        };
+        let mut parcel = Parcel::default();
+        let mut own = Vec::new();
+        for motion in &motions.own {
+            let packed = pack_without_floats(motion)?;
+            let before = parcel.floats.len();
+            parcel.floats.reserve(arrays_of(motion.clip()).map(<[f32]>::len).sum());
+            arrays_of(motion.clip()).for_each(|array| parcel.floats.extend_from_slice(array));
+            own.push((packed.head, parcel.floats.len() - before, packed.bytes.len()));
+            parcel.bytes.extend(packed.bytes);
+        }
+        parcel.head = serde_json::to_string(&Head {
+            own,
+            motion,
+            sources,
+            transition: answer.transition,
+            retargeted: answer.retargeted.as_deref().cloned(),
+            layer: answer.layer().map(|facts| LayerFacts::clone(facts)),
+            metrics: answer.metrics,
+            beside,
+            measured,
+        })?;
+        Ok(parcel)
+    }
+
+    fn unpack(&self, clips: &[JobClip], parcel: Parcel) -> Result<Outcome, ParcelError> {
+        let head: Head = serde_json::from_str(&parcel.head)?;
+        let (mut floats, mut bytes) = (&parcel.floats[..], &parcel.bytes[..]);
+        let mut own = Vec::new();
+        for (head, float_count, byte_count) in head.own {
+            let floats = split_floats(&mut floats, float_count, 1)?;
+            let (now, later) = bytes.split_at_checked(byte_count).ok_or(ParcelError::Arrays)?;
+            bytes = later;
+            let skeletons = clips.iter().map(|clip| clip.motion.clip().skeleton());
+            own.push(Arc::new(unpack_on(&head, floats, now, skeletons)?));
+        }
+        let at = |place: Place| {
+            let found = match place {
+                Place::Job(at) => clips.get(at).map(|clip| &clip.motion),
+                Place::Own(at) => own.get(at),
+            };
+            found.ok_or(ParcelError::Arrays)
+        };
+        let clip = |place| at(place).map(|motion| Arc::clone(motion.clip()));
+        let source = |(slot, place, starts_at_secs, world_from_clip)| {
+            Ok(PlacedClip::new(slot, at(place)?, starts_at_secs, world_from_clip))
+        };
+        Ok(Outcome {
+            sources: head.sources.into_iter().map(source).collect::<Result<_, ParcelError>>()?,
+            transition: head.transition,
+            retargeted: head.retargeted.map(Arc::new),
+            facts: head.layer.map_or_else(LabFacts::default, |facts| LabFacts::of(Arc::new(facts))),
+            metrics: head.metrics,
+            beside: head.beside.into_iter().map(clip).collect::<Result<_, _>>()?,
+            measured: match head.measured {
+                Some(place) => MeasuredMotion::Clip(clip(place)?),
+                None => MeasuredMotion::Motion,
+            },
+            ..Outcome::plain(Arc::clone(at(head.motion)?))
+        })
+    }
+}

@@ -1,0 +1,191 @@
+//! The results of labs from long clips, which workers make.
+
+use super::blend::{BlendCache, BlendLab};
+use super::delegated::Delegated;
+use super::in_place::InPlaceLab;
+use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs};
+use super::layers::{LayerCache, LayersLab};
+use super::pair::Pairs;
+use super::request_cache::RequestCache;
+use super::sliced::{JobKind, Sliced};
+use super::transition::TransitionLab;
+use super::{LabError, Outcome};
+use crate::LabId;
+use crate::jobs::{JobBoard, ResultTask};
+use crate::params::Params;
+use segue_motion::clip::Motion;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+/// Returns the number of frames of A and B from which on a worker makes the result of a lab: about
+/// what a page does in one frame. `None` for a lab that has work of its own for workers, or whose
+/// results are no more than motions.
+fn worker_frames(lab: LabId) -> Option<usize> {
+    match lab {
+        LabId::Layers => Some(8_000),
+        LabId::InPlace => Some(16_000),
+        LabId::Blend | LabId::Transition => Some(32_000),
+        _ => None,
+    }
+}
+
+/// The labs that make a result from one or two clips, as a worker has them.
+#[derive(Debug, Default)]
+pub(crate) struct PairLabs {
+    pairs: Pairs,
+    blends: BlendCache,
+    layers: LayerCache,
+}
+
+impl HasPart<Pairs> for PairLabs {
+    fn part(&mut self) -> &mut Pairs {
+        &mut self.pairs
+    }
+}
+
+impl HasPart<BlendCache> for PairLabs {
+    fn part(&mut self) -> &mut BlendCache {
+        &mut self.blends
+    }
+}
+
+impl HasPart<LayerCache> for PairLabs {
+    fn part(&mut self) -> &mut LayerCache {
+        &mut self.layers
+    }
+}
+
+impl PairLabs {
+    /// Returns the result of the parameters from the clips in the lab's slots; `None` where there
+    /// is none.
+    pub(crate) fn result(
+        &mut self,
+        slots: &[Arc<Motion>],
+        params: &Params,
+        match_window: usize,
+    ) -> Option<Outcome> {
+        let lab: &dyn Lab<Self> = match params.lab() {
+            LabId::Blend => &BlendLab,
+            LabId::Transition => &TransitionLab,
+            LabId::Layers => &LayersLab,
+            LabId::InPlace => &InPlaceLab,
+            _ => return None,
+        };
+        // All of it is computed here.
+        let jobs = &mut JobBoard::default();
+        loop {
+            let clips = LabClips { slots: slots.to_vec(), more: Vec::new() };
+            for part in self.sliced() {
+                part.clear_requests();
+            }
+            match lab.inputs(self, clips, params, match_window).ok()? {
+                Some(inputs) if !inputs.is_draft() => return inputs.run().ok(),
+                _ => {}
+            }
+            let mut has_worked = false;
+            while self.sliced().into_iter().any(|part| part.work(jobs)) {
+                has_worked = true;
+            }
+            if !has_worked {
+                return None;
+            }
+        }
+    }
+
+    fn sliced(&mut self) -> [&mut dyn Sliced; 3] {
+        [&mut self.pairs, &mut self.blends, &mut self.layers]
+    }
+}
+
+/// A result that a worker is asked for.
+#[derive(Clone, Debug)]
+struct ResultOf {
+    slots: Vec<Arc<Motion>>,
+    task: ResultTask,
+}
+
+impl ResultOf {
+    fn is(&self, other: &Self) -> bool {
+        let same = |(a, b): (&Arc<Motion>, &Arc<Motion>)| Arc::ptr_eq(a, b);
+        self.task == other.task
+            && self.slots.len() == other.slots.len()
+            && self.slots.iter().zip(&other.slots).all(same)
+    }
+}
+
+/// A result that a worker has made. Each is equal to itself alone.
+#[derive(Clone, Debug)]
+struct MadeInputs(Arc<Outcome>);
+
+impl PartialEq for MadeInputs {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+impl LabInputs for MadeInputs {
+    fn run(&self) -> Result<Outcome, LabError> {
+        Ok(Outcome::clone(&self.0))
+    }
+}
+
+/// The results that workers make for panes.
+#[derive(Debug, Default)]
+pub(crate) struct LongResults {
+    /// `None` for a result that no worker could make: the lab makes it, or says why it cannot.
+    cache: RequestCache<ResultOf, Delegated<ResultTask, ()>, Option<Arc<Outcome>>>,
+}
+
+impl LongResults {
+    /// Requests a result of a worker: `None` while it is made. Where the clips are short, where
+    /// there are no workers and where none could make it, the lab has to: [`ControlFlow::Continue`].
+    pub(crate) fn inputs(
+        &mut self,
+        clips: &LabClips,
+        params: &Params,
+        match_window: usize,
+        jobs: &JobBoard,
+    ) -> ControlFlow<Option<Inputs>> {
+        let frames: usize = clips.slots.iter().map(|clip| clip.clip().frames()).sum();
+        let is_long = worker_frames(params.lab()).is_some_and(|least| frames >= least);
+        if !is_long || !jobs.has_workers() {
+            return ControlFlow::Continue(());
+        }
+        let task = ResultTask::new(params, match_window);
+        let of = ResultOf { slots: clips.slots.clone(), task };
+        if let Some(made) = self.cache.request(|known, _| known.is(&of)) {
+            return match made {
+                Some(outcome) => {
+                    ControlFlow::Break(Some(Inputs::new(MadeInputs(Arc::clone(outcome)))))
+                }
+                None => ControlFlow::Continue(()),
+            };
+        }
+        if !self.cache.is_under_way(|known| known.is(&of)) {
+            self.cache.begin(of, Delegated::New);
+        }
+        ControlFlow::Break(None)
+    }
+}
+
+impl Sliced for LongResults {
+    fn clear_requests(&mut self) {
+        self.cache.clear_requests();
+    }
+
+    fn work(&mut self, jobs: &mut JobBoard) -> bool {
+        self.cache.work(|of, work| {
+            let offer = || Some((of.task.clone(), of.slots.clone()));
+            let taken = |outcome| Some(Some(Arc::new(outcome)));
+            work.advance(jobs, offer, taken, |_| ControlFlow::Break(None))
+        })
+    }
+
+    fn is_ready(&self) -> bool {
+        self.cache.is_ready()
+    }
+
+    fn progress(&self) -> Option<(JobKind, f64)> {
+        self.cache.under_way().next().map(|_| (JobKind::Analyzing, 0.0))
+    }
+}
