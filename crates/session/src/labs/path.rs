@@ -92,11 +92,10 @@ pub struct FittedMotion {
 }
 
 impl FittedMotion {
-    fn new(motion: &Arc<Motion>, options: FitOptions) -> Result<Self, LabError> {
-        let path = FittedPath::new(Arc::clone(motion), &options)?;
+    fn new(path: FittedPath) -> Self {
+        let motion = Arc::clone(path.source());
         let off = path.residuals().map(|residual| residual.shift.length() * 100.0);
-        Ok(Self {
-            motion: Arc::clone(motion),
+        Self {
             curve: Arc::new(path.curve().clone()),
             error: path.error(),
             errors_cm: path
@@ -107,7 +106,8 @@ impl FittedMotion {
                 .map(Into::into)
                 .collect(),
             editor: PathEditor::new(path, motion.roles(), motion.contacts().clone()),
-        })
+            motion,
+        }
     }
 
     /// Returns the motion before editing.
@@ -215,7 +215,8 @@ type FittedOf = (Arc<Motion>, FitOptions);
 /// A cache of the last fitted paths: dragging a point changes none of them.
 #[derive(Debug, Default)]
 pub(crate) struct Paths {
-    fitted: RequestCache<FittedOf, (), Result<Arc<FittedMotion>, LabError>>,
+    /// The work is a path that is fitted, without what its motion needs besides.
+    fitted: RequestCache<FittedOf, Option<Box<FittedPath>>, Result<Arc<FittedMotion>, LabError>>,
     locked_feet: LockedFeetCache,
 }
 
@@ -262,9 +263,10 @@ impl Paths {
         let is_it = |(of, by): &FittedOf| Arc::ptr_eq(of, motion) && *by == options;
         self.fitted.request_or_begin((Arc::clone(motion), options), is_it, |_| {
             if is_new && motion.clip().frames() > FITTED_AT_ONCE {
-                return Ok(ControlFlow::Continue(()));
+                return Ok(ControlFlow::Continue(None));
             }
-            Ok(ControlFlow::Break(Arc::new(FittedMotion::new(motion, options)?)))
+            let path = FittedPath::new(Arc::clone(motion), &options)?;
+            Ok(ControlFlow::Break(Arc::new(FittedMotion::new(path))))
         })
     }
 }
@@ -276,8 +278,12 @@ impl Sliced for Paths {
     }
 
     fn work(&mut self, _jobs: &mut JobBoard) -> bool {
-        let fit = |(motion, options): &FittedOf, ()| {
-            ControlFlow::Break(FittedMotion::new(motion, *options).map(Arc::new))
+        let fit = |(motion, options): &FittedOf, path: Option<Box<FittedPath>>| match path {
+            None => match FittedPath::new(Arc::clone(motion), options) {
+                Ok(path) => ControlFlow::Continue(Some(Box::new(path))),
+                Err(problem) => ControlFlow::Break(Err(problem.into())),
+            },
+            Some(path) => ControlFlow::Break(Ok(Arc::new(FittedMotion::new(*path)))),
         };
         self.fitted.work(fit) || self.locked_feet.work()
     }
