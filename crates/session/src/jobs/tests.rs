@@ -296,8 +296,12 @@ fn work_for_a_long_clip_is_the_same_by_workers_and_without() {
         assert_eq!(workers.run, run, "{key:?}");
     }
     assert!(both.session.main_outcome().unwrap().cleaned().is_some());
-    // A layer over it, and another one.
-    both.change(&mut workers, |session| set(session, Key::Lab, Value::Choice("layers")));
+    // A layer of it over itself, and another one.
+    both.change(&mut workers, |session| {
+        let long = session.params().text(Key::A).to_owned();
+        set(session, Key::B, Value::Text(long));
+        set(session, Key::Lab, Value::Choice("layers"));
+    });
     assert!(both.session.main_outcome().unwrap().layer().is_some());
     let run = workers.run;
     both.change(&mut workers, |session| set(session, Key::LayerWeight, Value::Number(0.5)));

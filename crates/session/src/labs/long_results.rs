@@ -17,14 +17,13 @@ use segue_motion::clip::Motion;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// Returns the number of frames of A and B from which on a worker makes the result of a lab: about
-/// what a page does in one frame. `None` for a lab that has work of its own for workers, or whose
-/// results are no more than motions.
+/// Returns the number of frames of A and B from which on a worker makes the result of a lab: up to
+/// there a change shows in the next frame, while a slider is dragged. `None` for a lab that has
+/// work of its own for workers, or results with facts that are no messages.
 fn worker_frames(lab: LabId) -> Option<usize> {
     match lab {
-        LabId::Layers => Some(8_000),
-        LabId::InPlace => Some(16_000),
-        LabId::Blend | LabId::Transition => Some(32_000),
+        LabId::Layers => Some(16_000),
+        LabId::Blend | LabId::Transition | LabId::InPlace => Some(32_000),
         _ => None,
     }
 }
