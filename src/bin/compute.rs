@@ -1,5 +1,5 @@
-//! The worker that computes for the page. It contains the algorithms of segue-motion, and nothing
-//! of the app. `web/js/compute.js` calls it.
+//! The worker that computes for the page. It contains the algorithms of segue-motion and the labs
+//! whose results of long clips it makes, and nothing of the app. `web/js/compute.js` calls it.
 
 #[cfg(target_arch = "wasm32")]
 mod worker {

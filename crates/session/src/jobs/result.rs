@@ -109,7 +109,7 @@ impl Task for ResultTask {
         let outcome = made.ok_or(JobError::NoResult)?;
         // What is looked at next is computed here, too.
         for motion in outcome.sources.iter().map(|source| &source.motion).chain([&outcome.motion]) {
-            let (_, _, _) = (motion.ground_frames(), motion.contacts(), motion.ground_m());
+            drop(motion.analysis());
         }
         Ok(outcome)
     }
