@@ -1,11 +1,11 @@
 //! The result of a lab from long clips.
 
+use super::clip_parcel::put_clip;
 use super::error::JobError;
-use super::motion_parcel::{pack_without_floats, unpack_on};
-use super::parcel::split_floats;
+use super::motion_parcel::{MotionHead, put_known};
 use super::task::{JobClip, Task};
 use super::worker_memory::WorkerMemory;
-use super::{Parcel, ParcelError, arrays_of};
+use super::{Parcel, ParcelError};
 use crate::labs::{LabFacts, LayerFacts, MeasuredMotion, Outcome, PairLabs, PlacedClip};
 use crate::labs::{RetargetReport, Slot, Transition, recipe_ingredients};
 use crate::metrics::Metric;
@@ -52,9 +52,11 @@ enum Place {
 
 /// An outcome without its motions.
 #[derive(Serialize, Deserialize)]
-struct Head {
-    /// The heads of the outcome's own motions, with the lengths of their floats and bytes.
-    own: Vec<(String, usize, usize)>,
+struct Head<'a> {
+    /// The heads of the outcome's own motions, each with the place of the job's clip whose skeleton
+    /// and roles it has.
+    #[serde(borrow)]
+    own: Vec<(usize, MotionHead<'a>)>,
     motion: Place,
     sources: Vec<(Slot, Place, f64, Planar)>,
     transition: Option<Transition>,
@@ -107,7 +109,7 @@ impl Task for ResultTask {
         memory.labs = Some((numbers, labs));
         // The reason why there is none is found where the result is made in slices.
         let outcome = made.ok_or(JobError::NoResult)?;
-        // What is looked at next is computed here, too.
+        // The page draws these motions: what it needs for that travels with them.
         for motion in outcome.sources.iter().map(|source| &source.motion).chain([&outcome.motion]) {
             drop(motion.analysis());
         }
@@ -115,6 +117,10 @@ impl Task for ResultTask {
     }
 
     fn pack(clips: &[JobClip], answer: Outcome) -> Result<Parcel, ParcelError> {
+        // No lab of `PairLabs` makes a cycle or drives a character.
+        if answer.cycle.is_some() || matches!(answer.measured, MeasuredMotion::Trace(_)) {
+            return Err(ParcelError::Arrays);
+        }
         let mut motions = OwnMotions { job: clips, own: Vec::new() };
         let motion = motions.place(&answer.motion);
         let sources = (answer.sources.iter())
@@ -126,20 +132,20 @@ impl Task for ResultTask {
         let mut of_clip = |clip| motions.place_of_clip(clip, &answer.motion);
         let beside = answer.beside.iter().map(&mut of_clip).collect();
         let measured = match &answer.measured {
-            MeasuredMotion::Motion => None,
             MeasuredMotion::Clip(clip) => Some(of_clip(clip)),
-            // A driven result, which no job makes.
-            MeasuredMotion::Trace(_) => return Err(ParcelError::Arrays),
+            MeasuredMotion::Motion | MeasuredMotion::Trace(_) => None,
         };
         let mut parcel = Parcel::default();
         let mut own = Vec::new();
         for motion in &motions.own {
-            let packed = pack_without_floats(motion)?;
-            let before = parcel.floats.len();
-            parcel.floats.reserve(arrays_of(motion.clip()).map(<[f32]>::len).sum());
-            arrays_of(motion.clip()).for_each(|array| parcel.floats.extend_from_slice(array));
-            own.push((packed.head, parcel.floats.len() - before, packed.bytes.len()));
-            parcel.bytes.extend(packed.bytes);
+            let is_body = |clip: &JobClip| {
+                clip.motion.clip().skeleton() == motion.clip().skeleton()
+                    && clip.motion.roles() == motion.roles()
+            };
+            let body = clips.iter().position(is_body).ok_or(ParcelError::Arrays)?;
+            own.push((body, MotionHead::of(motion)));
+            put_clip(&mut parcel.floats, motion.clip());
+            put_known(&mut parcel.bytes, motion);
         }
         parcel.head = serde_json::to_string(&Head {
             own,
@@ -156,15 +162,13 @@ impl Task for ResultTask {
     }
 
     fn unpack(&self, clips: &[JobClip], parcel: Parcel) -> Result<Outcome, ParcelError> {
-        let head: Head = serde_json::from_str(&parcel.head)?;
+        let head: Head<'_> = serde_json::from_str(&parcel.head)?;
         let (mut floats, mut bytes) = (&parcel.floats[..], &parcel.bytes[..]);
         let mut own = Vec::new();
-        for (head, float_count, byte_count) in head.own {
-            let floats = split_floats(&mut floats, float_count, 1)?;
-            let (now, later) = bytes.split_at_checked(byte_count).ok_or(ParcelError::Arrays)?;
-            bytes = later;
-            let skeletons = clips.iter().map(|clip| clip.motion.clip().skeleton());
-            own.push(Arc::new(unpack_on(&head, floats, now, skeletons)?));
+        for (body, head) in head.own {
+            let body = &clips.get(body).ok_or(ParcelError::Arrays)?.motion;
+            let (skeleton, roles) = (body.clip().skeleton(), body.roles());
+            own.push(Arc::new(head.take(skeleton, roles, &mut floats, &mut bytes)?));
         }
         let at = |place: Place| {
             let found = match place {

@@ -19,7 +19,7 @@ pub(crate) struct WorkerMemory {
     pub(super) pairs: Vec<([u32; 2], usize, PairTerms)>,
     /// The last distances of two clips, by their numbers and the stride.
     pub(super) matrix: Option<([u32; 2], usize, Arc<DistanceMatrix>)>,
-    /// What the labs keep of the last clips, by the numbers of these.
+    /// The labs with their caches, and the numbers of the clips of their last result.
     pub(super) labs: Option<(Vec<u32>, PairLabs)>,
 }
 
