@@ -181,6 +181,22 @@ pub(crate) trait LabInputs: fmt::Debug + PartialEq + Send + Sync + 'static {
     }
 }
 
+/// The inputs of a result that is made already. They equal their own copies alone.
+#[derive(Clone, Debug)]
+pub(crate) struct MadeInputs(pub(super) Arc<Outcome>);
+
+impl PartialEq for MadeInputs {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+impl LabInputs for MadeInputs {
+    fn run(&self) -> Result<Outcome, LabError> {
+        Ok(Outcome::clone(&self.0))
+    }
+}
+
 /// The inputs of any lab.
 #[derive(Clone, Debug)]
 pub(crate) struct Inputs(Arc<dyn AnyInputs>);

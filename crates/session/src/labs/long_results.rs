@@ -1,15 +1,15 @@
 //! The results of labs from long clips, which workers make.
 
+use super::Outcome;
 use super::blend::{BlendCache, BlendLab};
 use super::delegated::Delegated;
 use super::in_place::InPlaceLab;
-use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs};
+use super::lab::{HasPart, Inputs, Lab, LabClips, MadeInputs};
 use super::layers::{LayerCache, LayersLab};
 use super::pair::Pairs;
 use super::request_cache::RequestCache;
 use super::sliced::{JobKind, Sliced};
 use super::transition::TransitionLab;
-use super::{LabError, Outcome};
 use crate::LabId;
 use crate::jobs::{JobBoard, ResultTask};
 use crate::params::Params;
@@ -109,22 +109,6 @@ impl ResultOf {
         self.task == other.task
             && self.slots.len() == other.slots.len()
             && self.slots.iter().zip(&other.slots).all(same)
-    }
-}
-
-/// A result that a worker has made. Each is equal to itself alone.
-#[derive(Clone, Debug)]
-struct MadeInputs(Arc<Outcome>);
-
-impl PartialEq for MadeInputs {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.0, &other.0)
-    }
-}
-
-impl LabInputs for MadeInputs {
-    fn run(&self) -> Result<Outcome, LabError> {
-        Ok(Outcome::clone(&self.0))
     }
 }
 

@@ -8,7 +8,7 @@ use crate::choices;
 use crate::jobs::JobBoard;
 use crate::labs::LabError;
 use crate::labs::Outcome;
-use crate::labs::lab::{LabClips, LabInputs};
+use crate::labs::lab::{LabClips, MadeInputs};
 use crate::labs::pair::retarget_options;
 use crate::params::{HandTag, Key, MAX_PANES, Params};
 use segue_motion::clip::Motion;
@@ -83,22 +83,6 @@ impl PartialEq for Script {
             && self.options == other.options
             && self.filter == other.filter
             && self.recording == other.recording
-    }
-}
-
-/// The result of recorded input. Equal inputs give equal results.
-#[derive(Clone, Debug)]
-pub(crate) struct ReplayInputs(Arc<Outcome>);
-
-impl PartialEq for ReplayInputs {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.0, &other.0)
-    }
-}
-
-impl LabInputs for ReplayInputs {
-    fn run(&self) -> Result<Outcome, LabError> {
-        Ok(Outcome::clone(&self.0))
     }
 }
 
@@ -188,10 +172,10 @@ impl DriveScheduler {
         options: ControllerOptions,
         recording: Recording,
         filter: TagFilter,
-    ) -> Result<Option<ReplayInputs>, LabError> {
+    ) -> Result<Option<MadeInputs>, LabError> {
         let script = Script { database, options, recording, filter };
         if let Some((_, known)) = self.replays.iter().find(|(known, _)| *known == script) {
-            return known.clone().map(|outcome| Some(ReplayInputs(outcome)));
+            return known.clone().map(|outcome| Some(MadeInputs(outcome)));
         }
         self.scripts.push(script);
         Ok(None)
