@@ -404,7 +404,7 @@ impl Session {
         self.labs.graphs.stop(false);
     }
 
-    fn clips(&mut self) -> ClipResolver<'_> {
+    pub(crate) fn clips(&mut self) -> ClipResolver<'_> {
         ClipResolver { document: &mut self.document, files: &mut self.files, labs: &mut self.labs }
     }
 

@@ -3,8 +3,7 @@
 use super::any_task::Kind as _;
 use super::*;
 use crate::fixtures::*;
-use crate::labs::{Distances, MeasuredMotion, Outcome, PlacedClip, Slot};
-use crate::metrics::{self, Metric};
+use crate::labs::Distances;
 use crate::params::MAX_PANES;
 use crate::reading::{Content, read};
 use crate::{JobKind, Request};
@@ -12,9 +11,10 @@ use proptest::prelude::*;
 use segue_motion::clip::ContactCorrection;
 use segue_motion::clip::fixtures::QuadrupedWalk;
 use segue_motion::matching::Database;
-use segue_motion::metrics::ResultMetrics;
 use segue_motion::skeleton::{Foot, Side};
 use std::collections::BTreeSet;
+
+mod results;
 
 /// Workers as a page has them: jobs, clips and answers are messages.
 struct Workers {
@@ -528,83 +528,4 @@ fn answer_that_is_none_is_refused() {
     assert!(job.answer(Parcel { head: "{}".into(), ..parcel }).is_err());
     assert!(Worker::new(0).run_message(&job.message().unwrap()).is_err(), "without the clips");
     assert!(Worker::new(0).run_message("no message").is_err());
-}
-
-/// Returns the result of a session's first pane as a worker makes it.
-fn made_by_worker(session: &Session) -> Outcome {
-    let slots = [Slot::A, Slot::B].into_iter().filter_map(|slot| session.slot(slot));
-    let clips: Vec<JobClip> = (1..)
-        .zip(slots)
-        .map(|(number, entry)| JobClip { number, motion: entry.motion.clone().unwrap() })
-        .collect();
-    let params = session.params();
-    let task = ResultTask::new(params, params.number(Key::BlendWindow) as usize);
-    let job = Job { number: 1, clips, task: task.into() };
-    let mut worker = Worker::new(1 << 26);
-    for clip in &job.clips {
-        worker.take_clip(clip.number, &parcel_of(clip)).unwrap();
-    }
-    let message = job.message().unwrap();
-    // The second time, the worker remembers.
-    let [first, parcel] = [(); 2].map(|()| worker.run_message(&message).unwrap());
-    assert!(first == parcel, "the memory changes the result");
-    ResultTask::output(job.answer(parcel).unwrap()).unwrap()
-}
-
-#[test]
-fn result_of_a_worker_is_that_of_its_lab() {
-    let rig = |session: &mut Session| {
-        let text = String::from_utf8(made_bvh(2.0).to_vec()).unwrap();
-        let other = text.replace("OFFSET 0 ", "OFFSET 0.01 ");
-        assert_ne!(text, other, "another skeleton");
-        session.load("rig.bvh", other.into_bytes().into()).unwrap();
-    };
-    for link in [
-        "lab=blend&a=walk&b=run",
-        "lab=blend&a=walk&b=rig&leave_a=0.4&root_blend=off&foot_lock=on",
-        "lab=transition&a=run&b=walk&transition_method=dead&match_by=pose",
-        "lab=transition&a=walk&b=run&transition_method=smooth&mistake=euler&mix_frame_b=3",
-        "lab=layers&a=walk&b=run&mask=upper&feather=2&layer_weight=0.7",
-        "lab=layers&a=walk&b=rig&mask=whole&layer_mode=additive&layer_fit=hold&foot_lock=on",
-        "lab=in_place&a=walk&foot_lock=on",
-        "lab=in_place&a=walk_left&root_way=put_back&foot_lock=on",
-    ] {
-        let mut session = Session::new();
-        rig(&mut session);
-        let id = session.library().entries().last().unwrap().id.clone();
-        let link = link.replace("b=rig", &format!("b={id}"));
-        session.apply(Command::OpenLink(format!("{link}&play=off"))).unwrap();
-        settle(&mut session);
-        let pane = &session.panes()[0];
-        assert_eq!(pane.problem, None, "{link}");
-        let (expected, made) = (pane.outcome.as_ref().unwrap(), made_by_worker(&session));
-        assert!(made.motion == expected.motion, "{link}: another motion");
-        let skeleton = session.slot(Slot::A).unwrap().motion.as_ref().unwrap().clip().skeleton();
-        assert!(Arc::ptr_eq(made.motion.clip().skeleton(), skeleton), "{link}: a new skeleton");
-        // The metrics of every lab are measured later.
-        let common = metrics::of_result(&ResultMetrics::default(), 1.0);
-        let own = |outcome: &Outcome| -> Vec<Metric> {
-            let is_own = |metric: &&Metric| common.iter().all(|other| other.id != metric.id);
-            outcome.metrics.iter().filter(is_own).copied().collect()
-        };
-        assert!(!own(&made).is_empty() && own(&made) == own(expected), "{link}: other metrics");
-        assert_eq!(made.transition, expected.transition, "{link}");
-        assert_eq!(made.retargeted, expected.retargeted, "{link}");
-        assert_eq!(made.retargeted.is_some(), link.contains(&id), "{link}");
-        assert_eq!(made.layer(), expected.layer(), "{link}");
-        assert!(made.beside == expected.beside, "{link}: other clips beside it");
-        let sources = |outcome: &Outcome| -> Vec<_> {
-            let source = |of: &PlacedClip| (of.slot, of.starts_at_secs, of.world_from_clip);
-            outcome.sources.iter().map(source).collect()
-        };
-        assert_eq!(sources(&made), sources(expected), "{link}");
-        for (one, other) in made.sources.iter().zip(&expected.sources) {
-            assert!(one.motion == other.motion, "{link}: another source");
-        }
-        let measured = |outcome: &Outcome| match &outcome.measured {
-            MeasuredMotion::Clip(clip) => Some(Arc::clone(clip)),
-            _ => None,
-        };
-        assert!(measured(&made) == measured(expected), "{link}: another clip is measured");
-    }
 }

@@ -55,6 +55,17 @@ impl HasPart<LayerCache> for PairLabs {
 }
 
 impl PairLabs {
+    /// Returns the definition of a lab, if it is one of these.
+    fn lab_of(lab: LabId) -> Option<&'static dyn Lab<Self>> {
+        match lab {
+            LabId::Blend => Some(&BlendLab),
+            LabId::Transition => Some(&TransitionLab),
+            LabId::Layers => Some(&LayersLab),
+            LabId::InPlace => Some(&InPlaceLab),
+            _ => None,
+        }
+    }
+
     /// Returns the result of the parameters from the clips in the lab's slots; `None` where there
     /// is none.
     pub(crate) fn result(
@@ -63,13 +74,7 @@ impl PairLabs {
         params: &Params,
         match_window: usize,
     ) -> Option<Outcome> {
-        let lab: &dyn Lab<Self> = match params.lab() {
-            LabId::Blend => &BlendLab,
-            LabId::Transition => &TransitionLab,
-            LabId::Layers => &LayersLab,
-            LabId::InPlace => &InPlaceLab,
-            _ => return None,
-        };
+        let lab = Self::lab_of(params.lab())?;
         // All of it is computed here.
         let jobs = &mut JobBoard::default();
         loop {
@@ -77,16 +82,14 @@ impl PairLabs {
             for part in self.sliced() {
                 part.clear_requests();
             }
-            match lab.inputs(self, clips, params, match_window).ok()? {
-                Some(inputs) if !inputs.is_draft() => return inputs.run().ok(),
-                _ => {}
-            }
+            let inputs = lab.inputs(self, clips, params, match_window).ok()?;
             let mut has_worked = false;
             while self.sliced().into_iter().any(|part| part.work(jobs)) {
                 has_worked = true;
             }
+            // Work that is done may change even what is no draft: the distance at given frames.
             if !has_worked {
-                return None;
+                return inputs.filter(|inputs| !inputs.is_draft())?.run().ok();
             }
         }
     }
@@ -171,5 +174,20 @@ impl Sliced for LongResults {
 
     fn progress(&self) -> Option<(JobKind, f64)> {
         self.cache.under_way().next().map(|_| (JobKind::Analyzing, 0.0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::choices::Selected as _;
+
+    #[test]
+    fn worker_has_every_lab_that_it_is_asked_for() {
+        let asked = |lab: &&LabId| worker_frames(**lab).is_some();
+        let has = |lab: &&LabId| PairLabs::lab_of(**lab).is_some();
+        let all = LabId::ALL;
+        assert!(all.iter().filter(asked).eq(all.iter().filter(has)));
+        assert_eq!(all.iter().filter(asked).count(), 4);
     }
 }
