@@ -43,57 +43,36 @@ impl ResultTask {
     }
 }
 
-/// A motion of an outcome: a clip of the job, or one of the outcome's own, by its place.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-enum Place {
-    Job(usize),
-    Own(usize),
-}
-
-/// An outcome without its motions.
+/// An outcome without its motions. These are named by their places among the clips of the job,
+/// followed by the outcome's own motions.
 #[derive(Serialize, Deserialize)]
 struct Head<'a> {
     /// The heads of the outcome's own motions, each with the place of the job's clip whose skeleton
     /// and roles it has.
     #[serde(borrow)]
     own: Vec<(usize, MotionHead<'a>)>,
-    motion: Place,
-    sources: Vec<(Slot, Place, f64, Planar)>,
+    motion: usize,
+    sources: Vec<(Slot, usize, f64, Planar)>,
     transition: Option<Transition>,
     retargeted: Option<RetargetReport>,
     layer: Option<LayerFacts>,
     metrics: Vec<Metric>,
-    beside: Vec<Place>,
+    beside: Vec<usize>,
     /// The clip on which the metrics of every lab are measured, if it is another one.
-    measured: Option<Place>,
+    measured: Option<usize>,
 }
 
-/// The motions of an outcome that are not clips of its job.
-struct OwnMotions<'a> {
-    job: &'a [JobClip],
-    own: Vec<Arc<Motion>>,
-}
-
-impl OwnMotions<'_> {
-    fn place(&mut self, motion: &Arc<Motion>) -> Place {
-        self.find(|known| Arc::ptr_eq(known, motion)).unwrap_or_else(|| {
-            self.own.push(Arc::clone(motion));
-            Place::Own(self.own.len() - 1)
-        })
-    }
-
-    /// Returns the place of a clip: that of a motion which has it.
-    fn place_of_clip(&mut self, clip: &Arc<Clip>, like: &Motion) -> Place {
-        self.find(|known| Arc::ptr_eq(known.clip(), clip)).unwrap_or_else(|| {
-            self.own.push(Arc::new(Motion::with_roles(Arc::clone(clip), like.roles())));
-            Place::Own(self.own.len() - 1)
-        })
-    }
-
-    fn find(&self, is_it: impl Fn(&Arc<Motion>) -> bool) -> Option<Place> {
-        let job = self.job.iter().position(|clip| is_it(&clip.motion)).map(Place::Job);
-        job.or_else(|| self.own.iter().position(is_it).map(Place::Own))
-    }
+/// Returns the place of the first motion that `is_it` accepts; `new` is appended where there is
+/// none.
+fn place_of(
+    motions: &mut Vec<Arc<Motion>>,
+    is_it: impl Fn(&Arc<Motion>) -> bool,
+    new: impl FnOnce() -> Arc<Motion>,
+) -> usize {
+    motions.iter().position(is_it).unwrap_or_else(|| {
+        motions.push(new());
+        motions.len() - 1
+    })
 }
 
 impl Task for ResultTask {
@@ -121,15 +100,21 @@ impl Task for ResultTask {
         if answer.cycle.is_some() || matches!(answer.measured, MeasuredMotion::Trace(_)) {
             return Err(ParcelError::Arrays);
         }
-        let mut motions = OwnMotions { job: clips, own: Vec::new() };
-        let motion = motions.place(&answer.motion);
+        let mut motions: Vec<_> = clips.iter().map(|clip| Arc::clone(&clip.motion)).collect();
+        let mut of_motion = |motion: &Arc<Motion>| {
+            place_of(&mut motions, |known| Arc::ptr_eq(known, motion), || Arc::clone(motion))
+        };
+        let motion = of_motion(&answer.motion);
         let sources = (answer.sources.iter())
             .map(|source| {
-                let place = motions.place(&source.motion);
+                let place = of_motion(&source.motion);
                 (source.slot, place, source.starts_at_secs, source.world_from_clip)
             })
             .collect();
-        let mut of_clip = |clip| motions.place_of_clip(clip, &answer.motion);
+        let mut of_clip = |clip: &Arc<Clip>| {
+            let new = || Arc::new(Motion::with_roles(Arc::clone(clip), answer.motion.roles()));
+            place_of(&mut motions, |known| Arc::ptr_eq(known.clip(), clip), new)
+        };
         let beside = answer.beside.iter().map(&mut of_clip).collect();
         let measured = match &answer.measured {
             MeasuredMotion::Clip(clip) => Some(of_clip(clip)),
@@ -137,7 +122,7 @@ impl Task for ResultTask {
         };
         let mut parcel = Parcel::default();
         let mut own = Vec::new();
-        for motion in &motions.own {
+        for motion in motions.iter().skip(clips.len()) {
             let is_body = |clip: &JobClip| {
                 clip.motion.clip().skeleton() == motion.clip().skeleton()
                     && clip.motion.roles() == motion.roles()
@@ -164,19 +149,13 @@ impl Task for ResultTask {
     fn unpack(&self, clips: &[JobClip], parcel: Parcel) -> Result<Outcome, ParcelError> {
         let head: Head<'_> = serde_json::from_str(&parcel.head)?;
         let (mut floats, mut bytes) = (&parcel.floats[..], &parcel.bytes[..]);
-        let mut own = Vec::new();
+        let mut motions: Vec<_> = clips.iter().map(|clip| Arc::clone(&clip.motion)).collect();
         for (body, head) in head.own {
             let body = &clips.get(body).ok_or(ParcelError::Arrays)?.motion;
             let (skeleton, roles) = (body.clip().skeleton(), body.roles());
-            own.push(Arc::new(head.take(skeleton, roles, &mut floats, &mut bytes)?));
+            motions.push(Arc::new(head.take(skeleton, roles, &mut floats, &mut bytes)?));
         }
-        let at = |place: Place| {
-            let found = match place {
-                Place::Job(at) => clips.get(at).map(|clip| &clip.motion),
-                Place::Own(at) => own.get(at),
-            };
-            found.ok_or(ParcelError::Arrays)
-        };
+        let at = |place: usize| motions.get(place).ok_or(ParcelError::Arrays);
         let clip = |place| at(place).map(|motion| Arc::clone(motion.clip()));
         let source = |(slot, place, starts_at_secs, world_from_clip)| {
             Ok(PlacedClip::new(slot, at(place)?, starts_at_secs, world_from_clip))
