@@ -182,6 +182,7 @@ pub(crate) fn under_way(job: &Job) -> Message {
     let percent = 100.0 * job.progress;
     match &job.kind {
         JobKind::Analyzing => msg!("Analysing the clip {percent:.0} %", percent),
+        JobKind::Computing => "Computing the result…".into(),
         JobKind::Matching => msg!("Finding the best match {percent:.0} %", percent),
         JobKind::Registering => msg!("Registering the clips {percent:.0} %", percent),
         JobKind::BuildingGraph => msg!("Building the graph {percent:.0} %", percent),

@@ -173,7 +173,7 @@ impl Sliced for LongResults {
     }
 
     fn progress(&self) -> Option<(JobKind, f64)> {
-        self.cache.under_way().next().map(|_| (JobKind::Analyzing, 0.0))
+        self.cache.under_way().next().map(|_| (JobKind::Computing, 0.0))
     }
 }
 

@@ -6,8 +6,10 @@ use crate::jobs::JobBoard;
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum JobKind {
     /// The reading of the feet and places of a long clip, its measurement, and what a lab makes of
-    /// it before any result: a fitted path, a layer in time. Results that workers make, too.
+    /// it before any result: a fitted path, a layer in time.
     Analyzing,
+    /// The computation of a result of long clips in a worker, which tells no progress.
+    Computing,
     /// A search for the best place of a transition, or for the ends of a cycle.
     Matching,
     /// The registration of clips in time.
@@ -41,6 +43,7 @@ impl JobKind {
     pub fn name(&self) -> &str {
         match self {
             Self::Analyzing => "analysing",
+            Self::Computing => "computing the result",
             Self::Matching => "matching",
             Self::Registering => "registering",
             Self::BuildingGraph => "graphing",
