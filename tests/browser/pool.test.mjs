@@ -78,10 +78,15 @@ onOneBackend("work for a long clip is done by workers as by a page without them"
   const link = "lab=view&play=off";
   const [alone, shared] = [await open(`${link}&pool=off`, SMALL), await open(`${link}&pool=2`, SMALL)];
   const bytes = striding({ frames: 9000, swing: 33 });
-  for (const { segue, load } of [alone, shared]) await segue("set", { a: (await load("long.bvh", bytes)).clips[0].id });
+  let long;
+  for (const { segue, load } of [alone, shared]) {
+    long = (await load("long.bvh", bytes)).clips[0].id;
+    await segue("set", { a: long, b: long });
+  }
   // Its measurement; its foot lock; its feet, read anew, and their lock; the search for a cycle,
-  // and for faults.
-  for (const [values, jobs] of [[{}, 1], [{ foot_lock: true }, 2], [{ contact_height: 3 }, 4], [{ lab: "loop" }, 5], [{ lab: "clean" }, 6]]) {
+  // and for faults; a layer of it over itself, and another.
+  const steps = [[{}, 1], [{ foot_lock: true }, 2], [{ contact_height: 3 }, 4], [{ lab: "loop" }, 5], [{ lab: "clean" }, 6], [{ lab: "layers" }, 7], [{ layer_weight: 0.4 }, 8]];
+  for (const [values, jobs] of steps) {
     for (const page of [alone, shared]) await page.segue("set", values);
     assert.deepEqual(await result(shared), await result(alone), JSON.stringify(values));
     assert.equal((await workers(shared)).jobs, jobs, JSON.stringify(values));
