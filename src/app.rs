@@ -13,6 +13,7 @@ mod events;
 mod exports;
 mod frame;
 mod frame_stats;
+mod held_input;
 mod intake;
 mod language;
 mod picture;
@@ -36,6 +37,7 @@ use converter::Converter;
 use downloads::Downloads;
 use exports::Exports;
 use frame_stats::FrameStats;
+use held_input::HeldInput;
 use language::LanguageLoader;
 use picture::Picture;
 #[cfg(target_arch = "wasm32")]
@@ -84,6 +86,7 @@ pub(crate) struct Segue {
     /// being read.
     read: BTreeMap<u64, Option<Result<LoadedClips, ApiError>>>,
     frame_stats: FrameStats,
+    held_input: HeldInput,
     events: Vec<Event>,
     reported: ReportedState,
     clock: Clock,
@@ -177,6 +180,7 @@ impl Segue {
             downloads: Downloads::default(),
             exports: Exports::default(),
             frame_stats: FrameStats::default(),
+            held_input: HeldInput::default(),
             events: Vec::new(),
             reported: ReportedState::default(),
             clock: Clock { ticked: now_ms, left_work: None, frame_took: 0.0, frame_began: now_ms },
@@ -192,6 +196,19 @@ impl Segue {
             languages: LanguageLoader::new(),
             corpus: String::new(),
         }
+    }
+
+    /// Holds input back until the whole program is there.
+    #[cfg(target_arch = "wasm32")]
+    pub(crate) fn hold_input(&mut self) {
+        self.held_input.begin();
+    }
+
+    /// Lets the next frame have the input that was held back.
+    #[cfg(target_arch = "wasm32")]
+    pub(crate) fn release_input(&mut self) {
+        self.held_input.end();
+        self.inbox.wake();
     }
 
     /// Shows an error of the platform as a notice.

@@ -2,6 +2,7 @@
 //! that the page needs.
 
 mod graphics;
+mod rest;
 
 use crate::app::api::{self, ApiError, ExportWords};
 use crate::app::{BegunExport, Event, Segue, Shared, is_stage_complete};
@@ -90,6 +91,7 @@ impl SegueHandle {
             outline: Outline::default(),
             replaced_ms: Rc::default(),
         };
+        handle.borrow_mut()?.hold_input();
         handle.run(canvas).await?;
         watch_folders(&handle.inbox);
         let weak = Rc::downgrade(&handle.segue);

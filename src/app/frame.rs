@@ -159,9 +159,12 @@ impl Segue {
         // The address stands for the stored work until that is there.
         let address = (!self.autosave.is_waiting())
             .then(|| self.address.update(&self.session, dragging, now_ms));
+        // What changes without input, such as a pause for who prefers that, can wait to be stored.
+        let save = (!self.held_input.is_holding())
+            .then(|| self.autosave.update(&self.session, &self.large_files, now_ms));
         let waits = [
             address.flatten(),
-            self.autosave.update(&self.session, &self.large_files, now_ms),
+            save.flatten(),
             self.session.notices().next_change_secs().map(|secs| secs * 1e3),
             // The next second of a film.
             self.film.as_ref().map(|film| (1.0 - film.secs().fract()) * 1e3),

@@ -58,6 +58,12 @@ fn work_between_frames(segue: &Shared, is_working: &Rc<Cell<bool>>, ctx: &egui::
 }
 
 impl eframe::App for View {
+    fn raw_input_hook(&mut self, _ctx: &egui::Context, raw_input: &mut egui::RawInput) {
+        if let Ok(mut segue) = self.segue.try_borrow_mut() {
+            segue.held_input.pass(raw_input);
+        }
+    }
+
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
         // A call of the page's API is being answered; the next frame catches up.
         let Ok(mut segue) = self.segue.try_borrow_mut() else {

@@ -14,6 +14,7 @@ const STAND_IN = `
       return window.app;
     }
     async firstFrame() {}
+    setComplete() { window.isComplete = true; }
     async restart(canvas) { this.canvases.push(canvas); }
     version() { return "9.9.9"; }
     setListener(listener) { this.tell = listener; }

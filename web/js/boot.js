@@ -5,6 +5,7 @@
 //   static start(canvas, newReader, newComputer, corpora) -> Promise<SegueHandle>   the app runs on this canvas; newReader makes a
 //                                                  worker for files, newComputer one that computes, corpora calls corpus/
 //   firstFrame() -> Promise                        its first frame is on screen
+//   setComplete()                                  the whole program is there (rest.js); input is held back until then
 //   restart(canvas) -> Promise                     continues on a new canvas after the graphics context was lost; false: only a
 //                                                  module with WebGL 2 can
 //   stored() -> Promise                            waits until all files are stored; false: they cannot be
@@ -20,6 +21,7 @@ import { makeApi } from "./api.js";
 import { answerParent } from "./embed.js";
 import { showDownloadFailed, showLost, showNoMemory, showPanic, showStartFailed, showUnsupported } from "./panels.js";
 import { agreePixels } from "./pixels.js";
+import { Rest } from "./rest.js";
 
 const PANIC_POLL_MS = 500;
 /** The memory from which on a trap without a panic is taken for a failed allocation, bytes. */
@@ -29,6 +31,8 @@ const MIN_EXHAUSTED_BYTES = 1 << 30;
  * recover.
  */
 const REPLACE_AFTER_MS = [0, 100, 300, 1000, 3000];
+/** The name of the database of stored work (src/platform/web/storage.rs). */
+const DATABASE = "segue";
 /** The longest time for which a WebGPU device is awaited: a browser may never answer. */
 const MAX_DEVICE_MS = 30_000;
 
@@ -50,16 +54,22 @@ async function start() {
   } catch (reason) {
     return withWebgl2Instead(reason);
   }
+  const needsAll = hasMoreThanFirstVisit();
   let bindings;
   let memory;
+  let rest;
   try {
     const module = import(new URL(chosen.js, document.baseURI)); // relative to the page, not to this module
-    const compiled = await WebAssembly.compileStreaming(download(chosen));
+    rest = new Rest(chosen.rest, needsAll.then((all) => (all ? undefined : chosen.compiled)));
+    needsAll.then((all) => all && rest.compile());
+    const compiled = await chosen.compiled;
     bindings = await module;
-    ({ memory } = (await bindings.default({ module_or_path: compiled })) ?? {});
+    const exports = await bindings.default({ module_or_path: compiled });
+    memory = exports?.memory;
+    rest.follow(exports);
+    if (await needsAll) await rest.complete();
   } catch (reason) {
-    showDownloadFailed(String(reason?.message ?? reason));
-    throw new Error(`Segue could not be downloaded: ${reason?.message ?? reason}`, { cause: reason });
+    throw notDownloaded(reason);
   }
 
   const { SegueHandle } = bindings;
@@ -76,6 +86,7 @@ async function start() {
     const started = Promise.race([SegueHandle.start(canvas(), newReader, newComputer, corpora), app.trapped]);
     app.handle = await (chosen.hasWebgl2 ? started : answerOf(started));
     app.watch();
+    rest.compile();
     await Promise.race([app.handle.firstFrame(), app.trapped]);
   } catch (reason) {
     const text = app.handle ? app.panicText(reason) : String(reason?.message ?? reason);
@@ -92,13 +103,41 @@ async function start() {
   }
 
   loaded();
+  // From here on it hears of a lost graphics device.
   const api = makeApi(app.handle, { stopped: () => app.stopped, onLost: () => app.rebuild() });
+  try {
+    await Promise.race([rest.complete(), app.trapped]);
+  } catch (reason) {
+    throw reason instanceof WebAssembly.RuntimeError ? reason : notDownloaded(reason);
+  }
+  app.handle.setComplete();
   window.segue = api;
   answerParent(api, app.handle.isEmbedded());
   registerServiceWorker(chosen);
   // After the first frame, so that nothing waits for it.
   import("./outline.js").then(({ Outline }) => new Outline(app.handle, canvas), (reason) => console.error(reason));
   return api;
+}
+
+/**
+ * Returns whether the page shows more than a first visit does, and so needs the whole program for
+ * its first frame: a link's state, or stored work.
+ */
+async function hasMoreThanFirstVisit() {
+  const asked = new URLSearchParams(location.search);
+  if ([...asked.keys()].some((key) => !["backend", "lang"].includes(key)) || isAsked("fallback")) return true;
+  try {
+    return (await indexedDB.databases()).some(({ name }) => name === DATABASE);
+  } catch {
+    return true; // a browser that lists none may have one
+  }
+}
+
+/** Shows that a part of the app could not be downloaded, and returns the error for the API. */
+function notDownloaded(reason) {
+  const text = String(reason?.message ?? reason);
+  showDownloadFailed(text);
+  return new Error(`Segue could not be downloaded: ${text}`, { cause: reason });
 }
 
 /**
@@ -137,10 +176,17 @@ function newComputer(maxBytes) {
  */
 async function chosenModule() {
   const { module: first, withWebgl2 } = window.segueDownload;
-  const module = await answerOf(first);
+  const module = compiled(await answerOf(first));
   if (module.hasWebgl2 || isAsked("webgpu") || (await hasWebgpu())) return module;
   module.stop();
-  return withWebgl2();
+  return compiled(withWebgl2());
+}
+
+/** Returns a module that is being downloaded with the promise of its compiled code. */
+function compiled(module) {
+  const compiled = WebAssembly.compileStreaming(download(module));
+  compiled.catch(() => {}); // start() shows it
+  return { ...module, compiled };
 }
 
 /** Returns whether `backend=` in the page's address has this value. */
@@ -189,7 +235,7 @@ async function download({ wasm, response: asked }) {
   // The stated length is that of the compressed bytes, and the bytes read are uncompressed. These
   // are the ratios for this module.
   const packed = { br: 3.3, gzip: 2.5 }[response.headers.get("content-encoding")] ?? 1;
-  const total = Number(response.headers.get("content-length")) * packed || 8e6;
+  const total = Number(response.headers.get("content-length")) * packed || 5e6;
   // A clone is read to count the bytes, because the browser caches compiled code only of a response
   // that it reads itself.
   followBytes(response.clone().body, total).catch(() => {});

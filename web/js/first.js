@@ -16,16 +16,17 @@ document.documentElement.lang = ((asked) => {
 // The app comes as one or two modules: with WebGL 2 and, a fifth smaller, with WebGPU alone. An
 // adapter is found in less time than it takes to download the wrong one. boot.js takes the module
 // that is downloaded here, or, if the adapter has no device, stops that and takes `withWebgl2()`.
-window.segueDownload = (({ js, wasm, webgpuJs, webgpuWasm }) => {
-  const begin = (js, wasm, hasWebgl2) => {
+// As deployed, `wasm` is the first part of a module, and rest.js downloads the rest.
+window.segueDownload = (({ js, wasm, rest, webgpuJs, webgpuWasm, webgpuRest }) => {
+  const begin = (js, wasm, rest, hasWebgl2) => {
     const abort = new AbortController();
     const response = fetch(wasm, { signal: abort.signal });
     response.catch(() => {}); // boot.js shows it
     document.head.append(Object.assign(document.createElement("link"), { rel: "modulepreload", href: js }));
-    return { js, wasm, hasWebgl2, response, stop: () => abort.abort() };
+    return { js, wasm, rest, hasWebgl2, response, stop: () => abort.abort() };
   };
-  const withWebgl2 = () => begin(js, wasm, true);
-  const withWebgpu = () => begin(webgpuJs, webgpuWasm, false);
+  const withWebgl2 = () => begin(js, wasm, rest, true);
+  const withWebgpu = () => begin(webgpuJs, webgpuWasm, webgpuRest, false);
   const asked = new URLSearchParams(location.search).get("backend");
   const choose = async () => {
     if (!webgpuWasm || !navigator.gpu || ["webgl2", "fallback"].includes(asked)) return withWebgl2();

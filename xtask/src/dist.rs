@@ -23,8 +23,8 @@ pub fn folder() -> PathBuf {
 pub enum Modules {
     /// One that draws with WebGPU or WebGL 2.
     One,
-    /// That one and a smaller one that draws with WebGPU alone, as deployed. It takes a second long
-    /// link.
+    /// That one and a smaller one that draws with WebGPU alone, both divided, as deployed. It takes
+    /// a second long link.
     Two,
 }
 
@@ -107,8 +107,13 @@ fn assemble(profile: Profile, modules: Modules) -> Result<()> {
         &made,
         modules == Modules::Two,
         &mut |bin, place| {
-            let module = compiled.join(format!("{bin}.wasm"));
-            run(Command::new(&tool).arg(module).arg(place))
+            let mut write = Command::new(&tool);
+            write.arg(compiled.join(format!("{bin}.wasm"))).arg(place);
+            // Without the names of functions, a tenth of what travels. Trunk's page has them.
+            if modules == Modules::Two {
+                write.arg(root().join("web/rest.txt"));
+            }
+            run(&mut write)
         },
     )?;
     seal::seal(&made, profile == Profile::Release)?;

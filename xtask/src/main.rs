@@ -24,7 +24,8 @@ cargo xtask serve [--port N] [--dev] [--no-build]
     --no-build  serves dist/ as it is
 
 cargo xtask serve --dist
-    Only writes the deployable folder dist/, with a smaller module for browsers with WebGPU, each file precompressed beside itself (.br and .gz).
+    Only writes the deployable folder dist/, with a smaller module for browsers with WebGPU, each module in two parts, and each file precompressed
+    beside itself (.br and .gz).
 
 cargo xtask test [PART …]
     Everything that must pass. Parts: lint core oracles python app web browser; all of them unless some are named.

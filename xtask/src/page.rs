@@ -10,6 +10,11 @@ use crate::shell::{Result, fail};
 
 /// The name of the app's module that draws with WebGPU alone, with which its files' names begin.
 pub const WEBGPU: &str = "webgpu";
+/// The ends of the names of the app's files, as `segue-bindgen` writes them; the last is that of
+/// the rest of a module that is divided.
+const JS: &str = ".js";
+const WASM: &str = "_bg.wasm";
+const REST: &str = "_rest.wasm";
 
 /// Builds the folder of the page `html`, whose files are beside it. `bindgen` writes the JavaScript
 /// and the WebAssembly of a binary into a folder. `has_webgpu` adds the module [`WEBGPU`], which
@@ -36,7 +41,7 @@ pub fn make(
                 let path = beside.join(link.attribute("href")?);
                 let bytes = fs::read(&path)?;
                 let name = path.file_stem().unwrap_or_default().to_string_lossy();
-                let name = format!("{name}-{}.css", hash_of(&[&bytes]));
+                let name = format!("{name}-{}.css", hash_of(std::slice::from_ref(&bytes)));
                 fs::write(folder.join(&name), bytes)?;
                 let href = link.attribute("href")?;
                 link.0
@@ -64,15 +69,21 @@ pub fn make(
                 let app = App::write(link.attribute("data-bin")?, folder, bindgen)?;
                 preload = app.fill(&setting(trunk, "pattern_preload")?, &base);
                 let script = app.fill(&setting(trunk, "pattern_script")?, &base);
-                if has_webgpu {
-                    let App { js, wasm } = App::write(WEBGPU, folder, bindgen)?;
-                    let names = format!(
-                        "data-webgpu-js=\"{base}{js}\" data-webgpu-wasm=\"{base}{wasm}\" data-js="
-                    );
-                    script.replacen("data-js=", &names, 1)
-                } else {
-                    script
+                // Trunk's pattern has the names of a module that is whole.
+                let mut names = Vec::new();
+                if let Some(rest) = &app.rest {
+                    names.push(format!("data-rest=\"{base}{rest}\""));
                 }
+                if has_webgpu {
+                    let webgpu = App::write(WEBGPU, folder, bindgen)?;
+                    names.push(format!("data-webgpu-js=\"{base}{}\"", webgpu.js));
+                    names.push(format!("data-webgpu-wasm=\"{base}{}\"", webgpu.wasm));
+                    if let Some(rest) = &webgpu.rest {
+                        names.push(format!("data-webgpu-rest=\"{base}{rest}\""));
+                    }
+                }
+                names.push("data-js=".to_owned());
+                script.replacen("data-js=", &names.join(" "), 1)
             }
             other => {
                 return fail(format!(
@@ -102,10 +113,12 @@ impl<'a> Link<'a> {
     }
 }
 
-/// The names of the app's two files, which change with their content.
+/// The names of the app's files, which change with their content.
 struct App {
     js: String,
     wasm: String,
+    /// The rest of a module that is divided.
+    rest: Option<String>,
 }
 
 impl App {
@@ -115,12 +128,19 @@ impl App {
         bindgen: &mut dyn FnMut(&str, &Path) -> Result<()>,
     ) -> Result<Self> {
         bindgen(bin, folder)?;
-        let made = [format!("{bin}.js"), format!("{bin}_bg.wasm")].map(|name| folder.join(name));
-        let hash = hash_of(&[&fs::read(&made[0])?, &fs::read(&made[1])?]);
-        let app = Self { js: format!("{bin}-{hash}.js"), wasm: format!("{bin}-{hash}_bg.wasm") };
-        fs::rename(&made[0], folder.join(&app.js))?;
-        fs::rename(&made[1], folder.join(&app.wasm))?;
-        Ok(app)
+        let made = |end: &str| folder.join(format!("{bin}{end}"));
+        let has_rest = made(REST).exists();
+        let ends = if has_rest { &[JS, WASM, REST][..] } else { &[JS, WASM] };
+        let mut contents = Vec::new();
+        for end in ends {
+            contents.push(fs::read(made(end))?);
+        }
+        let hash = hash_of(&contents);
+        let name = |end: &str| format!("{bin}-{hash}{end}");
+        for end in ends {
+            fs::rename(made(end), folder.join(name(end)))?;
+        }
+        Ok(Self { js: name(JS), wasm: name(WASM), rest: has_rest.then(|| name(REST)) })
     }
 
     fn fill(&self, pattern: &str, base: &str) -> String {
@@ -151,7 +171,7 @@ fn copy_folder(from: &Path, to: &Path) -> Result<()> {
     Ok(())
 }
 
-fn hash_of(parts: &[&[u8]]) -> String {
+fn hash_of(parts: &[Vec<u8>]) -> String {
     let mut hasher = DefaultHasher::new();
     parts.hash(&mut hasher);
     format!("{:016x}", hasher.finish())
@@ -166,6 +186,16 @@ mod tests {
 
     /// Builds the page of these links in a folder of its own; returns its HTML and its files.
     fn made(name: &str, links: &str, has_webgpu: bool) -> Result<(String, Vec<String>)> {
+        made_of(name, links, has_webgpu, &[".js", "_bg.wasm"])
+    }
+
+    /// Builds a page like [`made`], of binaries that consist of files with these ends.
+    fn made_of(
+        name: &str,
+        links: &str,
+        has_webgpu: bool,
+        ends: &[&str],
+    ) -> Result<(String, Vec<String>)> {
         let sources =
             std::env::temp_dir().join(format!("segue-page-{}-{name}", std::process::id()));
         drop(fs::remove_dir_all(&sources));
@@ -176,8 +206,10 @@ mod tests {
         fs::write(&html, format!("<head>{links}</head><body></body>"))?;
         let folder = sources.join("made");
         let outcome = make(&html, TRUNK, &folder, has_webgpu, &mut |bin, place| {
-            fs::write(place.join(format!("{bin}.js")), "js")?;
-            Ok(fs::write(place.join(format!("{bin}_bg.wasm")), "wasm")?)
+            for end in ends {
+                fs::write(place.join(format!("{bin}{end}")), end)?;
+            }
+            Ok(())
         });
         let made = outcome.and_then(|()| {
             let html = fs::read_to_string(folder.join("index.html"))?;
@@ -232,6 +264,23 @@ mod tests {
             file("app-", ".js"),
         );
         assert!(html.contains(&named), "{html}");
+    }
+
+    #[test]
+    fn make_with_divided_modules_names_all_parts() {
+        let link = "<link data-trunk rel=\"rust\" href=\"../Cargo.toml\" data-bin=\"app\">";
+        let (html, files) =
+            made_of("parts", link, true, &[".js", "_bg.wasm", "_rest.wasm"]).unwrap();
+        assert_eq!(files.len(), 7, "with index.html: {files:?}");
+        let names =
+            ["data-rest", "data-webgpu-js", "data-webgpu-wasm", "data-webgpu-rest", "data-js"];
+        for (name, file) in names.iter().zip(["app-", "webgpu-", "webgpu-", "webgpu-", "app-"]) {
+            assert!(html.contains(&format!(" {name}=\"")), "{name} in {html}");
+            assert!(html.contains(file), "{file} in {html}");
+        }
+        let rest =
+            files.iter().find(|file| file.starts_with("app-") && file.ends_with("_rest.wasm"));
+        assert!(html.contains(&format!("data-rest=\"./{}\"", rest.unwrap())), "{html}");
     }
 
     #[test]

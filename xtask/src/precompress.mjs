@@ -1,6 +1,6 @@
 // Writes FILE.br and FILE.gz beside every file of a folder that becomes smaller, and prints the
-// size of the first visit. Called by `cargo xtask serve --dist` with the folder and a cache folder,
-// where results are kept by content.
+// size of the first visit, and of what its first frame waits for. Called by `cargo xtask serve
+// --dist` with the folder and a cache folder, where results are kept by content.
 
 import { createHash } from "node:crypto";
 import { existsSync } from "node:fs";
@@ -13,6 +13,8 @@ const [folder, cache] = process.argv.slice(2);
 const PACKED = /\.(br|gz|png|jpe?g|webp)$/;
 /** The files that are fetched only on request. */
 const LATER = /^(samples|lessons|lang|js-\w+\/(read|convert|compute|corpus))\//;
+/** The rests of modules, which come behind the first frame. */
+const BEHIND = /_rest\.wasm$/;
 /** The modules of the app by what a browser draws with: one of them is fetched. A page may have the second alone. */
 const MODULES = { WebGPU: /^webgpu-/, "WebGL 2": /^segue-app-/ };
 
@@ -51,6 +53,8 @@ line("file", "bytes", "brotli", "gzip");
 for (const row of rows) line(...row);
 for (const [backend, own] of Object.entries(MODULES).filter(([, own]) => rows.some(([name]) => own.test(name)))) {
   const isOther = (name) => Object.values(MODULES).some((module) => module !== own && module.test(name));
-  const first = rows.filter(([name]) => !LATER.test(name) && !isOther(name));
-  line(`first visit, ${backend}`, ...[1, 2, 3].map((column) => first.reduce((sum, row) => sum + row[column], 0)));
+  const visit = rows.filter(([name]) => !LATER.test(name) && !isOther(name));
+  const sums = (rows) => [1, 2, 3].map((column) => rows.reduce((sum, row) => sum + row[column], 0));
+  line(`first frame, ${backend}`, ...sums(visit.filter(([name]) => !BEHIND.test(name))));
+  line(`first visit, ${backend}`, ...sums(visit));
 }
