@@ -13,9 +13,10 @@ document.documentElement.lang = ((asked) => {
   return chinese(known) ? "zh-Hant" : "en";
 })(new URLSearchParams(location.search).get("lang"));
 
-// The app comes as one or two modules: with WebGL 2 and, a fifth smaller, with WebGPU alone. An
-// adapter is found in less time than it takes to download the wrong one. boot.js takes the module
-// that is downloaded here, or, if the adapter has no device, stops that and takes `withWebgl2()`.
+// The app comes as one or two modules: with WebGL 2 and, a fifth smaller, with WebGPU alone. The
+// latter is begun before it is known whether there is an adapter: most browsers that could have one
+// do, and it takes a tenth of a second to find. boot.js takes the module that is downloaded here,
+// or, if the adapter has no device, stops that and takes `withWebgl2()`.
 // As deployed, `wasm` is the first part of a module, and rest.js downloads the rest.
 window.segueDownload = (({ js, wasm, rest, webgpuJs, webgpuWasm, webgpuRest }) => {
   const begin = (js, wasm, rest, hasWebgl2) => {
@@ -30,8 +31,10 @@ window.segueDownload = (({ js, wasm, rest, webgpuJs, webgpuWasm, webgpuRest }) =
   const asked = new URLSearchParams(location.search).get("backend");
   const choose = async () => {
     if (!webgpuWasm || !navigator.gpu || ["webgl2", "fallback"].includes(asked)) return withWebgl2();
-    if (asked === "webgpu") return withWebgpu();
-    return (await navigator.gpu.requestAdapter().catch(() => null)) ? withWebgpu() : withWebgl2();
+    const module = withWebgpu();
+    if (asked === "webgpu" || (await navigator.gpu.requestAdapter().catch(() => null))) return module;
+    module.stop();
+    return withWebgl2();
   };
   return { module: choose(), withWebgl2 };
 })(document.currentScript.dataset);
