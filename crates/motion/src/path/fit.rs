@@ -216,8 +216,10 @@ impl Band {
             if row == [0.0; 4] {
                 break;
             }
-            if row[0] != 0.0 {
-                let length = libm::hypot(own[0], row[0]);
+            // All numbers are far from those whose squares are out of range. One whose square is 0
+            // is nothing beside the others.
+            let length = (own[0] * own[0] + row[0] * row[0]).sqrt();
+            if row[0] != 0.0 && length > 0.0 {
                 let (cos, sin) = (own[0] / length, row[0] / length);
                 for (a, b) in own.iter_mut().zip(&mut row) {
                     (*a, *b) = (cos * *a + sin * *b, cos * *b - sin * *a);

@@ -17,7 +17,8 @@ use segue_motion::math::Planar;
 use segue_motion::metrics::{Extreme, worst_foot_slide};
 use segue_motion::path::{
     ArcLengthPath, CarryOptions, EditedMotion, FitError, FitOptions, FittedPath, GroundSpline,
-    HardTurn, MotionOptions, Offset, Orientation, PathEditor, Slide, SplineEnds, Timing, Waypoint,
+    HardTurn, MotionOptions, Offset, Orientation, PathEditError, PathEditor, PathFitting, Slide,
+    SplineEnds, Timing, Waypoint,
 };
 use segue_motion::transition::FootLocking;
 use segue_text::{Message, msg};
@@ -212,11 +213,37 @@ const FITTED_AT_ONCE: usize = 1_500;
 /// The motion and the options of a fit.
 type FittedOf = (Arc<Motion>, FitOptions);
 
+/// A fit that is under way.
+#[derive(Debug)]
+enum Fitting {
+    Requested,
+    UnderWay(Box<PathFitting>),
+    /// A path that is fitted, without what its motion needs besides.
+    Fitted(Box<FittedPath>),
+}
+
+impl Fitting {
+    /// Does a slice of the work.
+    fn advance(
+        self,
+        (motion, options): &FittedOf,
+    ) -> Result<ControlFlow<FittedMotion, Self>, PathEditError> {
+        let under_way = |fitting| ControlFlow::Continue(Self::UnderWay(Box::new(fitting)));
+        Ok(match self {
+            Self::Requested => under_way(PathFitting::new(Arc::clone(motion), options)?),
+            Self::UnderWay(fitting) => match fitting.advance()? {
+                ControlFlow::Continue(rest) => under_way(rest),
+                ControlFlow::Break(path) => ControlFlow::Continue(Self::Fitted(Box::new(path))),
+            },
+            Self::Fitted(path) => ControlFlow::Break(FittedMotion::new(*path)),
+        })
+    }
+}
+
 /// A cache of the last fitted paths: dragging a point changes none of them.
 #[derive(Debug, Default)]
 pub(crate) struct Paths {
-    /// The work is a path that is fitted, without what its motion needs besides.
-    fitted: RequestCache<FittedOf, Option<Box<FittedPath>>, Result<Arc<FittedMotion>, LabError>>,
+    fitted: RequestCache<FittedOf, Fitting, Result<Arc<FittedMotion>, LabError>>,
     locked_feet: LockedFeetCache,
 }
 
@@ -263,7 +290,7 @@ impl Paths {
         let is_it = |(of, by): &FittedOf| Arc::ptr_eq(of, motion) && *by == options;
         self.fitted.request_or_begin((Arc::clone(motion), options), is_it, |_| {
             if is_new && motion.clip().frames() > FITTED_AT_ONCE {
-                return Ok(ControlFlow::Continue(None));
+                return Ok(ControlFlow::Continue(Fitting::Requested));
             }
             let path = FittedPath::new(Arc::clone(motion), &options)?;
             Ok(ControlFlow::Break(Arc::new(FittedMotion::new(path))))
@@ -278,12 +305,10 @@ impl Sliced for Paths {
     }
 
     fn work(&mut self, _jobs: &mut JobBoard) -> bool {
-        let fit = |(motion, options): &FittedOf, path: Option<Box<FittedPath>>| match path {
-            None => match FittedPath::new(Arc::clone(motion), options) {
-                Ok(path) => ControlFlow::Continue(Some(Box::new(path))),
-                Err(problem) => ControlFlow::Break(Err(problem.into())),
-            },
-            Some(path) => ControlFlow::Break(Ok(Arc::new(FittedMotion::new(*path)))),
+        let fit = |of: &FittedOf, fitting: Fitting| match fitting.advance(of) {
+            Ok(ControlFlow::Continue(rest)) => ControlFlow::Continue(rest),
+            Ok(ControlFlow::Break(fitted)) => ControlFlow::Break(Ok(Arc::new(fitted))),
+            Err(problem) => ControlFlow::Break(Err(problem.into())),
         };
         self.fitted.work(fit) || self.locked_feet.work()
     }
