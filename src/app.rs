@@ -204,7 +204,13 @@ impl Segue {
         self.held_input.begin();
     }
 
-    /// Lets the next frame have the input that was held back.
+    /// Returns whether input is held back.
+    #[cfg(target_arch = "wasm32")]
+    pub(crate) fn is_holding_input(&self) -> bool {
+        self.held_input.is_holding()
+    }
+
+    /// Lets the next frames have the input that was held back.
     #[cfg(target_arch = "wasm32")]
     pub(crate) fn release_input(&mut self) {
         self.held_input.end();

@@ -98,6 +98,8 @@ impl SegueHandle {
         watch_hiding(move || {
             if let Some(segue) = weak.upgrade()
                 && let Ok(mut segue) = segue.try_borrow_mut()
+                // Before the first input, there is nothing to save.
+                && !segue.is_holding_input()
             {
                 segue.save_on_exit();
             }

@@ -58,9 +58,11 @@ fn work_between_frames(segue: &Shared, is_working: &Rc<Cell<bool>>, ctx: &egui::
 }
 
 impl eframe::App for View {
-    fn raw_input_hook(&mut self, _ctx: &egui::Context, raw_input: &mut egui::RawInput) {
-        if let Ok(mut segue) = self.segue.try_borrow_mut() {
-            segue.held_input.pass(raw_input);
+    fn raw_input_hook(&mut self, ctx: &egui::Context, raw_input: &mut egui::RawInput) {
+        if let Ok(mut segue) = self.segue.try_borrow_mut()
+            && segue.held_input.pass(raw_input)
+        {
+            ctx.request_repaint();
         }
     }
 

@@ -24,7 +24,7 @@ impl SegueHandle {
         fetch_from_page();
     }
 
-    /// Tells that the whole program is there, and has the next frame answer the input until now.
+    /// Tells that the whole program is there, and has the next frames answer the input until now.
     #[wasm_bindgen(js_name = setComplete)]
     pub fn set_complete(&self) -> Result<(), JsValue> {
         self.borrow_mut()?.release_input();

@@ -31,8 +31,8 @@ const firstFrame = (page) => page.waitForFunction(() => document.readyState !== 
 /** Returns whether two pictures of the stage differ. */
 const differ = (one, other) => one.data.some((value, i) => value !== other.data[i]);
 
-// Fails when the first frames call a function that web/rest.txt names, and when a key press is lost
-// that comes before the rest.
+// Fails when the first frames call a function that web/rest.txt names, when a key press is lost that
+// comes before the rest, and when leaving such a page asks for it.
 onBothBackends("first frames move without the rest, and input waits for it", async ({ open }) => {
   const { prepare, asked, release } = held();
   const { page, log, ready, segue, pixels } = await open("", { ...SMALL, prepare });
@@ -42,6 +42,7 @@ onBothBackends("first frames move without the rest, and input waits for it", asy
   await page.mouse.move(480, 300);
   await page.mouse.wheel(0, 50);
   await page.keyboard.press("Space");
+  await page.evaluate(() => dispatchEvent(new PageTransitionEvent("pagehide")));
   const pressed = await pixels();
   await until("it goes on", async () => differ(pressed, await pixels()));
   assert.ok(await page.evaluate(() => !window.segue.clips), "the API waits");
@@ -53,7 +54,7 @@ onBothBackends("first frames move without the rest, and input waits for it", asy
 
 // Fails like the one above, for other users: in Chinese, on a phone, with a pause at the start.
 onBothBackends("first frames of others do without the rest, too", async ({ open }) => {
-  const others = [["", { viewport: [390, 844], theme: "light" }], ["lang=zh-Hant", { motion: "reduce", viewport: [1920, 1200] }]];
+  const others = [["", { viewport: [390, 844], scale: 2, theme: "light" }], ["lang=zh-Hant", { motion: "reduce", viewport: [1920, 1200] }]];
   for (const [query, options] of others) {
     const { prepare, asked, release } = held();
     const { page, log, ready } = await open(query, { ...SMALL, ...options, prepare });
@@ -70,6 +71,21 @@ onBothBackends("first frames of others do without the rest, too", async ({ open 
 onOneBackend("link waits for the rest", async ({ open }) => {
   const { prepare, asked, release } = held();
   const { page, ready } = await open("lab=graph&play=off", { ...SMALL, prepare });
+  await until("the rest is asked for", async () => asked.length > 0);
+  await page.waitForTimeout(1000);
+  assert.ok(await page.locator("#loading").count(), "no frame yet");
+  release();
+  await ready();
+  assert.deepEqual(asked, ["fetch"]);
+});
+
+// Fails when the first frame of a later visit is drawn before its work can be read.
+onOneBackend("visit with stored work waits for the rest", async ({ open }) => {
+  const { page, ready } = await open("", SMALL);
+  await ready();
+  const { prepare, asked, release } = held();
+  await prepare(page);
+  await page.goto(page.url().replace(/\?.*/, ""), { waitUntil: "commit" });
   await until("the rest is asked for", async () => asked.length > 0);
   await page.waitForTimeout(1000);
   assert.ok(await page.locator("#loading").count(), "no frame yet");

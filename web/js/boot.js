@@ -21,7 +21,7 @@ import { makeApi } from "./api.js";
 import { answerParent } from "./embed.js";
 import { showDownloadFailed, showLost, showNoMemory, showPanic, showStartFailed, showUnsupported } from "./panels.js";
 import { agreePixels } from "./pixels.js";
-import { Rest } from "./rest.js";
+import { Rest, compilesNow } from "./rest.js";
 
 const PANIC_POLL_MS = 500;
 /** The memory from which on a trap without a panic is taken for a failed allocation, bytes. */
@@ -33,6 +33,8 @@ const MIN_EXHAUSTED_BYTES = 1 << 30;
 const REPLACE_AFTER_MS = [0, 100, 300, 1000, 3000];
 /** The name of the database of stored work (src/platform/web/storage.rs). */
 const DATABASE = "segue";
+/** The longest time for which the names of databases are awaited. */
+const MAX_LISTING_MS = 500;
 /** The longest time for which a WebGPU device is awaited: a browser may never answer. */
 const MAX_DEVICE_MS = 30_000;
 
@@ -66,6 +68,7 @@ async function start() {
     bindings = await module;
     const exports = await bindings.default({ module_or_path: compiled });
     memory = exports?.memory;
+    // Before this, nothing of the app has run but the set-up of its log.
     rest.follow(exports);
     if (await needsAll) await rest.complete();
   } catch (reason) {
@@ -103,12 +106,15 @@ async function start() {
   }
 
   loaded();
+  document.documentElement.classList.add("waiting");
   // From here on it hears of a lost graphics device.
   const api = makeApi(app.handle, { stopped: () => app.stopped, onLost: () => app.rebuild() });
   try {
     await Promise.race([rest.complete(), app.trapped]);
   } catch (reason) {
     throw reason instanceof WebAssembly.RuntimeError ? reason : notDownloaded(reason);
+  } finally {
+    document.documentElement.classList.remove("waiting");
   }
   app.handle.setComplete();
   window.segue = api;
@@ -125,11 +131,14 @@ async function start() {
  */
 async function hasMoreThanFirstVisit() {
   const asked = new URLSearchParams(location.search);
-  if ([...asked.keys()].some((key) => !["backend", "lang"].includes(key)) || isAsked("fallback")) return true;
+  if ([...asked.keys()].some((key) => !["backend", "lang"].includes(key)) || isAsked("fallback") || !compilesNow()) return true;
+  // A browser that does not tell may have one.
+  const late = new Promise((resolve) => setTimeout(resolve, MAX_LISTING_MS));
   try {
-    return (await indexedDB.databases()).some(({ name }) => name === DATABASE);
+    const databases = await Promise.race([indexedDB.databases(), late]);
+    return !databases || databases.some(({ name }) => name === DATABASE);
   } catch {
-    return true; // a browser that lists none may have one
+    return true;
   }
 }
 

@@ -69,7 +69,7 @@ fn parse(module: &[u8], has_names: bool) -> Result<Module> {
     Ok(module)
 }
 
-/// What goes where. Functions are named by their index, which is the same in each copy of the
+/// What goes where. Functions are identified by their index, which is the same in each copy of the
 /// parsed module.
 struct Plan {
     /// The functions of the rest that the first part refers to, with the index of each in the table
