@@ -5,7 +5,7 @@ use eframe::egui::{DroppedFileHandle, Event, RawInput};
 /// Input that waits until the whole program is there. The page draws its first frames with a part
 /// of it (`web/rest.txt`); to answer a click, they would have to stop until the rest has come.
 ///
-/// Of several clicks the last counts: who clicks again because nothing happens means one.
+/// Of several clicks only the last counts: users click again where nothing happens.
 #[derive(Debug, Default)]
 pub(crate) struct HeldInput {
     is_holding: bool,
@@ -25,7 +25,7 @@ impl HeldInput {
     pub(crate) fn end(&mut self) {
         self.is_holding = false;
         self.is_late = true;
-        // The release of a press that is the last may have been outside of the window.
+        // A button that was released outside of the window is not reported.
         if self.events.iter().rev().find_map(press_of) == Some(true) {
             self.events.retain(|event| press_of(event).is_none());
         }

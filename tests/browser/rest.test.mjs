@@ -28,6 +28,16 @@ function held() {
 
 /** Waits for the first frame of a page whose API is not there yet. */
 const firstFrame = (page) => page.waitForFunction(() => document.readyState !== "loading" && !document.getElementById("loading"));
+/** Fails where a page draws before its rest is there. */
+async function startsWithAll({ page, ready }, { asked, release }) {
+  await until("the rest is asked for", async () => asked.length > 0);
+  await page.waitForTimeout(1000);
+  assert.ok(await page.locator("#loading").count(), "no frame yet");
+  release();
+  await ready();
+  assert.deepEqual(asked, ["fetch"]);
+}
+
 /** Returns whether two pictures of the stage differ. */
 const differ = (one, other) => one.data.some((value, i) => value !== other.data[i]);
 
@@ -69,29 +79,19 @@ onBothBackends("first frames of others do without the rest, too", async ({ open 
 
 // Fails when a link's first frame is drawn before the whole program is there.
 onOneBackend("link waits for the rest", async ({ open }) => {
-  const { prepare, asked, release } = held();
-  const { page, ready } = await open("lab=graph&play=off", { ...SMALL, prepare });
-  await until("the rest is asked for", async () => asked.length > 0);
-  await page.waitForTimeout(1000);
-  assert.ok(await page.locator("#loading").count(), "no frame yet");
-  release();
-  await ready();
-  assert.deepEqual(asked, ["fetch"]);
+  const rest = held();
+  const opened = await open("lab=graph&play=off", { ...SMALL, prepare: rest.prepare });
+  await startsWithAll(opened, rest);
 });
 
 // Fails when the first frame of a later visit is drawn before its work can be read.
 onOneBackend("visit with stored work waits for the rest", async ({ open }) => {
-  const { page, ready } = await open("", SMALL);
-  await ready();
-  const { prepare, asked, release } = held();
-  await prepare(page);
-  await page.goto(page.url().replace(/\?.*/, ""), { waitUntil: "commit" });
-  await until("the rest is asked for", async () => asked.length > 0);
-  await page.waitForTimeout(1000);
-  assert.ok(await page.locator("#loading").count(), "no frame yet");
-  release();
-  await ready();
-  assert.deepEqual(asked, ["fetch"]);
+  const opened = await open("", SMALL);
+  await opened.ready();
+  const rest = held();
+  await rest.prepare(opened.page);
+  await opened.page.goto(opened.page.url().replace(/\?.*/, ""), { waitUntil: "commit" });
+  await startsWithAll(opened, rest);
 });
 
 // Fails when a call that needs the rest before it is there goes wrong.

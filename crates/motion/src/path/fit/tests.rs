@@ -219,3 +219,16 @@ fn impossible_fits_are_refused() {
         Err(PathEditError::Point { index: 1 })
     );
 }
+
+#[test]
+fn band_takes_a_number_whose_square_is_0_for_nothing() {
+    let solved = |tiny: f64| {
+        let mut band = Band::new(4);
+        band.add(0, [tiny, 0.0, 0.0, 0.0], DVec2::ONE);
+        for index in 0..4 {
+            band.add(index, [1.0, 0.0, 0.0, 0.0], DVec2::splat(index as f64));
+        }
+        band.solve().unwrap()
+    };
+    assert_eq!(solved(1e-200), solved(0.0));
+}
