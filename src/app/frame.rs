@@ -159,8 +159,8 @@ impl Segue {
         // The address stands for the stored work until that is there.
         let address = (!self.autosave.is_waiting())
             .then(|| self.address.update(&self.session, dragging, now_ms));
-        // Without input there is no work of the user to save: only playback may have been paused, for
-        // users who prefer reduced motion.
+        // Without input there is no work of the user to save. Playback alone may have been paused,
+        // for users who prefer reduced motion.
         let save = (!self.held_input.is_holding())
             .then(|| self.autosave.update(&self.session, &self.large_files, now_ms));
         let waits = [
