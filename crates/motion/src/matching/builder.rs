@@ -1,7 +1,7 @@
 //! Construction of databases in slices.
 
 use super::database::{Database, DatabaseOptions, spread_all};
-use super::features::{Features, Layout, RATE};
+use super::features::{Features, Layout, Normaliser, RATE};
 use super::measurement::{ClipMeasurement, MeasuredClip};
 use super::motion::{DatabaseClip, FeatureJoints};
 use super::pace::Pace;
@@ -19,9 +19,11 @@ use std::sync::Arc;
 /// gigabyte.
 const MAX_FRAMES: usize = 2_000_000;
 /// Number of frames whose features are gathered in one slice.
-const FRAMES_PER_GATHER: usize = 3_000;
-/// Number of frames that are sorted into boxes in one slice.
-const FRAMES_PER_SORT: usize = 100_000;
+const FRAMES_PER_GATHER: usize = 10_000;
+/// Number of frames whose features are normalised in one slice, in one of three passes.
+const FRAMES_PER_PASS: usize = 40_000;
+/// Number of frames that are sorted into boxes, or packed in them, in one slice.
+const FRAMES_PER_SORT: usize = 40_000;
 
 /// The construction of a [`Database`] in slices: call [`advance`](Self::advance) until it is
 /// complete, then [`finish`](Self::finish).
@@ -52,7 +54,7 @@ enum Stage {
     /// Clips are measured; with the one whose measurement is under way.
     Measure(Option<Box<ClipMeasurement>>),
     Gather(GatheredFeatures),
-    Normalise(GatheredFeatures),
+    Normalise(Normalising),
     Sort(BoxSorting),
 }
 
@@ -74,16 +76,29 @@ impl GatheredFeatures {
         self.starts.len() - 1
     }
 
-    fn push(&mut self, motion: &DatabaseClip, layout: &Layout) {
+    /// Gathers up to `count` more frames of the motion that comes next. Returns their number.
+    fn push(&mut self, motion: &DatabaseClip, layout: &Layout, count: usize) -> usize {
+        let (dims, begin) = (layout.dims(), self.rows.len());
         let start = self.starts.last().copied().unwrap_or(0);
-        self.valid.extend((start..start + motion.valid(layout)).map(|frame| frame as u32));
-        let begin = self.rows.len();
-        self.rows.resize(begin + motion.frames() * layout.dims(), 0.0);
-        for (frame, row) in self.rows[begin..].chunks_exact_mut(layout.dims()).enumerate() {
+        let from = begin / dims - start;
+        let count = (motion.frames() - from).min(count);
+        self.rows.resize(begin + count * dims, 0.0);
+        for (frame, row) in (from..).zip(self.rows[begin..].chunks_exact_mut(dims)) {
             motion.write_row(layout, frame, row);
         }
-        self.starts.push(start + motion.frames());
+        if from + count == motion.frames() {
+            self.valid.extend((start..start + motion.valid(layout)).map(|frame| frame as u32));
+            self.starts.push(start + motion.frames());
+        }
+        count
     }
+}
+
+#[derive(Clone, Debug)]
+struct Normalising {
+    starts: Vec<usize>,
+    valid: Arc<Vec<u32>>,
+    normaliser: Normaliser,
 }
 
 #[derive(Clone, Debug)]
@@ -233,19 +248,25 @@ impl DatabaseBuilder {
                 }
             }
             Stage::Gather(mut gathering) => {
-                let until = gathering.rows.len() + FRAMES_PER_GATHER * self.layout.dims();
-                while gathering.rows.len() < until
+                let mut left = FRAMES_PER_GATHER;
+                while left > 0
                     && let Some(motion) = self.motions.get(gathering.motions())
                 {
-                    gathering.push(motion, &self.layout);
+                    left -= gathering.push(motion, &self.layout, left);
                 }
                 self.stage = if gathering.motions() < self.motions.len() {
                     Stage::Gather(gathering)
                 } else {
-                    Stage::Normalise(gathering)
+                    Stage::Normalise(self.normalising(gathering)?)
                 };
             }
-            Stage::Normalise(gathering) => self.stage = Stage::Sort(self.normalised(gathering)?),
+            Stage::Normalise(mut normalising) => {
+                self.stage = if normalising.normaliser.advance(FRAMES_PER_PASS) {
+                    Stage::Normalise(normalising)
+                } else {
+                    Stage::Sort(self.sorting(normalising))
+                };
+            }
             Stage::Sort(mut sorting) => {
                 sorting.progress = sorting.boxes.advance(&sorting.features, FRAMES_PER_SORT);
                 self.stage = Stage::Sort(sorting);
@@ -309,9 +330,8 @@ impl DatabaseBuilder {
         }
     }
 
-    fn normalised(&self, gathering: GatheredFeatures) -> Result<BoxSorting, MatchError> {
+    fn normalising(&self, gathering: GatheredFeatures) -> Result<Normalising, MatchError> {
         let GatheredFeatures { starts, valid, rows } = gathering;
-        let frames = starts.last().copied().unwrap_or(0);
         if valid.is_empty() {
             return Err(MatchError::NoValidFrame {
                 clips: self.clips.len().max(self.motions.len()),
@@ -319,20 +339,19 @@ impl DatabaseBuilder {
                 horizon_secs: self.layout.horizon() as f64 / RATE as f64,
             });
         }
-        let mut counts = vec![false; frames];
-        for &frame in &valid {
-            counts[frame as usize] = true;
-        }
+        let (layout, valid) = (self.layout.clone(), Arc::new(valid));
         let normalisation = self.options.features.normalisation;
-        let features =
-            Features::normalise(self.layout.clone(), normalisation, rows, |row| counts[row]);
-        let boxes = BoxBuilder::new(&valid, &Weights::default().spread(&self.layout));
-        Ok(BoxSorting {
+        let normaliser = Normaliser::new(layout, normalisation, rows, Arc::clone(&valid));
+        Ok(Normalising { starts, valid, normaliser })
+    }
+
+    fn sorting(&self, Normalising { starts, valid, normaliser }: Normalising) -> BoxSorting {
+        BoxSorting {
             starts,
-            features: Arc::new(features),
-            valid: Arc::new(valid),
-            boxes,
+            features: Arc::new(normaliser.finish()),
+            boxes: BoxBuilder::new(&valid, &Weights::default().spread(&self.layout)),
+            valid,
             progress: Progress { done: 0, total: 1 },
-        })
+        }
     }
 }

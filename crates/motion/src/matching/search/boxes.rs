@@ -11,6 +11,51 @@ const GROUPS: usize = LEAF / LANES;
 
 type Lane = [f32; LANES];
 
+/// Boxes, one after the other: the lower bounds of each, then its upper bounds.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Boxes(Vec<f32>);
+
+impl Boxes {
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    pub(super) fn len(&self, dims: usize) -> usize {
+        self.0.len() / (2 * dims)
+    }
+
+    /// Appends the box around boxes, each its lower and its upper bounds.
+    pub(super) fn push_around<'a>(
+        &mut self,
+        dims: usize,
+        parts: impl Iterator<Item = (&'a [f32], &'a [f32])>,
+    ) {
+        let start = self.0.len();
+        self.0.resize(start + dims, f32::INFINITY);
+        self.0.resize(start + 2 * dims, f32::NEG_INFINITY);
+        let (low, high) = self.0[start..].split_at_mut(dims);
+        for (lower, upper) in parts {
+            // Comparisons, as `min` and `max` are calls in WebAssembly.
+            for (low, &lower) in low.iter_mut().zip(lower) {
+                *low = if lower < *low { lower } else { *low };
+            }
+            for (high, &upper) in high.iter_mut().zip(upper) {
+                *high = if upper > *high { upper } else { *high };
+            }
+        }
+    }
+
+    /// Returns the boxes around each `count` of these.
+    pub(super) fn around_each(&self, count: usize, dims: usize) -> Self {
+        let mut around = Self::default();
+        for children in self.0.chunks(2 * dims * count) {
+            let parts = children.chunks_exact(2 * dims).map(|bounds| bounds.split_at(dims));
+            around.push_around(dims, parts);
+        }
+        around
+    }
+}
+
 /// One level of boxes, in packs of eight: for each pack and each dimension their lower bounds, then
 /// their upper bounds.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,20 +65,21 @@ pub(super) struct Level {
 }
 
 impl Level {
-    pub(super) fn pack(dims: usize, bounds: &[(Vec<f32>, Vec<f32>)]) -> Self {
-        let mut packs = Vec::with_capacity(bounds.len().div_ceil(LANES) * dims * 2 * LANES);
-        for pack in bounds.chunks(LANES) {
+    pub(super) fn pack(dims: usize, boxes: &Boxes) -> Self {
+        let count = boxes.len(dims);
+        let mut packs = Vec::with_capacity(count.div_ceil(LANES) * dims * 2 * LANES);
+        for pack in boxes.0.chunks(2 * dims * LANES) {
+            let last = pack.len() / (2 * dims) - 1;
             for dim in 0..dims {
                 for end in [0, 1] {
-                    packs.extend((0..LANES).map(|lane| {
-                        // Lanes after the last box repeat it.
-                        let (low, high) = pack.get(lane).unwrap_or(&pack[pack.len() - 1]);
-                        if end == 0 { low[dim] } else { high[dim] }
-                    }));
+                    // Lanes after the last box repeat it.
+                    packs.extend(
+                        (0..LANES).map(|lane| pack[(2 * lane.min(last) + end) * dims + dim]),
+                    );
                 }
             }
         }
-        Self { packs, boxes: bounds.len() }
+        Self { packs, boxes: count }
     }
 }
 

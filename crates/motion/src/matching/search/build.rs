@@ -1,7 +1,7 @@
 //! Construction of the index of boxes.
 
 use super::BoxIndex;
-use super::boxes::{LANES, LEAF, Level};
+use super::boxes::{Boxes, LANES, LEAF, Level};
 use crate::matching::Features;
 use crate::matching::features::MAX_DIMS;
 use crate::registration::Progress;
@@ -11,11 +11,19 @@ use crate::registration::Progress;
 /// Frames are sorted into leaves by bisection: a range of frames is split at a whole number of
 /// leaves, along the dimension in which it is widest. Splits lie at powers of two, so that groups
 /// of eight leaves, of 64 and so on are whole branches of that tree. O(n log n).
+///
+/// Then frames are packed leaf by leaf, with the leaves' boxes.
 #[derive(Clone, Debug)]
 pub struct BoxBuilder {
     ids: Vec<u32>,
     open: Vec<(usize, usize)>,
     factors: Vec<f32>,
+    /// The number of frames that are packed.
+    packed: usize,
+    /// Their features, as in a [`BoxIndex`].
+    cells: Vec<f32>,
+    /// The boxes of their leaves.
+    leaves: Boxes,
     done: usize,
     total: usize,
 }
@@ -35,30 +43,25 @@ impl BoxBuilder {
             ids: valid.to_vec(),
             open: if leaves > 1 { vec![(0, leaves)] } else { Vec::new() },
             factors: factors.to_vec(),
+            packed: 0,
+            cells: Vec::new(),
+            leaves: Boxes::default(),
             done: 0,
-            total: valid.len() * rounds,
+            total: valid.len() * (rounds + 1),
         }
     }
 
-    /// Sorts about `frames` more frames.
+    /// Sorts or packs about `frames` more frames.
     pub fn advance(&mut self, features: &Features, frames: usize) -> Progress {
         let mut left = frames;
-        while let Some((first, leaves)) = self.open.pop() {
+        while left > 0
+            && let Some((first, leaves)) = self.open.pop()
+        {
             // The larger part of a tree is on the left.
             let half = leaves.next_power_of_two() / 2;
             let (start, end) = (first * LEAF, ((first + leaves) * LEAF).min(self.ids.len()));
-            let middle = half * LEAF;
-            let range = self.ids.get_mut(start..end).unwrap_or_default();
-            if middle < range.len() {
-                let dim = widest(features, range, &self.factors);
-                let value = |id: u32| {
-                    features.row(id as usize).and_then(|row| row.get(dim)).copied().unwrap_or(0.0)
-                };
-                // Equal values keep the order of frames, so that the same rows give the same tree
-                // everywhere.
-                range.select_nth_unstable_by(middle, |&a, &b| {
-                    value(a).total_cmp(&value(b)).then(a.cmp(&b))
-                });
+            if let Some(ids) = self.ids.get_mut(start..end) {
+                bisect(features, ids, half * LEAF, &self.factors);
             }
             for (from, count) in [(first, half), (first + half, leaves - half)] {
                 if count > 1 {
@@ -67,62 +70,75 @@ impl BoxBuilder {
             }
             self.done = (self.done + (end - start)).min(self.total);
             left = left.saturating_sub(end - start);
-            if left == 0 {
-                break;
-            }
         }
-        if self.open.is_empty() {
+        while left > 0 && self.packed < self.ids.len() {
+            let frames = self.pack_leaf(features);
+            left = left.saturating_sub(frames);
+        }
+        if self.open.is_empty() && self.packed == self.ids.len() {
             self.done = self.total;
         }
         Progress { done: self.done, total: self.total }
     }
 
-    /// Sorts the remaining frames, and builds the boxes.
-    #[must_use]
-    pub fn finish(mut self, features: &Features) -> BoxIndex {
-        while !self.open.is_empty() {
-            self.advance(features, usize::MAX);
-        }
+    /// Packs the next leaf. Returns the number of its frames.
+    fn pack_leaf(&mut self, features: &Features) -> usize {
+        let end = (self.packed + LEAF).min(self.ids.len());
+        let Some(ids) = self.ids.get_mut(self.packed..end) else { return 0 };
         // Within a leaf the frames are in order of time, whatever order bisection gave them.
-        for leaf in self.ids.chunks_mut(LEAF) {
-            leaf.sort_unstable();
-        }
+        ids.sort_unstable();
         let dims = features.layout().dims();
-        let groups = self.ids.len().div_ceil(LANES);
-        let mut cells = vec![0.0; groups * dims * LANES];
-        for (ids, cell) in self.ids.chunks(LANES).zip(cells.chunks_exact_mut(dims * LANES)) {
+        for ids in ids.chunks(LANES) {
+            let start = self.cells.len();
+            self.cells.resize(start + dims * LANES, 0.0);
             for lane in 0..LANES {
                 // Lanes after the last frame repeat it.
                 let id = ids.get(lane).or(ids.last()).copied().unwrap_or(0);
                 let row = features.row(id as usize).unwrap_or(&[]);
-                for (dim, &value) in row.iter().enumerate() {
-                    if let Some(to) = cell.get_mut(dim * LANES + lane) {
-                        *to = value;
-                    }
+                for (to, &value) in self.cells[start + lane..].iter_mut().step_by(LANES).zip(row) {
+                    *to = value;
                 }
             }
         }
+        let rows = ids.iter().filter_map(|&id| features.row(id as usize));
+        self.leaves.push_around(dims, rows.map(|row| (row, row)));
+        self.done = (self.done + ids.len()).min(self.total);
+        self.packed = end;
+        ids.len()
+    }
+
+    /// Sorts and packs the remaining frames, and builds the upper levels.
+    #[must_use]
+    pub fn finish(mut self, features: &Features) -> BoxIndex {
+        while !self.advance(features, usize::MAX).is_complete() {}
+        let dims = features.layout().dims();
         let mut levels = Vec::new();
-        let mut bounds: Vec<(Vec<f32>, Vec<f32>)> = (self.ids.chunks(LEAF))
-            .map(|leaf| {
-                bounds_of(
-                    dims,
-                    leaf.iter().filter_map(|&id| features.row(id as usize)).map(|row| (row, row)),
-                )
-            })
-            .collect();
-        while !bounds.is_empty() {
-            levels.push(Level::pack(dims, &bounds));
-            if bounds.len() <= LANES {
+        let mut boxes = self.leaves;
+        while !boxes.is_empty() {
+            levels.push(Level::pack(dims, &boxes));
+            if boxes.len(dims) <= LANES {
                 break;
             }
-            bounds = (bounds.chunks(LANES))
-                .map(|children| {
-                    bounds_of(dims, children.iter().map(|(low, high)| (&low[..], &high[..])))
-                })
-                .collect();
+            boxes = boxes.around_each(LANES, dims);
         }
-        BoxIndex::new(dims, self.ids, cells, levels)
+        BoxIndex::new(dims, self.ids, self.cells, levels)
+    }
+}
+
+/// Moves the `middle` least of some frames to the front, in the dimension in which they are widest.
+fn bisect(features: &Features, ids: &mut [u32], middle: usize, factors: &[f32]) {
+    if middle >= ids.len() {
+        return;
+    }
+    let dim = widest(features, ids, factors);
+    let value =
+        |id: u32| features.row(id as usize).and_then(|row| row.get(dim)).copied().unwrap_or(0.0);
+    // Values and frames side by side, so that comparing them reads no rows. Equal values keep the
+    // order of frames, so that the same rows give the same tree everywhere.
+    let mut keys: Vec<(f32, u32)> = ids.iter().map(|&id| (value(id), id)).collect();
+    keys.select_nth_unstable_by(middle, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    for (id, key) in ids.iter_mut().zip(&keys) {
+        *id = key.1;
     }
 }
 
@@ -147,20 +163,4 @@ fn widest(features: &Features, ids: &[u32], factors: &[f32]) -> usize {
         .map(|dim| (dim, spread(dim)))
         .reduce(|best, next| if next.1 > best.1 { next } else { best })
         .map_or(0, |(dim, _)| dim)
-}
-
-fn bounds_of<'a>(
-    dims: usize,
-    parts: impl Iterator<Item = (&'a [f32], &'a [f32])>,
-) -> (Vec<f32>, Vec<f32>) {
-    let (mut low, mut high) = (vec![f32::INFINITY; dims], vec![f32::NEG_INFINITY; dims]);
-    for (lower, upper) in parts {
-        for ((low, high), (&lower, &upper)) in
-            low.iter_mut().zip(&mut high).zip(lower.iter().zip(upper))
-        {
-            *low = low.min(lower);
-            *high = high.max(upper);
-        }
-    }
-    (low, high)
 }

@@ -5,6 +5,7 @@ use crate::matching::tags::Tag;
 use crate::matching::{FeatureOptions, Features, Layout, Normalisation};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::{Rng, SeedableRng};
+use std::sync::Arc;
 
 /// Returns a random number from -1 to 1.
 fn number(random: &mut Pcg64Mcg) -> f32 {
@@ -14,7 +15,7 @@ fn number(random: &mut Pcg64Mcg) -> f32 {
 struct Field {
     features: Features,
     tags: Vec<TagSet>,
-    valid: Vec<u32>,
+    valid: Arc<Vec<u32>>,
 }
 
 /// Returns frames that move through the space of features as a motion does, with clips whose ends
@@ -56,7 +57,8 @@ fn field(times: usize, frames: usize, seed: u64) -> Field {
             valid.push(frame as u32);
         }
     }
-    let features = Features::normalise(layout, Normalisation::Block, rows, |row| row % 97 < 70);
+    let valid = Arc::new(valid);
+    let features = Features::normalise(layout, Normalisation::Block, rows, &valid);
     Field { features, tags, valid }
 }
 
@@ -174,8 +176,8 @@ fn search_of_an_invalid_query_finds_nothing() {
     assert_eq!(BoxBuilder::new(&[], &[]).finish(&field.features).len(), 0);
     // Rows that are all equal make a tree of no depth, or none.
     let layout = Layout::new(&FeatureOptions::default()).unwrap();
-    let same = Features::normalise(layout, Normalisation::Block, vec![1.0; 27 * 5_000], |_| true);
-    let valid: Vec<u32> = (0..5_000).collect();
+    let valid = Arc::new((0..5_000).collect());
+    let same = Features::normalise(layout, Normalisation::Block, vec![1.0; 27 * 5_000], &valid);
     let candidates = Candidates { features: &same, tags: &[], valid: &valid };
     let query = vec![0.5; 27];
     let query = Query { row: &query, weights: &weights, filter: TagFilter::default() };
