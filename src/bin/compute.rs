@@ -8,6 +8,13 @@ mod worker {
     use wasm_bindgen::JsValue;
     use wasm_bindgen::prelude::wasm_bindgen;
 
+    /// The number of floats that the page takes in at once: two milliseconds.
+    const PIECE_FLOATS: usize = 1 << 19;
+
+    fn pieces_of(array: &[f32]) -> Array {
+        array.chunks(PIECE_FLOATS).map(Float32Array::from).collect()
+    }
+
     /// A worker with its clips and its memory.
     #[wasm_bindgen]
     #[derive(Debug)]
@@ -30,7 +37,7 @@ mod worker {
             floats: Vec<f32>,
             bytes: Vec<u8>,
         ) -> Result<(), JsValue> {
-            let parcel = Parcel { head, floats, bytes };
+            let parcel = Parcel { head, floats, bytes, ..Parcel::default() };
             self.0.take_clip(number, &parcel).map_err(|error| error.to_string().into())
         }
 
@@ -40,13 +47,16 @@ mod worker {
             self.0.drop_clip(number);
         }
 
-        /// Runs a job and returns its answer: head, floats, bytes.
+        /// Runs a job and returns its answer: head, bytes, and the long arrays, each as a list of
+        /// pieces in their order: first that of the floats, then one for each clip's rotations.
         pub fn run(&mut self, message: &str) -> Result<Array, JsValue> {
             let answer = self.0.run_message(message).map_err(|error| error.to_string())?;
+            let rotations = answer.rotations.iter().map(|all| bytemuck::cast_slice(all));
+            let arrays = std::iter::once(&answer.floats[..]).chain(rotations).map(pieces_of);
             Ok(Array::of3(
                 &JsValue::from(answer.head),
-                &Float32Array::from(&answer.floats[..]),
                 &Uint8Array::from(&answer.bytes[..]),
+                &arrays.collect::<Array>(),
             ))
         }
     }

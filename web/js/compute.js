@@ -5,8 +5,9 @@
 // answers with { ready } or { unusable: reason }. Before and after that come clips, each as { clip,
 // head, bytes, length }, the number of its floats, and these in pieces in their order, { clip, at,
 // piece }; clips to drop, { drop }; and jobs, { job, message }. To each job the worker answers with
-// { job, secs, head, floats, bytes } or { job, failed: reason, trapped }. After a trap it is not
-// used any more.
+// its long arrays in pieces in their order, { job, array, length, piece }, the first array its
+// floats, the others rotations; then with { job, secs, head, bytes }; or with { job, failed: reason,
+// trapped }. After a trap it is not used any more.
 
 import init, { Computer } from "./compute/compute.js";
 
@@ -48,9 +49,13 @@ self.onmessage = async ({ data }) => {
     if (drop !== undefined) worker.dropClip(drop);
     if (job === undefined) return;
     const start = performance.now();
-    const [head, floats, bytes] = worker.run(data.message);
+    const [head, bytes, arrays] = worker.run(data.message);
     const secs = (performance.now() - start) / 1e3;
-    self.postMessage({ job, secs, head, floats, bytes }, [floats.buffer, bytes.buffer]);
+    for (const [array, pieces] of arrays.entries()) {
+      const length = pieces.reduce((sum, piece) => sum + piece.length, 0);
+      for (const piece of pieces) self.postMessage({ job, array, length, piece }, [piece.buffer]);
+    }
+    self.postMessage({ job, secs, head, bytes }, [bytes.buffer]);
   } catch (reason) {
     const trapped = reason instanceof WebAssembly.RuntimeError;
     // A clip that cannot be taken is missed by the jobs that need it.

@@ -213,7 +213,12 @@ fn unpack(packed: &[u8]) -> Result<Unpacked, ParcelError> {
         Some(character) => Some(character.take(&mut rest).ok_or(ParcelError::Arrays)?),
         None => None,
     };
-    let parcel = Parcel { head: head.motion.into_owned(), floats, bytes: rest.to_vec() };
+    let parcel = Parcel {
+        head: head.motion.into_owned(),
+        floats,
+        bytes: rest.to_vec(),
+        ..Parcel::default()
+    };
     Ok(Unpacked { purpose: head.purpose, motion: unpack_motion(&parcel)?, character, columns })
 }
 

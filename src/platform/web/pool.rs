@@ -5,6 +5,7 @@ use super::js_error_text;
 use super::page::{is_hidden, listen, now_ms, requested_pool, window};
 use crate::platform::Inbox;
 use crate::platform::pool_size::{PoolSize, PoolStats, pool_size};
+use glam::Quat;
 use js_sys::{Array, Float32Array, Function, Object, Reflect, Uint8Array};
 use segue_session::Session;
 use segue_session::jobs::{Answer, Job, Parcel};
@@ -93,6 +94,8 @@ struct Slot {
 /// A job that a worker has.
 struct Posted {
     job: Job,
+    /// The arrays of its answer, as far as they have arrived.
+    arrived: Parcel,
     /// The number of workers that ended while they ran it.
     tries: u8,
     /// The time at which it became the first, milliseconds.
@@ -264,7 +267,12 @@ impl Pool {
         let number = JsValue::from(job.number as f64);
         post(&worker, &[("job", number), ("message", message.into())], None)?;
         if let Some((job, tries)) = slot.next.pop_front() {
-            slot.jobs.push_back(Posted { job, tries, since_ms: now_ms() });
+            slot.jobs.push_back(Posted {
+                job,
+                arrived: Parcel::default(),
+                tries,
+                since_ms: now_ms(),
+            });
         }
         Ok(())
     }
@@ -372,15 +380,18 @@ impl State {
         }
         let Some(number) = part("job").as_f64() else { return };
         let is_it = |posted: &Posted| posted.job.number as f64 == number;
-        let Some(posted) = slot.jobs.iter().position(is_it).and_then(|at| slot.jobs.remove(at))
-        else {
+        let Some(place) = slot.jobs.iter().position(is_it) else { return };
+        if let (Some(posted), Ok(piece)) = (slot.jobs.get_mut(place), part("piece").dyn_into()) {
+            let number = |name: &str| part(name).as_f64().unwrap_or(0.0) as usize;
+            put_piece(&mut posted.arrived, number("array"), number("length"), &piece);
             return;
-        };
+        }
+        let Some(mut posted) = slot.jobs.remove(place) else { return };
         if let Some(next) = slot.jobs.front_mut() {
             next.since_ms = now_ms();
         }
         self.deaths = 0;
-        let answer = answer_of(&posted.job, &part);
+        let answer = answer_of(&posted.job, std::mem::take(&mut posted.arrived), &part);
         self.stats.jobs += u64::from(answer.is_some());
         if answer.is_none() {
             let reason = part("failed").as_string().unwrap_or_default();
@@ -391,13 +402,34 @@ impl State {
     }
 }
 
-/// Returns the answer in a message; `None` where it has none.
-fn answer_of(job: &Job, part: &impl Fn(&str) -> JsValue) -> Option<Answer> {
-    let floats: Float32Array = part("floats").dyn_into().ok()?;
+/// Appends a piece of an answer's array, which has a number and a length; that of the rotations of a
+/// clip is a multiple of four.
+fn put_piece(arrived: &mut Parcel, array: usize, length: usize, piece: &Float32Array) {
+    let more = piece.length() as usize;
+    let Some(clip) = array.checked_sub(1) else {
+        let floats = &mut arrived.floats;
+        floats.reserve_exact(length - floats.len().min(length));
+        let start = floats.len();
+        floats.resize(start + more, 0.0);
+        piece.copy_to(&mut floats[start..]);
+        return;
+    };
+    if arrived.rotations.len() == clip {
+        arrived.rotations.push(Vec::with_capacity(length / 4));
+    }
+    if let Some(rotations) = arrived.rotations.get_mut(clip) {
+        let start = rotations.len();
+        rotations.resize(start + more / 4, Quat::from_array([0.0; 4]));
+        piece.copy_to(bytemuck::cast_slice_mut(&mut rotations[start..]));
+    }
+}
+
+/// Returns the answer in the last message of a job, before which its arrays have arrived; `None`
+/// where it has none.
+fn answer_of(job: &Job, arrived: Parcel, part: &impl Fn(&str) -> JsValue) -> Option<Answer> {
     let bytes: Uint8Array = part("bytes").dyn_into().ok()?;
     let head = part("head").as_string()?;
-    let parcel = Parcel { head, floats: floats.to_vec(), bytes: bytes.to_vec() };
-    job.answer(parcel).ok()
+    job.answer(Parcel { head, bytes: bytes.to_vec(), ..arrived }).ok()
 }
 
 /// Posts a message with these properties, and with the head and bytes of a parcel, which are moved.

@@ -6,6 +6,7 @@ use super::database_clip::DatabaseClipTask;
 use super::distances::DistanceTask;
 use super::error::JobError;
 use super::faults::FaultTask;
+use super::mend::MendTask;
 use super::registration::RegistrationTask;
 use super::result::ResultTask;
 use super::stream::StreamTask;
@@ -149,6 +150,7 @@ tasks! {
     DatabaseClip(DatabaseClipTask),
     Distances(DistanceTask),
     Faults(FaultTask),
+    Mend(MendTask),
     Registration(RegistrationTask),
     Result(ResultTask),
     Stream(StreamTask),

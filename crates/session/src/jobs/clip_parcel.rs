@@ -1,8 +1,8 @@
 //! Clips without their skeleton, as parts of parcels.
 
-use super::ParcelError;
-use super::parcel::split_floats;
-use glam::{Quat, Vec3};
+use super::parcel::{Arrays, split_floats};
+use super::{Parcel, ParcelError};
+use glam::Vec3;
 use segue_motion::clip::{Clip, JointTranslations, Provenance};
 use segue_motion::skeleton::Skeleton;
 use serde::{Deserialize, Serialize};
@@ -31,16 +31,16 @@ impl<'a> ClipHead<'a> {
         }
     }
 
-    /// Moves the arrays of the clip from the front of `floats`, and returns the clip.
+    /// Takes the arrays of the clip, and returns it.
     pub(super) fn take(
         self,
         skeleton: &Arc<Skeleton>,
-        floats: &mut &[f32],
+        arrays: &mut Arrays<'_>,
     ) -> Result<Clip, ParcelError> {
-        let rotations = split_floats(floats, self.frames, 4 * skeleton.len())?;
-        let rotations = rotations.chunks_exact(4).map(|q| Quat::from_xyzw(q[0], q[1], q[2], q[3]));
+        let rotations = self.frames.checked_mul(skeleton.len()).ok_or(ParcelError::Arrays)?;
+        let rotations = arrays.rotations(rotations)?;
         let mut values = || -> Result<Vec<Vec3>, ParcelError> {
-            let all = split_floats(floats, self.frames, 3)?;
+            let all = split_floats(&mut arrays.floats, self.frames, 3)?;
             Ok(all.chunks_exact(3).map(Vec3::from_slice).collect())
         };
         let root = values()?;
@@ -49,23 +49,26 @@ impl<'a> ClipHead<'a> {
             tracks.push(JointTranslations { joint, values: values()? });
         }
         let skeleton = Arc::clone(skeleton);
-        let clip = Clip::new(self.name, skeleton, self.fps, rotations.collect(), root)
+        let clip = Clip::new(self.name, skeleton, self.fps, rotations, root)
             .and_then(|clip| clip.with_translations(tracks))
             .map_err(|_| ParcelError::Arrays)?;
         Ok(clip.with_provenance(self.provenance))
     }
 }
 
-/// Returns the arrays of a clip, in their order in a parcel.
+/// Returns the arrays of a clip, in their order on the way to a worker.
 pub(crate) fn arrays_of(clip: &Clip) -> impl Iterator<Item = &[f32]> {
+    std::iter::once(bytemuck::cast_slice(clip.all_rotations())).chain(translations_of(clip))
+}
+
+fn translations_of(clip: &Clip) -> impl Iterator<Item = &[f32]> {
     let tracks = clip.translations().iter().map(|track| &track.values[..]);
-    let translations = std::iter::once(clip.root_translations()).chain(tracks);
-    std::iter::once(bytemuck::cast_slice(clip.all_rotations()))
-        .chain(translations.map(bytemuck::cast_slice))
+    std::iter::once(clip.root_translations()).chain(tracks).map(bytemuck::cast_slice)
 }
 
 /// Appends the arrays of a clip.
-pub(super) fn put_clip(floats: &mut Vec<f32>, clip: &Clip) {
-    floats.reserve(arrays_of(clip).map(<[f32]>::len).sum());
-    arrays_of(clip).for_each(|array| floats.extend_from_slice(array));
+pub(super) fn put_clip(parcel: &mut Parcel, clip: &Clip) {
+    parcel.rotations.push(clip.all_rotations().to_vec());
+    parcel.floats.reserve(translations_of(clip).map(<[f32]>::len).sum());
+    translations_of(clip).for_each(|array| parcel.floats.extend_from_slice(array));
 }

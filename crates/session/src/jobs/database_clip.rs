@@ -3,7 +3,7 @@
 use super::clip_parcel::{ClipHead, put_clip};
 use super::error::JobError;
 use super::motion_parcel::take_contacts;
-use super::parcel::{put, split_floats, take, take_floats};
+use super::parcel::{Arrays, put, split_floats, take, take_floats};
 use super::task::{JobClip, Task};
 use super::worker_memory::WorkerMemory;
 use super::{Parcel, ParcelError};
@@ -83,7 +83,7 @@ impl Task for DatabaseClipTask {
         let mut parcel = Parcel { head: serde_json::to_string(&head)?, ..Parcel::default() };
         for parts in &motions {
             if !is_own(parts) {
-                put_clip(&mut parcel.floats, &parts.clip);
+                put_clip(&mut parcel, &parts.clip);
             }
             put_parts(&mut parcel, parts);
         }
@@ -95,14 +95,14 @@ impl Task for DatabaseClipTask {
         let ([own, ..], Some(first)) = (clips, clips.last()) else {
             return Err(ParcelError::Arrays);
         };
-        let (mut floats, mut bytes) = (&parcel.floats[..], &parcel.bytes[..]);
+        let mut arrays = Arrays::new(parcel.rotations, &parcel.floats, &parcel.bytes);
         let mut motions = Vec::new();
         for mut head in head.motions {
             let clip = match head.clip.take() {
-                Some(clip) => Arc::new(clip.take(first.motion.clip().skeleton(), &mut floats)?),
+                Some(clip) => Arc::new(clip.take(first.motion.clip().skeleton(), &mut arrays)?),
                 None => Arc::clone(own.motion.clip()),
             };
-            motions.push(head.take(clip, &mut floats, &mut bytes)?);
+            motions.push(head.take(clip, &mut arrays)?);
         }
         Ok(MeasuredClip { motions, retargeted: head.retargeted })
     }
@@ -125,12 +125,11 @@ impl<'a> MotionHead<'a> {
         }
     }
 
-    /// Moves the arrays of the motion from the front of `floats` and `bytes`, and returns it.
+    /// Takes the arrays of the motion, and returns it.
     fn take(
         self,
         clip: Arc<Clip>,
-        floats: &mut &[f32],
-        bytes: &mut &[u8],
+        Arrays { floats, bytes, .. }: &mut Arrays<'_>,
     ) -> Result<DatabaseClip, ParcelError> {
         let frames = clip.frames();
         let joints_radps = take_floats(floats, clip.skeleton().len())?;

@@ -1,7 +1,7 @@
 //! Clips on their way to a worker.
 
 use super::clip_parcel::ClipHead;
-use super::parcel::{put, take};
+use super::parcel::{Arrays, put, take};
 use super::{Parcel, ParcelError};
 use glam::DVec2;
 use segue_motion::clip::{ContactCorrection, ContactOptions, Contacts, FootOptions, Motion};
@@ -48,17 +48,16 @@ impl<'a> MotionHead<'a> {
         }
     }
 
-    /// Moves the arrays of the motion from the front of `floats` and `bytes`, and returns the
-    /// motion of a body.
+    /// Takes the arrays of the motion, and returns the motion of a body.
     pub(super) fn take(
         self,
         skeleton: &Arc<Skeleton>,
         roles: &Roles,
-        floats: &mut &[f32],
-        bytes: &mut &[u8],
+        arrays: &mut Arrays<'_>,
     ) -> Result<Motion, ParcelError> {
         let frames = self.clip.frames;
-        let clip = self.clip.take(skeleton, floats)?;
+        let clip = self.clip.take(skeleton, arrays)?;
+        let bytes = &mut arrays.bytes;
         let places = take::<[f64; 3]>(bytes, if self.knows_places { frames } else { 0 })?;
         let places =
             places.into_iter().map(|[yaw, x, z]| Planar { yaw, shift: DVec2::new(x, z) }).collect();
@@ -123,7 +122,7 @@ pub(crate) fn pack_without_floats(motion: &Motion) -> Result<Parcel, ParcelError
     };
     let mut bytes = Vec::new();
     put_known(&mut bytes, motion);
-    Ok(Parcel { head: serde_json::to_string(&head)?, floats: Vec::new(), bytes })
+    Ok(Parcel { head: serde_json::to_string(&head)?, bytes, ..Parcel::default() })
 }
 
 /// Restores a clip.
@@ -131,7 +130,8 @@ pub(crate) fn unpack(parcel: &Parcel) -> Result<Motion, ParcelError> {
     let head: Head<'_> = serde_json::from_str(&parcel.head)?;
     let skeleton = Skeleton::new(head.joints.into_owned()).map_err(|_| ParcelError::Arrays)?;
     let skeleton = Arc::new(skeleton.with_folded_chain(head.above.into_owned()));
-    head.motion.take(&skeleton, &head.roles, &mut &parcel.floats[..], &mut &parcel.bytes[..])
+    let mut arrays = Arrays::new(parcel.rotations.clone(), &parcel.floats, &parcel.bytes);
+    head.motion.take(&skeleton, &head.roles, &mut arrays)
 }
 
 /// Moves the flags of some feet from the front of `bytes`, foot by foot.

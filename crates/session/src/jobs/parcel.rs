@@ -1,6 +1,8 @@
 //! The form in which clips and answers travel.
 
 use bytemuck::{NoUninit, Pod, pod_read_unaligned};
+use glam::Quat;
+use std::vec;
 
 /// A message between a page and its workers: a JSON header, and long arrays. The arrays have the
 /// byte order of the machine, on which both sides run.
@@ -8,7 +10,10 @@ use bytemuck::{NoUninit, Pod, pod_read_unaligned};
 pub struct Parcel {
     /// The header.
     pub head: String,
-    /// The long array.
+    /// The rotations of each clip that an answer brings, most of its numbers: the clip takes them as
+    /// they are.
+    pub rotations: Vec<Vec<Quat>>,
+    /// The other numbers.
     pub floats: Vec<f32>,
     /// Everything else, as bytes.
     pub bytes: Vec<u8>,
@@ -23,6 +28,32 @@ pub enum ParcelError {
     /// Arrays of other lengths than the header states, or with invalid content.
     #[error("a message has other arrays than its head states")]
     Arrays,
+}
+
+/// The arrays of a parcel: whoever reads it takes its values from the front of each.
+#[derive(Debug)]
+pub(super) struct Arrays<'a> {
+    pub(super) rotations: vec::IntoIter<Vec<Quat>>,
+    pub(super) floats: &'a [f32],
+    pub(super) bytes: &'a [u8],
+}
+
+impl<'a> Arrays<'a> {
+    pub(super) fn new(rotations: Vec<Vec<Quat>>, floats: &'a [f32], bytes: &'a [u8]) -> Self {
+        Self { rotations: rotations.into_iter(), floats, bytes }
+    }
+
+    /// Takes the rotations of a clip: on its way to a worker it has all its numbers in one array.
+    pub(super) fn rotations(&mut self, count: usize) -> Result<Vec<Quat>, ParcelError> {
+        match self.rotations.next() {
+            Some(rotations) if rotations.len() == count => Ok(rotations),
+            Some(_) => Err(ParcelError::Arrays),
+            None => {
+                let floats = split_floats(&mut self.floats, count, 4)?;
+                Ok(floats.as_chunks().0.iter().copied().map(Quat::from_array).collect())
+            }
+        }
+    }
 }
 
 /// Appends values to bytes.

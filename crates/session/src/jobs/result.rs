@@ -3,6 +3,7 @@
 use super::clip_parcel::put_clip;
 use super::error::JobError;
 use super::motion_parcel::{MotionHead, put_known};
+use super::parcel::Arrays;
 use super::task::{JobClip, Task};
 use super::worker_memory::WorkerMemory;
 use super::{Parcel, ParcelError};
@@ -129,7 +130,7 @@ impl Task for ResultTask {
             };
             let body = clips.iter().position(is_body).ok_or(ParcelError::Arrays)?;
             own.push((body, MotionHead::of(motion)));
-            put_clip(&mut parcel.floats, motion.clip());
+            put_clip(&mut parcel, motion.clip());
             put_known(&mut parcel.bytes, motion);
         }
         parcel.head = serde_json::to_string(&Head {
@@ -148,12 +149,12 @@ impl Task for ResultTask {
 
     fn unpack(&self, clips: &[JobClip], parcel: Parcel) -> Result<Outcome, ParcelError> {
         let head: Head<'_> = serde_json::from_str(&parcel.head)?;
-        let (mut floats, mut bytes) = (&parcel.floats[..], &parcel.bytes[..]);
+        let mut arrays = Arrays::new(parcel.rotations, &parcel.floats, &parcel.bytes);
         let mut motions: Vec<_> = clips.iter().map(|clip| Arc::clone(&clip.motion)).collect();
         for (body, head) in head.own {
             let body = &clips.get(body).ok_or(ParcelError::Arrays)?.motion;
             let (skeleton, roles) = (body.clip().skeleton(), body.roles());
-            motions.push(Arc::new(head.take(skeleton, roles, &mut floats, &mut bytes)?));
+            motions.push(Arc::new(head.take(skeleton, roles, &mut arrays)?));
         }
         let at = |place: usize| motions.get(place).ok_or(ParcelError::Arrays);
         let clip = |place| at(place).map(|motion| Arc::clone(motion.clip()));

@@ -289,7 +289,9 @@ fn work_for_a_long_clip_is_the_same_by_workers_and_without() {
         // locked.
         (Key::Lab, Value::Choice("loop"), 6),
         (Key::LoopFrom, Value::Number(3.0), 7),
-        (Key::Lab, Value::Choice("clean"), 8),
+        // Its faults, and their mends.
+        (Key::Lab, Value::Choice("clean"), 9),
+        (Key::CleanJitter, Value::Switch(false), 10),
     ];
     for (key, value, run) in changes {
         both.change(&mut workers, |session| set(session, key, value.clone()));

@@ -2,6 +2,7 @@
 
 use super::clip_parcel::{ClipHead, put_clip};
 use super::error::JobError;
+use super::parcel::Arrays;
 use super::task::{JobClip, Task};
 use super::worker_memory::WorkerMemory;
 use super::{Parcel, ParcelError};
@@ -62,7 +63,7 @@ impl Task for ViewTask {
         let head = Head { locked: locked.as_ref().map(ClipHead::of), before, found };
         let mut parcel = Parcel { head: serde_json::to_string(&head)?, ..Parcel::default() };
         if let Some(locked) = locked {
-            put_clip(&mut parcel.floats, locked);
+            put_clip(&mut parcel, locked);
         }
         Ok(parcel)
     }
@@ -70,8 +71,8 @@ impl Task for ViewTask {
     fn unpack(&self, clips: &[JobClip], parcel: Parcel) -> Result<ViewAnswer, ParcelError> {
         let Head { locked, before, found } = serde_json::from_str(&parcel.head)?;
         let skeleton = clips.first().ok_or(ParcelError::Arrays)?.motion.clip().skeleton();
-        let mut floats = &parcel.floats[..];
-        let locked = locked.map(|head| head.take(skeleton, &mut floats)).transpose()?;
+        let mut arrays = Arrays::new(parcel.rotations, &parcel.floats, &parcel.bytes);
+        let locked = locked.map(|head| head.take(skeleton, &mut arrays)).transpose()?;
         Ok(ViewAnswer { locked, before, found })
     }
 }

@@ -14,7 +14,6 @@ use crate::metrics::{Metric, MetricId};
 use crate::params::{Key, Params};
 use segue_motion::clean::{Fault, FaultKind, MendOptions, find_faults, mend};
 use segue_motion::clip::Motion;
-use segue_motion::metrics::worst_foot_slide;
 use segue_text::{Message, msg};
 use std::ops::Range;
 use std::sync::Arc;
@@ -101,6 +100,15 @@ impl Mends {
             && fault.confidence >= self.least
             && !self.skipped.contains(&(fault.kind, fault.frames.start))
     }
+
+    /// Returns the faults that are mended.
+    fn of_faults<'a>(&self, faults: &'a [Fault]) -> Vec<&'a Fault> {
+        faults.iter().filter(|fault| self.is_on && self.choose(fault)).collect()
+    }
+
+    fn options(&self) -> MendOptions {
+        MendOptions { cutoff_hz: self.cutoff_hz, ..MendOptions::default() }
+    }
 }
 
 /// Returns a take mended as the Clean lab mends it by default, and the number of faults that were
@@ -111,10 +119,8 @@ impl Mends {
 pub fn cleaned(motion: &Arc<Motion>) -> Result<(Arc<Motion>, usize), LabError> {
     let mends = Mends::of(&Params::default());
     let faults = find_faults(motion);
-    let chosen: Vec<&Fault> =
-        faults.iter().filter(|fault| mends.is_on && mends.choose(fault)).collect();
-    let options = MendOptions { cutoff_hz: mends.cutoff_hz, ..MendOptions::default() };
-    Ok((mend(motion, &chosen, &options)?.motion, chosen.len()))
+    let chosen = mends.of_faults(&faults);
+    Ok((mend(motion, &chosen, &mends.options())?.motion, chosen.len()))
 }
 
 /// A fault of the take, and what is done about it.
@@ -204,7 +210,7 @@ impl LabInputs for CleanInputs {
         let Some((searched, cleaned)) = &self.found else {
             return Ok(Outcome::plain(Arc::clone(&self.motion)));
         };
-        let mended = cleaned.made.clone()?;
+        let (mended, slid) = cleaned.made.clone()?;
         let faults: Vec<FoundFault> = (searched.faults.iter())
             .map(|fault| FoundFault {
                 is_chosen: self.mends.choose(fault),
@@ -216,7 +222,6 @@ impl LabInputs for CleanInputs {
         let mends = faults.iter().filter(goes).count();
         let left = faults.iter().filter(|found| found.is_sure && !goes(found)).count();
         let motion = &mended.motion;
-        let slid = worst_foot_slide(motion.clip(), motion.roles(), motion.contacts());
         let metrics = vec![
             Metric::new(MetricId::FaultsLeft, left as f64),
             Metric::new(MetricId::FaultsMended, mends as f64),

@@ -4,17 +4,18 @@ use super::super::delegated::Delegated;
 use super::super::request_cache::{Step, work_on_first};
 use super::super::sliced::{JobKind, Sliced};
 use super::{CleanInputs, Mends};
-use crate::jobs::{FaultTask, JobBoard};
+use crate::jobs::{FaultTask, JobBoard, MendAnswer, MendTask, measured};
 use crate::labs::LabError;
 use crate::params::{Key, MAX_PANES, Params};
-use segue_motion::clean::{Fault, FaultSearch, MendOptions, Mended, Mending, damage};
+use segue_motion::clean::{Fault, FaultSearch, Mending, damage};
 use segue_motion::clip::Motion;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// Takes of up to this number of frames are searched and mended at once.
 const AT_ONCE: usize = 500;
-/// The number of frames from which on a worker searches a take: what takes it longer than to begin.
+/// The number of frames from which on a worker searches and mends a take: what takes it longer than
+/// to begin.
 const FOR_WORKERS: usize = 2_000;
 
 /// The faults of a take.
@@ -34,7 +35,7 @@ pub(super) struct Searched {
 pub(super) struct Cleaned {
     of: Arc<Searched>,
     mends: Mends,
-    pub(super) made: Result<Mended, LabError>,
+    pub(super) made: Result<MendAnswer, LabError>,
 }
 
 /// The faults to put in: their number and seed.
@@ -90,7 +91,7 @@ enum Work {
     Mend {
         of: Arc<Searched>,
         mends: Mends,
-        mending: Box<Mending>,
+        mending: Delegated<MendTask, Box<Mending>>,
     },
 }
 
@@ -106,7 +107,7 @@ impl CleanCache {
         let at_once = motion.clip().frames() <= AT_ONCE;
         let mut found = None;
         if let Some(searched) = self.search(motion, broken, at_once)?
-            && let Some(cleaned) = self.mend(&searched, &mends, at_once)?
+            && let Some(cleaned) = self.mend(&searched, &mends, at_once)
         {
             found = Some((searched, cleaned));
         }
@@ -149,10 +150,10 @@ impl CleanCache {
         searched: &Arc<Searched>,
         mends: &Mends,
         at_once: bool,
-    ) -> Result<Option<Arc<Cleaned>>, LabError> {
+    ) -> Option<Arc<Cleaned>> {
         let is_it = |of: &Arc<Searched>, by: &Mends| Arc::ptr_eq(of, searched) && by == mends;
         if let Some(known) = self.cleaned.iter().find(|known| is_it(&known.of, &known.mends)) {
-            return Ok(Some(Arc::clone(known)));
+            return Some(Arc::clone(known));
         }
         let pending = self.under_way.iter_mut().find(|at| match &at.work {
             Work::Mend { of, mends, .. } => is_it(of, mends),
@@ -160,17 +161,14 @@ impl CleanCache {
         });
         if let Some(pending) = pending {
             pending.is_wanted = true;
-            return Ok(None);
+            return None;
         }
-        let chosen: Vec<&Fault> =
-            searched.faults.iter().filter(|fault| mends.is_on && mends.choose(fault)).collect();
-        let options = MendOptions { cutoff_hz: mends.cutoff_hz, ..MendOptions::default() };
-        let is_quick = at_once || chosen.is_empty();
-        let mending = Box::new(Mending::new(&searched.motion, &chosen, &options)?);
-        let work = Work::Mend { of: Arc::clone(searched), mends: mends.clone(), mending };
+        let is_quick = at_once || mends.of_faults(&searched.faults).is_empty();
+        let (of, mends) = (Arc::clone(searched), mends.clone());
+        let work = Work::Mend { of, mends, mending: Delegated::New };
         self.begin(work, is_quick);
         let known = self.cleaned.iter().find(|known| is_it(&known.of, &known.mends));
-        Ok(known.cloned())
+        known.cloned()
     }
 
     fn begin(&mut self, work: Work, at_once: bool) {
@@ -218,13 +216,31 @@ impl CleanCache {
                     }
                 }
             }
-            Work::Mend { of, mends, mut mending } => {
-                let made = match mending.advance() {
-                    Ok(true) => return Step::On(Work::Mend { of, mends, mending }),
-                    Ok(false) => Ok(mending.finish()),
-                    Err(error) => Err(error.into()),
+            Work::Mend { of, mends, mending } => {
+                let (faults, options) = (mends.of_faults(&of.faults), mends.options());
+                let offer = || {
+                    let faults: Vec<Fault> = faults.iter().copied().cloned().collect();
+                    let is_long = of.motion.clip().frames() >= FOR_WORKERS && !faults.is_empty();
+                    let task = MendTask { faults, options };
+                    is_long.then(|| (task, vec![Arc::clone(&of.motion)]))
                 };
-                keep(&mut self.cleaned, Cleaned { of, mends, made });
+                let slice = |mending: Option<Box<Mending>>| {
+                    let begin = || Mending::new(&of.motion, &faults, &options).map(Box::new);
+                    let mut mending = match mending.map_or_else(begin, Ok) {
+                        Ok(mending) => mending,
+                        Err(error) => return ControlFlow::Break(Err(error.into())),
+                    };
+                    match mending.advance() {
+                        Ok(true) => ControlFlow::Continue(mending),
+                        Ok(false) => ControlFlow::Break(Ok(measured(mending.finish()))),
+                        Err(error) => ControlFlow::Break(Err(error.into())),
+                    }
+                };
+                match mending.advance(jobs, offer, |answer| Some(Ok(answer)), slice) {
+                    Step::On(mending) => return Step::On(Work::Mend { of, mends, mending }),
+                    Step::Waits(mending) => return Step::Waits(Work::Mend { of, mends, mending }),
+                    Step::Done(made) => keep(&mut self.cleaned, Cleaned { of, mends, made }),
+                }
             }
         }
         Step::Done(())
@@ -271,7 +287,9 @@ impl Sliced for CleanCache {
             Work::Search { search, .. } => {
                 0.7 * search.here().map_or(0.0, |search| search.progress())
             }
-            Work::Mend { mending, .. } => 0.7 + 0.3 * mending.progress(),
+            Work::Mend { mending, .. } => {
+                0.7 + 0.3 * mending.here().map_or(0.0, |mending| mending.progress())
+            }
         };
         Some((JobKind::Cleaning, f64::from(progress)))
     }
