@@ -88,7 +88,7 @@ pub use carry::{CarriedMotion, CarryOptions, Offset, Orientation, Timing, carry}
 pub use edit::{PathEdit, Pins};
 pub use fit::{FitOptions, MAX_SMOOTHING, drawn_path, fit_spline};
 pub use fitted::{FitError, FittedPath, PathFitting};
-pub use motion::{EditedMotion, MotionOptions, PathEditor, Slide};
+pub use motion::{EditedMotion, MotionCarrying, MotionOptions, PathEditor, Slide};
 pub use spline::{GroundSpline, Jet, MAX_DISTANCE_M, MAX_POINTS, MIN_POINTS, SplineEnds};
 pub use turning::{HardTurn, hard_turns, turn_rates};
 

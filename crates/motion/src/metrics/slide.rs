@@ -60,7 +60,7 @@ impl StanceSlide {
 
 /// The measurement of [`foot_slides`] in slices, for long clips. Every call must be given the
 /// same clip and contacts.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct SlideMeter {
     feet: Vec<SlidingFoot>,
     /// The joints from the root to the points of the feet.
@@ -70,7 +70,7 @@ pub struct SlideMeter {
 }
 
 /// The measurement of one foot.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct SlidingFoot {
     foot: Foot,
     /// Its points, and their positions in the previous frame.

@@ -3,6 +3,7 @@
 use super::{ArcLengthPath, FittedPath, PathEditError, Waypoint};
 use crate::clip::{Clip, Contacts, JointTranslations};
 use crate::math::{Planar, curve, quat};
+use glam::{Quat, Vec3};
 use std::ops::Range;
 
 /// The quantity that is kept when a path becomes longer or shorter.
@@ -92,46 +93,159 @@ pub fn carry(
     edited: &ArcLengthPath,
     options: &CarryOptions,
 ) -> Result<CarriedMotion, PathEditError> {
-    let clip = path.source().clip();
-    let frames = match options.timing {
-        Timing::Metres | Timing::Duration => (0..clip.frames()).map(|frame| frame as f64).collect(),
-        Timing::Speed => at_speed(path, edited),
-    };
-    let mut places = Vec::with_capacity(frames.len());
-    let (mut moves, mut characters) =
-        (Vec::with_capacity(frames.len()), Vec::with_capacity(frames.len()));
-    for &frame in &frames {
+    let mut carrying = Carrying::new(*options);
+    while carrying.advance(path, edited, usize::MAX) {}
+    carrying.finish(path)
+}
+
+/// The computation of [`carry`] in slices, for long motions. Every call must be given the same
+/// paths.
+#[derive(Clone, Debug)]
+pub(super) struct Carrying {
+    options: CarryOptions,
+    /// For each frame of the original, the distance on the new path, if it keeps its speed.
+    along: Vec<f64>,
+    frames: Option<Vec<f64>>,
+    places: Vec<Waypoint>,
+    characters: Vec<Planar>,
+    turns: Vec<f64>,
+    rotations: Vec<Quat>,
+    roots: Vec<Vec3>,
+    tracks: Vec<JointTranslations>,
+}
+
+impl Carrying {
+    pub(super) fn new(options: CarryOptions) -> Self {
+        Self {
+            options,
+            along: Vec::new(),
+            frames: None,
+            places: Vec::new(),
+            characters: Vec::new(),
+            turns: Vec::new(),
+            rotations: Vec::new(),
+            roots: Vec::new(),
+            tracks: Vec::new(),
+        }
+    }
+
+    /// Processes up to `count` more frames. Returns `false` when nothing is left to do.
+    pub(super) fn advance(
+        &mut self,
+        path: &FittedPath,
+        edited: &ArcLengthPath,
+        count: usize,
+    ) -> bool {
+        let Some(frames) = self.frames.take() else {
+            self.frames = self.frames_of(path, edited, count);
+            return true;
+        };
+        let next = self.places.len()..self.places.len().saturating_add(count).min(frames.len());
+        for &frame in &frames[next.clone()] {
+            self.place(path, edited, frame);
+        }
+        let is_left = next.end < frames.len();
+        self.frames = Some(frames);
+        is_left
+    }
+
+    /// Returns the frames of the original, if all is known that they depend on; up to `count` of
+    /// them are measured on the new path.
+    fn frames_of(
+        &mut self,
+        path: &FittedPath,
+        edited: &ArcLengthPath,
+        count: usize,
+    ) -> Option<Vec<f64>> {
+        let clip = path.source().clip();
+        let frames = match self.options.timing {
+            Timing::Metres | Timing::Duration => {
+                (0..clip.frames()).map(|frame| frame as f64).collect()
+            }
+            Timing::Speed => {
+                let left = path.parameters().iter().skip(self.along.len());
+                self.along.extend(left.take(count).map(|&u| edited.length_at(u)));
+                if self.along.len() < path.parameters().len() {
+                    return None;
+                }
+                at_speed(path, &self.along)
+            }
+        };
+        self.places.reserve_exact(frames.len());
+        self.characters.reserve_exact(frames.len());
+        self.turns.reserve_exact(frames.len());
+        self.rotations.reserve_exact(frames.len() * clip.skeleton().len());
+        self.roots.reserve_exact(frames.len());
+        let track = |track: &JointTranslations| JointTranslations {
+            joint: track.joint,
+            values: Vec::with_capacity(frames.len()),
+        };
+        self.tracks = clip.translations().iter().map(track).collect();
+        Some(frames)
+    }
+
+    /// Places a frame of the original on the new path.
+    fn place(&mut self, path: &FittedPath, edited: &ArcLengthPath, frame: f64) {
         let (index, part) = path.between(frame);
         let parameter = path.parameter(frame);
         let old = if part == 0.0 { path.places()[index] } else { path.curve().at(parameter) };
-        let place = match options.timing {
+        let place = match self.options.timing {
             Timing::Metres if is_behind(edited, &old) => behind(path, edited, &old),
             Timing::Metres => edited.at_length_near(old.along_m, parameter),
             Timing::Speed | Timing::Duration => edited.at(parameter),
         };
         let turned = place.frame.after(&old.frame.inverse());
         let stood = path.character(frame);
-        let stands = match options.offset {
+        let stands = match self.options.offset {
             Offset::Path => turned.apply_ground(stood.shift),
             Offset::World => stood.shift + (place.frame.shift - old.frame.shift),
         };
-        let turn = match options.orientation {
+        let turn = match self.options.orientation {
             Orientation::Path => Planar::new(turned.yaw, 0.0, 0.0),
             Orientation::World => Planar::IDENTITY,
         };
         let planar = Planar { shift: stands - turn.apply_ground(stood.shift), ..turn };
-        characters.push(planar.after(&stood));
-        moves.push(planar);
-        places.push(place);
+        self.characters.push(planar.after(&stood));
+        self.turns.push(planar.yaw);
+        self.places.push(place);
+        self.pose(path.source().clip(), frame, &planar);
     }
-    let clip = moved(clip, &frames, &moves)?;
-    Ok(CarriedMotion {
-        clip,
-        frames,
-        places,
-        characters,
-        turns: moves.iter().map(|planar| planar.yaw).collect(),
-    })
+
+    /// Appends a frame of a clip, moved over the ground; between frames positions are interpolated
+    /// linearly and rotations spherically.
+    fn pose(&mut self, clip: &Clip, frame: f64, planar: &Planar) {
+        let last = clip.frames().saturating_sub(1);
+        let before = (frame as usize).min(last);
+        let (after, part) = ((before + 1).min(last), frame.fract() as f32);
+        let first = self.rotations.len();
+        self.rotations.extend_from_slice(clip.rotations(before));
+        let mut root = clip.root_translations()[before];
+        if part > 0.0 {
+            root = root.lerp(clip.root_translations()[after], part);
+            for (rotation, &next) in self.rotations[first..].iter_mut().zip(clip.rotations(after)) {
+                *rotation = quat::slerp(*rotation, next, part);
+            }
+        }
+        self.rotations[first] = quat::renormalize(planar.rotation() * self.rotations[first]);
+        self.roots.push(planar.apply(root));
+        for (to, track) in self.tracks.iter_mut().zip(clip.translations()) {
+            to.values.push(track.values[before].lerp(track.values[after], part));
+        }
+    }
+
+    /// Returns the motion, of which all frames are processed.
+    pub(super) fn finish(self, path: &FittedPath) -> Result<CarriedMotion, PathEditError> {
+        let clip = path.source().clip();
+        let skeleton = clip.skeleton().clone();
+        let moved = Clip::new(clip.name(), skeleton, clip.fps(), self.rotations, self.roots)?;
+        Ok(CarriedMotion {
+            clip: moved.with_translations(self.tracks)?.with_provenance(clip.provenance()),
+            frames: self.frames.unwrap_or_default(),
+            places: self.places,
+            characters: self.characters,
+            turns: self.turns,
+        })
+    }
 }
 
 /// Returns whether a waypoint of the old path is farther from the start than the new path is long;
@@ -166,10 +280,10 @@ impl CarriedMotion {
     }
 }
 
-/// Returns the frames of the original when speed is kept on the edited path.
-fn at_speed(path: &FittedPath, edited: &ArcLengthPath) -> Vec<f64> {
+/// Returns the frames of the original when speed is kept on the edited path, on which `along` are
+/// the distances of its frames.
+fn at_speed(path: &FittedPath, along: &[f64]) -> Vec<f64> {
     let fps = path.source().clip().fps();
-    let along: Vec<f64> = path.parameters().iter().map(|&u| edited.length_at(u)).collect();
     // The time of every frame of the original on the new path, in frames.
     let mut times = vec![0.0];
     let mut time = 0.0;
@@ -193,42 +307,4 @@ fn at_speed(path: &FittedPath, edited: &ArcLengthPath) -> Vec<f64> {
             if (at - at.round()).abs() < WHOLE { at.round() } else { at }
         })
         .collect()
-}
-
-/// Returns the frames of a clip in this order, each moved over the ground; between frames positions
-/// are interpolated linearly and rotations spherically.
-fn moved(clip: &Clip, frames: &[f64], moves: &[Planar]) -> Result<Clip, PathEditError> {
-    let joints = clip.skeleton().len();
-    let last = clip.frames().saturating_sub(1);
-    let mut rotations = Vec::with_capacity(frames.len() * joints);
-    let mut roots = Vec::with_capacity(frames.len());
-    let around = |frame: f64| {
-        let before = (frame as usize).min(last);
-        (before, (before + 1).min(last), frame.fract() as f32)
-    };
-    for (&frame, planar) in frames.iter().zip(moves) {
-        let (before, after, part) = around(frame);
-        let first = rotations.len();
-        rotations.extend_from_slice(clip.rotations(before));
-        let mut root = clip.root_translations()[before];
-        if part > 0.0 {
-            root = root.lerp(clip.root_translations()[after], part);
-            for (rotation, &next) in rotations[first..].iter_mut().zip(clip.rotations(after)) {
-                *rotation = quat::slerp(*rotation, next, part);
-            }
-        }
-        rotations[first] = quat::renormalize(planar.rotation() * rotations[first]);
-        roots.push(planar.apply(root));
-    }
-    let tracks = clip.translations().iter().map(|track| JointTranslations {
-        joint: track.joint,
-        values: (frames.iter())
-            .map(|&frame| {
-                let (before, after, part) = around(frame);
-                track.values[before].lerp(track.values[after], part)
-            })
-            .collect(),
-    });
-    let moved = Clip::new(clip.name(), clip.skeleton().clone(), clip.fps(), rotations, roots)?;
-    Ok(moved.with_translations(tracks.collect())?.with_provenance(clip.provenance()))
 }

@@ -1,13 +1,16 @@
 //! The motion of an edited path.
 
+use super::carry::Carrying;
 use super::{
-    ArcLengthPath, CarryOptions, FittedPath, HardTurn, PathEditError, Waypoint, carry, hard_turns,
+    ArcLengthPath, CarriedMotion, CarryOptions, FittedPath, HardTurn, PathEditError, Waypoint,
+    hard_turns,
 };
 use crate::clip::{Clip, Contacts};
 use crate::math::Planar;
-use crate::metrics::{Extreme, foot_slide_cm, worst_foot_slide};
+use crate::metrics::{Extreme, SlideMeter, foot_slide_cm, worst_foot_slide};
 use crate::skeleton::Roles;
 use crate::transition::{FootLockOptions, FootLocking};
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// Options of the motion of an edited path.
@@ -24,7 +27,7 @@ pub struct MotionOptions {
 #[derive(Clone, Debug, PartialEq)]
 pub struct EditedMotion {
     /// The motion.
-    pub clip: Clip,
+    pub clip: Arc<Clip>,
     /// For every frame, the frame of the original.
     pub frames: Vec<f64>,
     /// For every frame, the frame of the edited path to which it belongs.
@@ -92,34 +95,121 @@ impl PathEditor {
         edited: &ArcLengthPath,
         options: &MotionOptions,
     ) -> Result<EditedMotion, PathEditError> {
-        let carried = carry(&self.path, edited, &options.carry)?;
-        let contacts = carried.contacts(&self.contacts);
-        let hard_turns = hard_turns(&self.path, &carried);
-        let slid = |clip: &Clip| {
-            let worst = worst_foot_slide(clip, &self.roles, &contacts);
-            (worst.map(|slide| slide.value), worst.as_ref().and_then(Extreme::place))
+        let mut carrying = MotionCarrying::new(options.carry);
+        let mut made = loop {
+            match carrying.advance(self, edited, usize::MAX)? {
+                ControlFlow::Continue(rest) => carrying = rest,
+                ControlFlow::Break(made) => break made,
+            }
         };
-        let (of_carried, carried_at) = slid(&carried.clip);
-        let mut slide_cm =
-            Slide { original: self.slide_cm, carried: of_carried, carried_at, ..Slide::default() };
-        let clip = if let Some(lock) = &options.foot_lock {
-            let locking = FootLocking::new(Arc::new(carried.clip), &self.roles, &contacts, lock)?;
-            let locked = locking.with_body_yaws(&carried.turns).finish()?;
-            (slide_cm.locked, slide_cm.locked_at) = slid(&locked);
-            locked
-        } else {
-            (slide_cm.locked, slide_cm.locked_at) = (slide_cm.carried, slide_cm.carried_at);
-            carried.clip
-        };
-        Ok(EditedMotion {
-            clip,
+        if let Some(lock) = &options.foot_lock {
+            let locking = FootLocking::new(made.clip, &self.roles, &made.contacts, lock)?;
+            made.clip = Arc::new(locking.with_body_yaws(&made.turns).finish()?);
+            let worst = worst_foot_slide(&made.clip, &self.roles, &made.contacts);
+            made.slide_cm.locked = worst.as_ref().map(|slide| slide.value);
+            made.slide_cm.locked_at = worst.as_ref().and_then(Extreme::place);
+        }
+        Ok(made)
+    }
+
+    /// Returns a carried motion with its contacts and hard turns, whose slide is not measured yet.
+    fn measured(&self, carried: CarriedMotion) -> EditedMotion {
+        EditedMotion {
+            contacts: carried.contacts(&self.contacts),
+            hard_turns: hard_turns(&self.path, &carried),
+            slide_cm: Slide { original: self.slide_cm, ..Slide::default() },
+            clip: Arc::new(carried.clip),
             frames: carried.frames,
             places: carried.places,
             characters: carried.characters,
             turns: carried.turns,
-            contacts,
-            slide_cm,
-            hard_turns,
-        })
+        }
+    }
+}
+
+/// The computation of [`PathEditor::motion`] without foot lock in slices, for long motions.
+#[derive(Clone, Debug)]
+pub struct MotionCarrying(Stage);
+
+#[derive(Clone, Debug)]
+enum Stage {
+    Carry(Box<Carrying>),
+    Slide(Box<EditedMotion>, SlideMeter),
+}
+
+impl MotionCarrying {
+    /// Prepares the computation. Nothing is computed yet: call [`advance`](Self::advance).
+    #[must_use]
+    pub fn new(options: CarryOptions) -> Self {
+        Self(Stage::Carry(Box::new(Carrying::new(options))))
+    }
+
+    /// Processes up to `count` more frames, each of which is placed, then measured. Returns the
+    /// rest of the computation, or the motion. Every call must be given the same editor and path.
+    ///
+    /// # Errors
+    /// [`PathEditError`] when the result is not a valid clip.
+    pub fn advance(
+        self,
+        editor: &PathEditor,
+        edited: &ArcLengthPath,
+        count: usize,
+    ) -> Result<ControlFlow<EditedMotion, Self>, PathEditError> {
+        let stage = match self.0 {
+            Stage::Carry(mut carrying) => {
+                if carrying.advance(&editor.path, edited, count) {
+                    Stage::Carry(carrying)
+                } else {
+                    let made = editor.measured(carrying.finish(&editor.path)?);
+                    let meter = SlideMeter::new(&made.clip, &editor.roles);
+                    Stage::Slide(Box::new(made), meter)
+                }
+            }
+            Stage::Slide(mut made, mut meter) => {
+                if !meter.advance(&made.clip, &made.contacts, count) {
+                    let worst = meter.worst();
+                    let value = worst.as_ref().map(|slide| slide.value);
+                    let at = worst.as_ref().and_then(Extreme::place);
+                    (made.slide_cm.carried, made.slide_cm.locked) = (value, value);
+                    (made.slide_cm.carried_at, made.slide_cm.locked_at) = (at, at);
+                    return Ok(ControlFlow::Break(*made));
+                }
+                Stage::Slide(made, meter)
+            }
+        };
+        Ok(ControlFlow::Continue(Self(stage)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clip::Motion;
+    use crate::path::{FitOptions, PathEdit, Pins, Timing};
+    use crate::synth::{Action, Params, synthesize};
+
+    #[test]
+    fn motion_on_a_path_is_the_same_in_slices() {
+        let walk = Arc::new(Motion::analyze(synthesize(&Params::new(Action::Walk)).unwrap().clip));
+        let path = FittedPath::new(Arc::clone(&walk), &FitOptions::default()).unwrap();
+        let spline = path.curve().spline();
+        let bent = spline.edited(&PathEdit::Scale { factor: 1.3 }, Pins::default()).unwrap();
+        let edited = ArcLengthPath::new(bent).unwrap();
+        let editor = PathEditor::new(path, walk.roles(), walk.contacts().clone());
+        for timing in [Timing::Metres, Timing::Speed, Timing::Duration] {
+            let carry = CarryOptions { timing, ..CarryOptions::default() };
+            let options = MotionOptions { carry, foot_lock: None };
+            let (mut carrying, mut slices) = (MotionCarrying::new(carry), 0);
+            let made = loop {
+                slices += 1;
+                match carrying.advance(&editor, &edited, 7).unwrap() {
+                    ControlFlow::Continue(rest) => carrying = rest,
+                    ControlFlow::Break(made) => break made,
+                }
+            };
+            assert!(slices > 2 * walk.clip().frames() / 7, "{slices}");
+            assert!(made == editor.motion(&edited, &options).unwrap(), "{timing:?}");
+            assert!(made.slide_cm.carried.is_some());
+        }
     }
 }

@@ -107,16 +107,19 @@ impl DistanceMatrix {
         let factor = factor.max(1);
         let (rows, columns) = (self.rows.div_ceil(factor), self.columns.div_ceil(factor));
         let mut rms_m = Vec::with_capacity(rows * columns);
-        let mut sums = vec![0.0_f32; columns];
+        // Row by row first: neighbours are added side by side.
+        let mut sums = vec![0.0_f32; self.columns];
         for first in (0..self.rows).step_by(factor) {
             let block = first..(first + factor).min(self.rows);
             sums.fill(0.0);
             for row in block.clone() {
-                for (sum, cells) in sums.iter_mut().zip(self.row(row).chunks(factor)) {
-                    *sum += cells.iter().sum::<f32>() / cells.len() as f32;
+                for (sum, cell) in sums.iter_mut().zip(self.row(row)) {
+                    *sum += cell;
                 }
             }
-            rms_m.extend(sums.iter().map(|sum| sum / block.len() as f32));
+            let mean =
+                |cells: &[f32]| cells.iter().sum::<f32>() / (cells.len() * block.len()) as f32;
+            rms_m.extend(sums.chunks(factor).map(mean));
         }
         Self { stride: self.stride * factor, rows, columns, rms_m, ..*self }
     }

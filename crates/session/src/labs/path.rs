@@ -17,7 +17,7 @@ use segue_motion::math::Planar;
 use segue_motion::metrics::{Extreme, worst_foot_slide};
 use segue_motion::path::{
     ArcLengthPath, CarryOptions, EditedMotion, FitError, FitOptions, FittedPath, GroundSpline,
-    HardTurn, MotionOptions, Offset, Orientation, PathEditError, PathEditor, PathFitting, Slide,
+    HardTurn, MotionCarrying, Offset, Orientation, PathEditError, PathEditor, PathFitting, Slide,
     SplineEnds, Timing, Waypoint,
 };
 use segue_motion::transition::FootLocking;
@@ -167,9 +167,19 @@ pub(crate) struct PathInputs {
     /// The edited path; `None` for the fitted one.
     edited: Option<GroundSpline>,
     carry: CarryOptions,
+    /// The motion on the path without foot lock, if it is long; a short one is computed with the
+    /// result.
+    free: Option<Arc<FreeMotion>>,
     /// The foot lock options, if feet are locked.
     lock: Option<Lock>,
     feet: Feet,
+}
+
+/// A motion on a path without foot lock.
+#[derive(Clone, Debug)]
+struct FreeMotion {
+    curve: Arc<ArcLengthPath>,
+    made: EditedMotion,
 }
 
 /// The state of the feet.
@@ -185,13 +195,67 @@ enum Feet {
 /// browser.
 const AT_ONCE: usize = 400;
 
+/// Motions of up to this number of frames are placed on a path in the frame in which it changes, so
+/// that it can be dragged; longer ones in slices.
+const PLACED_AT_ONCE: usize = 16_000;
+/// The number of frames that are placed on a path, or measured there, in one slice: about 4 ms.
+const PLACED_PER_SLICE: usize = 12_000;
+
 impl PathInputs {
+    /// Returns whether the motion and the path are the same.
+    fn is_on_the_same_path(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.fitted, &other.fitted)
+            && self.edited == other.edited
+            && self.carry == other.carry
+    }
+
     /// Returns whether the motion, the path and the foot lock are the same, whether locked at once
     /// or later.
     fn makes_the_same(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.fitted, &other.fitted)
-            && self.edited == other.edited
-            && (self.carry, self.lock) == (other.carry, other.lock)
+        self.is_on_the_same_path(other) && self.lock == other.lock
+    }
+
+    fn placing(&self) -> Result<Placing, LabError> {
+        let curve = match &self.edited {
+            Some(edited) => Arc::new(ArcLengthPath::new(edited.clone())?),
+            None => Arc::clone(&self.fitted.curve),
+        };
+        Ok(Placing { curve, carrying: MotionCarrying::new(self.carry) })
+    }
+
+    /// Returns the motion on the path without foot lock.
+    fn free_motion(&self) -> Result<Arc<FreeMotion>, LabError> {
+        if let Some(free) = &self.free {
+            return Ok(Arc::clone(free));
+        }
+        let mut placing = self.placing()?;
+        loop {
+            match placing.advance(&self.fitted, usize::MAX)? {
+                ControlFlow::Continue(rest) => placing = rest,
+                ControlFlow::Break(free) => return Ok(Arc::new(free)),
+            }
+        }
+    }
+}
+
+/// The placing of a motion on a path in slices.
+#[derive(Debug)]
+struct Placing {
+    curve: Arc<ArcLengthPath>,
+    carrying: MotionCarrying,
+}
+
+impl Placing {
+    fn advance(
+        self,
+        fitted: &FittedMotion,
+        count: usize,
+    ) -> Result<ControlFlow<FreeMotion, Self>, LabError> {
+        let Self { curve, carrying } = self;
+        Ok(match carrying.advance(&fitted.editor, &curve, count)? {
+            ControlFlow::Continue(carrying) => ControlFlow::Continue(Self { curve, carrying }),
+            ControlFlow::Break(made) => ControlFlow::Break(FreeMotion { curve, made }),
+        })
     }
 }
 
@@ -240,16 +304,18 @@ impl Fitting {
     }
 }
 
-/// A cache of the last fitted paths: dragging a point changes none of them.
+/// A cache of the last fitted paths: dragging a point changes none of them. And of the long motions
+/// on their paths.
 #[derive(Debug, Default)]
 pub(crate) struct Paths {
     fitted: RequestCache<FittedOf, Fitting, Result<Arc<FittedMotion>, LabError>>,
+    placed: RequestCache<PathInputs, Placing, Result<Arc<FreeMotion>, LabError>>,
     locked_feet: LockedFeetCache,
 }
 
 impl Paths {
     /// Returns the motion on a path of the parameters for a clip; `None` if the path is not fitted
-    /// yet: call [`work`](Self::work), then ask again.
+    /// yet, or a long motion not placed on it: call [`work`](Self::work), then ask again.
     pub(crate) fn inputs(
         &mut self,
         motion: &Arc<Motion>,
@@ -268,9 +334,18 @@ impl Paths {
             fitted,
             edited: params.edited_path().cloned(),
             carry: carry_options(params),
+            free: None,
             lock: Lock::of(params),
             feet: Feet::Free,
         };
+        if motion.clip().frames() > PLACED_AT_ONCE {
+            let is_it = |of: &PathInputs| of.is_on_the_same_path(&inputs);
+            let begin = |of: &PathInputs| Ok(ControlFlow::Continue(of.placing()?));
+            inputs.free = self.placed.request_or_begin(inputs.clone(), is_it, begin)?;
+            if inputs.free.is_none() {
+                return Ok(None);
+            }
+        }
         if inputs.lock.is_some() {
             inputs.feet = if motion.clip().frames() <= AT_ONCE {
                 Feet::AtOnce
@@ -301,6 +376,7 @@ impl Paths {
 impl Sliced for Paths {
     fn clear_requests(&mut self) {
         self.fitted.clear_requests();
+        self.placed.clear_requests();
         self.locked_feet.clear_requests();
     }
 
@@ -310,16 +386,26 @@ impl Sliced for Paths {
             Ok(ControlFlow::Break(fitted)) => ControlFlow::Break(Ok(Arc::new(fitted))),
             Err(problem) => ControlFlow::Break(Err(problem.into())),
         };
-        self.fitted.work(fit) || self.locked_feet.work()
+        let place = |of: &PathInputs, placing: Placing| match placing
+            .advance(&of.fitted, PLACED_PER_SLICE)
+        {
+            Ok(ControlFlow::Continue(rest)) => ControlFlow::Continue(rest),
+            Ok(ControlFlow::Break(free)) => ControlFlow::Break(Ok(Arc::new(free))),
+            Err(problem) => ControlFlow::Break(Err(problem)),
+        };
+        self.fitted.work(fit) || self.placed.work(place) || self.locked_feet.work()
     }
 
     fn is_ready(&self) -> bool {
-        self.fitted.is_ready() || self.locked_feet.is_ready()
+        self.fitted.is_ready() || self.placed.is_ready() || self.locked_feet.is_ready()
     }
 
     fn progress(&self) -> Option<(JobKind, f64)> {
         if self.fitted.under_way().next().is_some() {
             return Some((JobKind::Analyzing, 0.0));
+        }
+        if self.placed.under_way().next().is_some() {
+            return Some((JobKind::Computing, 0.0));
         }
         Some((JobKind::HoldingFeet, f64::from(self.locked_feet.progress()?)))
     }
@@ -352,18 +438,6 @@ fn carry_options(params: &Params) -> CarryOptions {
     }
 }
 
-/// Returns the path, and the motion on it without foot lock.
-fn free_motion(inputs: &PathInputs) -> Result<(Arc<ArcLengthPath>, EditedMotion), LabError> {
-    let fitted = &inputs.fitted;
-    let curve = match &inputs.edited {
-        Some(edited) => Arc::new(ArcLengthPath::new(edited.clone())?),
-        None => Arc::clone(&fitted.curve),
-    };
-    let options = MotionOptions { carry: inputs.carry, foot_lock: None };
-    let made = fitted.editor.motion(&curve, &options)?;
-    Ok((curve, made))
-}
-
 impl PathInputs {
     /// Begins to lock the feet of the motion on the path, which rotated the whole body by these
     /// angles in each frame, radians. `None` if they are not to be locked, or if there are no legs.
@@ -384,9 +458,9 @@ impl PathInputs {
 
 impl LabInputs for PathInputs {
     fn run(&self) -> Result<Outcome, LabError> {
-        let (curve, made) = free_motion(self)?;
+        let FreeMotion { curve, made } = Arc::unwrap_or_clone(self.free_motion()?);
         let fitted = &self.fitted;
-        let free = Arc::new(made.clip);
+        let free = made.clip;
         let Slide { original, carried, carried_at, .. } = made.slide_cm;
         let free_slide =
             carried.map(|value| Extreme { value, frame: carried_at.unwrap_or_default() });

@@ -1,7 +1,7 @@
 //! Locking of the feet of a motion on a path. It takes longer than a frame while dragging, and is
 //! therefore done in slices when dragging ends.
 
-use super::{PathInputs, free_motion};
+use super::PathInputs;
 use crate::labs::LabError;
 use crate::params::MAX_PANES;
 use segue_motion::clip::{Clip, Contacts};
@@ -86,6 +86,7 @@ impl LockedFeetCache {
                 if self.done.len() >= MAX_PANES {
                     self.done.remove(0);
                 }
+                let of = PathInputs { free: None, ..of };
                 self.done.push(Arc::new(LockedFeet { of, made }));
                 self.is_ready = true;
             }
@@ -95,11 +96,14 @@ impl LockedFeetCache {
 }
 
 fn begin(of: &PathInputs) -> Result<Stage, LabError> {
-    let (_, free) = free_motion(of)?;
-    let (roles, clip) = (of.fitted.motion.roles(), Arc::new(free.clip));
-    Ok(match of.locking(&clip, &free.contacts, &free.turns)? {
-        Some(locking) => Stage::Locking(Box::new(locking), free.contacts),
-        None => Stage::Measuring(Arc::clone(&clip), free.contacts, SlideMeter::new(&clip, roles)),
+    let free = of.free_motion()?;
+    let (roles, made, contacts) =
+        (of.fitted.motion.roles(), &free.made, free.made.contacts.clone());
+    Ok(match of.locking(&made.clip, &contacts, &made.turns)? {
+        Some(locking) => Stage::Locking(Box::new(locking), contacts),
+        None => {
+            Stage::Measuring(Arc::clone(&made.clip), contacts, SlideMeter::new(&made.clip, roles))
+        }
     })
 }
 
