@@ -125,6 +125,13 @@ impl Sliced for RegistrationSchedulers {
     }
 }
 
+/// The search for a path.
+#[derive(Debug)]
+enum Search {
+    UnderWay(Box<TimeWarpSearch>),
+    Found(RegistrationPath),
+}
+
 /// Registers clips in slices, and caches what a change does not affect: products of frames for a
 /// new window, distances for a new path.
 #[derive(Debug, Default)]
@@ -135,7 +142,7 @@ struct RegistrationScheduler {
     sweep: Option<PausedSweep>,
     /// The last ones requested, at most one for each pane.
     maps: Vec<Arc<DistanceMap>>,
-    search: Option<(RegistrationRequest, TimeWarpSearch)>,
+    search: Option<(RegistrationRequest, Search)>,
     found: Vec<(RegistrationRequest, Result<Arc<FoundRegistration>, LabError>)>,
     /// The requests of the panes.
     wanted: Vec<RegistrationRequest>,
@@ -304,13 +311,29 @@ impl RegistrationScheduler {
 
     /// Does a slice of the most urgent work.
     fn step(&mut self, wanted: &RegistrationRequest) {
-        let Some(pair) = &self.pair else {
+        let Some(pair) = self.pair.clone() else {
             self.keep(wanted, Err(LabError::NothingToRegister));
             return;
         };
+        let stride = self.stride;
+        let rows = (PER_SLICE * stride / pair.incoming.clip().frames().max(1)).max(4);
+        let known = self.maps.iter().position(|map| map.matrix().window() == wanted.window);
+        let map = known.map(|at| {
+            let map = self.maps.remove(at);
+            self.maps.push(Arc::clone(&map));
+            map
+        });
+        // First, so that no terms are computed where a worker's distances have no path.
+        let path = match &map {
+            Some(map) => match self.searched(wanted, map, rows) {
+                Some(path) => Some(path),
+                None => return,
+            },
+            None => None,
+        };
         let terms = match &mut self.terms {
             Some(terms) => terms,
-            None => match terms_of(&pair.a, &pair.incoming, self.stride) {
+            None => match terms_of(&pair.a, &pair.incoming, stride) {
                 Ok(terms) => self.terms.insert(terms),
                 Err(error) => {
                     self.keep(wanted, Err(error.into()));
@@ -318,33 +341,17 @@ impl RegistrationScheduler {
                 }
             },
         };
-        let stride = self.stride;
-        let rows = (PER_SLICE * stride / pair.incoming.clip().frames().max(1)).max(4);
         if !terms.progress().is_complete() {
             terms.advance(rows);
             return;
         }
-        if let Some(at) = self.maps.iter().position(|map| map.matrix().window() == wanted.window) {
-            let map = self.maps.remove(at);
-            self.maps.push(Arc::clone(&map));
-            let search = match self.search.take().filter(|(of, _)| of == wanted) {
-                Some((_, search)) => Ok(search),
-                None => TimeWarpSearch::new(map.matrix(), &in_cells(&wanted.path, &map)),
-            };
-            let found = search.and_then(|mut search| {
-                let path = search.advance(map.matrix(), rows)?;
-                if path.is_none() {
-                    self.search = Some((wanted.clone(), search));
-                }
-                path.map(|path| curves(terms, &map, path, wanted.smoothing)).transpose()
+        if let (Some(map), Some(path)) = (map, path) {
+            let found = curves(terms, &map, path, wanted.smoothing).map(|found| {
+                let [registration, lockstep] = found.map(Arc::new);
+                FoundRegistration { map: Arc::clone(&map), registration, lockstep }
             });
-            let found = found.map(|found| {
-                let [registration, lockstep] = found?.map(Arc::new);
-                Some(FoundRegistration { map: Arc::clone(&map), registration, lockstep })
-            });
-            if let Some(found) = found.transpose() {
-                self.keep(wanted, found.map_err(|error| in_frames(error, map.middle())));
-            }
+            self.search = None;
+            self.keep(wanted, found.map_err(|error| in_frames(error, map.middle())));
             return;
         }
         let begun = self.sweep.take().filter(|sweep| sweep.window() == wanted.window);
@@ -358,10 +365,37 @@ impl RegistrationScheduler {
                     self.sweep = Some(sweep.pause());
                     return;
                 }
-                keep_map(&mut self.maps, Arc::new(DistanceMap::new(sweep.finish(), pair)));
+                keep_map(&mut self.maps, Arc::new(DistanceMap::new(sweep.finish(), &pair)));
             }
             Err(error) => self.keep(wanted, Err(error.into())),
         }
+    }
+
+    /// Returns the path through the distances, once it is found; otherwise this does a slice of the
+    /// search, and keeps the reason where there is none.
+    fn searched(
+        &mut self,
+        wanted: &RegistrationRequest,
+        map: &DistanceMap,
+        rows: usize,
+    ) -> Option<RegistrationPath> {
+        let search = match self.search.take().filter(|(of, _)| of == wanted) {
+            Some((_, Search::Found(path))) => {
+                self.search = Some((wanted.clone(), Search::Found(path.clone())));
+                return Some(path);
+            }
+            Some((_, Search::UnderWay(search))) => Ok(search),
+            None => TimeWarpSearch::new(map.matrix(), &in_cells(&wanted.path, map)).map(Box::new),
+        };
+        let advanced = search.and_then(|mut search| {
+            let found = search.advance(map.matrix(), rows)?;
+            Ok(found.map_or(Search::UnderWay(search), Search::Found))
+        });
+        match advanced {
+            Ok(search) => self.search = Some((wanted.clone(), search)),
+            Err(error) => self.keep(wanted, Err(in_frames(error, map.middle()))),
+        }
+        None
     }
 
     fn keep(&mut self, wanted: &RegistrationRequest, found: Result<FoundRegistration, LabError>) {
