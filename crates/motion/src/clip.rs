@@ -119,7 +119,7 @@ mod velocity;
 
 pub use contacts::{ContactCorrection, ContactCorrections, ContactOptions, Contacts, StanceEnd};
 pub(crate) use contacts::{phase_between, stillest_point, stillest_step};
-pub use curves::{CurveKind, joint_curve};
+pub use curves::{CurveKind, joint_curve, joint_values};
 pub use ground::estimate_ground;
 pub use in_place::{RootMotion, RootMotionError, root_motion_from_feet, take_in_place};
 pub(crate) use jolts::{JoltScan, SingleJolts, jolts, turn_change};

@@ -6,7 +6,7 @@ use crate::ui::out::Out;
 use crate::ui::text;
 use crate::ui::theme::palette_of;
 use eframe::egui::{self, RectAlign, Ui};
-use segue_motion::clip::{Motion, joint_curve};
+use segue_motion::clip::{Motion, joint_values};
 use segue_motion::skeleton::Role;
 use segue_session::choices::{self, Selected as _};
 use segue_session::{
@@ -152,15 +152,12 @@ fn curve(
     let Some(joint) = joint_of(motion, joint) else {
         return Vec::new();
     };
-    let values = joint_curve(motion.clip(), joint, curve_kind(quantity));
-    let stride = values.len().div_ceil(MAX_CURVE_POINTS).max(1);
-    let fps = motion.clip().fps();
-    values
-        .iter()
-        .enumerate()
-        .step_by(stride)
-        .map(|(frame, &value)| [starts_at_secs + frame as f64 / fps, f64::from(value)])
-        .collect()
+    let (clip, fps) = (motion.clip(), motion.clip().fps());
+    let shown = (0..clip.frames()).step_by(clip.frames().div_ceil(MAX_CURVE_POINTS).max(1));
+    let values = joint_values(clip, joint, curve_kind(quantity), shown.clone());
+    let point =
+        |(frame, value): (usize, f32)| [starts_at_secs + frame as f64 / fps, f64::from(value)];
+    shown.zip(values).map(point).collect()
 }
 
 /// Returns the curve of a source in the result's time: its values in the frames that the result is
@@ -174,17 +171,16 @@ fn registered_curve(
     let Some(joint) = joint_of(&source.motion, joint) else {
         return Vec::new();
     };
-    let values = joint_curve(source.motion.clip(), joint, curve_kind(quantity));
-    let (fps, clip) = (registered.map.fps(), usize::from(source.slot == Slot::B));
+    let (fps, of) = (registered.map.fps(), usize::from(source.slot == Slot::B));
     let stride = registered.frame_pairs.len().div_ceil(MAX_CURVE_POINTS).max(1);
-    let frame_pairs = registered.frame_pairs.iter().enumerate().step_by(stride);
-    frame_pairs
-        .filter(|(_, frame_pair)| frame_pair.frames[clip] > -0.5)
-        .filter_map(|(frame, frame_pair)| {
-            let value = values.get(frame_pair.frames[clip].round() as usize)?;
-            Some([frame as f64 / fps, f64::from(*value)])
-        })
-        .collect()
+    let clip = source.motion.clip();
+    let shown = (registered.frame_pairs.iter().enumerate().step_by(stride))
+        .filter(|(_, frame_pair)| frame_pair.frames[of] > -0.5)
+        .map(|(frame, frame_pair)| (frame, frame_pair.frames[of].round() as usize))
+        .filter(|(_, own)| *own < clip.frames());
+    let own = shown.clone().map(|(_, own)| own);
+    let values = joint_values(clip, joint, curve_kind(quantity), own);
+    shown.zip(values).map(|((frame, _), value)| [frame as f64 / fps, f64::from(value)]).collect()
 }
 
 /// Returns the unit of a curve.

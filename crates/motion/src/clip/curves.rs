@@ -20,47 +20,82 @@ pub enum CurveKind {
     AngularSpeed,
 }
 
-/// Returns one value per frame. Rates are central differences at the clip's own frame rate,
-/// one-sided at the ends.
-///
-/// The curve is empty when the clip has no such joint; rates are 0 in a clip of one frame.
+/// Returns one value per frame; see [`joint_values`].
 #[must_use]
 pub fn joint_curve(clip: &Clip, joint: usize, kind: CurveKind) -> Vec<f32> {
-    if joint >= clip.skeleton().len() {
-        return Vec::new();
-    }
-    let track = joint_track(clip, joint);
-    let last = track.len().saturating_sub(1);
-    (0..track.len())
-        .map(|frame| {
-            let (before, after) = (frame.saturating_sub(1), (frame + 1).min(last));
-            let secs = (after - before).max(1) as f32 * clip.dt_secs();
-            match kind {
-                CurveKind::Height => track[frame].0.y,
-                CurveKind::Distance => (track[frame].0 - track[0].0).with_y(0.0).length(),
-                CurveKind::Speed => (track[after].0 - track[before].0).length() / secs,
-                CurveKind::Angle => {
-                    quat::angle_between(Quat::IDENTITY, clip.rotations(frame)[joint]).to_degrees()
-                }
-                CurveKind::AngularSpeed => {
-                    quat::angle_between(track[before].1, track[after].1).to_degrees() / secs
-                }
-            }
-        })
-        .collect()
+    joint_values(clip, joint, kind, 0..clip.frames())
 }
 
-/// Returns the world position and rotation of one joint in every frame. Computes kinematics of its
-/// own chain alone, because plots are updated while a slider moves.
-fn joint_track(clip: &Clip, joint: usize) -> Vec<(Vec3, Quat)> {
-    let chain = clip.skeleton().with_ancestors([joint]);
-    let mut world = WorldPose::default();
-    (0..clip.frames())
-        .map(|frame| {
-            clip.world_pose_of(frame, &chain, &mut world);
-            (world.positions[joint], world.rotations[joint])
-        })
-        .collect()
+/// Returns the values of some frames; those that the clip does not have are left out. Rates are
+/// central differences at the clip's own frame rate, one-sided at the ends.
+///
+/// There are none when the clip has no such joint; rates are 0 in a clip of one frame.
+#[must_use]
+pub fn joint_values(
+    clip: &Clip,
+    joint: usize,
+    kind: CurveKind,
+    frames: impl IntoIterator<Item = usize>,
+) -> Vec<f32> {
+    if joint >= clip.skeleton().len() || clip.frames() == 0 {
+        return Vec::new();
+    }
+    let mut track = JointTrack::new(clip, joint);
+    let last = clip.frames() - 1;
+    let origin = track.at(0).0;
+    let value = |frame: usize| {
+        let (before, after) = (frame.saturating_sub(1), (frame + 1).min(last));
+        let secs = (after - before).max(1) as f32 * clip.dt_secs();
+        match kind {
+            CurveKind::Height => track.at(frame).0.y,
+            CurveKind::Distance => (track.at(frame).0 - origin).with_y(0.0).length(),
+            CurveKind::Speed => {
+                let from = track.at(before).0;
+                (track.at(after).0 - from).length() / secs
+            }
+            CurveKind::Angle => {
+                quat::angle_between(Quat::IDENTITY, clip.rotations(frame)[joint]).to_degrees()
+            }
+            CurveKind::AngularSpeed => {
+                let from = track.at(before).1;
+                quat::angle_between(from, track.at(after).1).to_degrees() / secs
+            }
+        }
+    };
+    frames.into_iter().filter(|&frame| frame <= last).map(value).collect()
+}
+
+/// The world position and rotation of one joint. Computes kinematics of its own chain alone, because
+/// plots are updated while a slider moves.
+struct JointTrack<'a> {
+    clip: &'a Clip,
+    joint: usize,
+    chain: Vec<usize>,
+    world: WorldPose,
+    /// The last ones: a rate needs both neighbours of its frame.
+    known: [Option<(usize, Vec3, Quat)>; 4],
+}
+
+impl<'a> JointTrack<'a> {
+    fn new(clip: &'a Clip, joint: usize) -> Self {
+        let chain = clip.skeleton().with_ancestors([joint]);
+        Self { clip, joint, chain, world: WorldPose::default(), known: [None; 4] }
+    }
+
+    /// Returns the position and rotation in a frame, which the clip has.
+    fn at(&mut self, frame: usize) -> (Vec3, Quat) {
+        let place = &mut self.known[frame % 4];
+        if let Some((known, position, rotation)) = *place
+            && known == frame
+        {
+            return (position, rotation);
+        }
+        self.clip.world_pose_of(frame, &self.chain, &mut self.world);
+        let (position, rotation) =
+            (self.world.positions[self.joint], self.world.rotations[self.joint]);
+        *place = Some((frame, position, rotation));
+        (position, rotation)
+    }
 }
 
 #[cfg(test)]
@@ -76,7 +111,7 @@ mod tests {
             (0..clip.frames()).map(|frame| Vec3::new(0.1, 0.2, 0.001 * frame as f32)).collect();
         let clip = clip.with_translations(vec![JointTranslations { joint: 2, values }]).unwrap();
         for joint in 0..clip.skeleton().len() {
-            let track = joint_track(&clip, joint);
+            let mut track = JointTrack::new(&clip, joint);
             for frame in (0..clip.frames()).step_by(7) {
                 let world = clip.world_pose(frame);
                 let mut part = WorldPose::default();
@@ -90,7 +125,7 @@ mod tests {
                     (world.positions[joint], world.rotations[joint])
                 );
                 assert_eq!(
-                    track[frame],
+                    track.at(frame),
                     (world.positions[joint], world.rotations[joint]),
                     "joint {joint}, frame {frame}"
                 );
@@ -112,5 +147,7 @@ mod tests {
         let mean = speeds.iter().sum::<f32>() / speeds.len() as f32;
         assert!((mean - 1.4).abs() < 0.1, "{mean}");
         assert!(joint_curve(&clip, 999, CurveKind::Speed).is_empty());
+        let some = joint_values(&clip, 0, CurveKind::Speed, [7, 3, last, last + 1]);
+        assert_eq!(some, [speeds[7], speeds[3], speeds[last]]);
     }
 }

@@ -26,7 +26,7 @@ impl Default for SpeedOptions {
 }
 
 /// The properties of a gait at one speed.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct GaitFacts {
     /// The speed of the result, metres per second: the requested one, or the nearest possible one.
     pub speed_mps: f64,

@@ -89,9 +89,10 @@ impl<'a> MotionHead<'a> {
 pub(super) fn put_known(bytes: &mut Vec<u8>, motion: &Motion) {
     let frames = motion.clip().frames();
     bytes.reserve(26 * frames);
-    for place in motion.known_ground_frames().unwrap_or_default() {
-        put(bytes, &[place.yaw, place.shift.x, place.shift.y]);
-    }
+    let places = motion.known_ground_frames().unwrap_or_default().iter();
+    let places: Vec<[f64; 3]> =
+        places.map(|place| [place.yaw, place.shift.x, place.shift.y]).collect();
+    put(bytes, &places);
     if let Some(found) = motion.known_contacts() {
         for &foot in found.feet() {
             bytes.extend((0..frames).map(|frame| u8::from(found.planted(foot, frame))));

@@ -7,7 +7,7 @@ use super::parcel::Arrays;
 use super::task::{JobClip, Task};
 use super::worker_memory::WorkerMemory;
 use super::{Parcel, ParcelError};
-use crate::labs::{LabFacts, LayerFacts, MeasuredMotion, Outcome, PairLabs, PlacedClip};
+use crate::labs::{Cycle, LabFacts, LayerFacts, MeasuredMotion, Outcome, PairLabs, PlacedClip};
 use crate::labs::{RetargetReport, Slot, Transition, recipe_ingredients};
 use crate::metrics::Metric;
 use crate::params::{Key, Kind, Params};
@@ -55,6 +55,7 @@ struct Head<'a> {
     motion: usize,
     sources: Vec<(Slot, usize, f64, Planar)>,
     transition: Option<Transition>,
+    cycle: Option<Cycle>,
     retargeted: Option<RetargetReport>,
     layer: Option<LayerFacts>,
     metrics: Vec<Metric>,
@@ -97,8 +98,8 @@ impl Task for ResultTask {
     }
 
     fn pack(clips: &[JobClip], answer: Outcome) -> Result<Parcel, ParcelError> {
-        // No lab of `PairLabs` makes a cycle or drives a character.
-        if answer.cycle.is_some() || matches!(answer.measured, MeasuredMotion::Trace(_)) {
+        // No lab of `PairLabs` drives a character.
+        if matches!(answer.measured, MeasuredMotion::Trace(_)) {
             return Err(ParcelError::Arrays);
         }
         let mut motions: Vec<_> = clips.iter().map(|clip| Arc::clone(&clip.motion)).collect();
@@ -138,6 +139,7 @@ impl Task for ResultTask {
             motion,
             sources,
             transition: answer.transition,
+            cycle: answer.cycle,
             retargeted: answer.retargeted.as_deref().cloned(),
             layer: answer.layer().map(|facts| LayerFacts::clone(facts)),
             metrics: answer.metrics,
@@ -164,6 +166,7 @@ impl Task for ResultTask {
         Ok(Outcome {
             sources: head.sources.into_iter().map(source).collect::<Result<_, ParcelError>>()?,
             transition: head.transition,
+            cycle: head.cycle,
             retargeted: head.retargeted.map(Arc::new),
             facts: head.layer.map_or_else(LabFacts::default, |facts| LabFacts::of(Arc::new(facts))),
             metrics: head.metrics,

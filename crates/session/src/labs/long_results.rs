@@ -3,6 +3,7 @@
 use super::Outcome;
 use super::blend::{BlendCache, BlendLab};
 use super::delegated::Delegated;
+use super::edit::EditLab;
 use super::in_place::InPlaceLab;
 use super::lab::{HasPart, Inputs, Lab, LabClips, MadeInputs};
 use super::layers::{LayerCache, LayersLab};
@@ -23,7 +24,7 @@ use std::sync::Arc;
 fn worker_frames(lab: LabId) -> Option<usize> {
     match lab {
         LabId::Layers => Some(16_000),
-        LabId::Blend | LabId::Transition | LabId::InPlace => Some(32_000),
+        LabId::Blend | LabId::Transition | LabId::InPlace | LabId::Edit => Some(32_000),
         _ => None,
     }
 }
@@ -62,6 +63,7 @@ impl PairLabs {
             LabId::Transition => Some(&TransitionLab),
             LabId::Layers => Some(&LayersLab),
             LabId::InPlace => Some(&InPlaceLab),
+            LabId::Edit => Some(&EditLab),
             _ => None,
         }
     }
@@ -123,9 +125,9 @@ pub(crate) struct LongResults {
 }
 
 impl LongResults {
-    /// Requests a result of a worker: `None` while it is made. Where the clips are short, where
-    /// there are no workers and where none could make it, the lab has to make it
-    /// ([`ControlFlow::Continue`]).
+    /// Requests a result of a worker: `None` while it is made. Where the clips are short or not those
+    /// of A and B alone, where there are no workers and where none could make it, the lab has to
+    /// make it ([`ControlFlow::Continue`]).
     pub(crate) fn inputs(
         &mut self,
         clips: &LabClips,
@@ -135,7 +137,7 @@ impl LongResults {
     ) -> ControlFlow<Option<Inputs>> {
         let frames: usize = clips.slots.iter().map(|clip| clip.clip().frames()).sum();
         let is_long = worker_frames(params.lab()).is_some_and(|least| frames >= least);
-        if !is_long || !jobs.has_workers() {
+        if !is_long || !clips.more.is_empty() || !jobs.has_workers() {
             return ControlFlow::Continue(());
         }
         let task = ResultTask::new(params, match_window);
@@ -188,6 +190,6 @@ mod tests {
         let has = |lab: &&LabId| PairLabs::lab_of(**lab).is_some();
         let all = LabId::ALL;
         assert!(all.iter().filter(asked).eq(all.iter().filter(has)));
-        assert_eq!(all.iter().filter(asked).count(), 4);
+        assert_eq!(all.iter().filter(asked).count(), 5);
     }
 }

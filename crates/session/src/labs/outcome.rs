@@ -116,7 +116,7 @@ pub struct RetargetReport {
 }
 
 /// The cycle that a result repeats.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Cycle {
     /// The length of a cycle, seconds: a whole number of frames. The result is a whole number of
     /// cycles long, and its last frame has the pose of its first.
@@ -126,7 +126,7 @@ pub struct Cycle {
 }
 
 /// The origin of a [`Cycle`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum CycleMade {
     /// Two gaits blended to a speed.
     Gait {
