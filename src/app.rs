@@ -51,12 +51,16 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use window::Window;
 
-/// The shortest time limit for sliced work in a frame, milliseconds.
-const MIN_WORK_MS: f64 = 5.0;
-/// The share of the time since the last frame that sliced work may take. It matters where frames
-/// take long, as without a graphics card: work would hardly advance in [`MIN_WORK_MS`].
+/// The time limit for sliced work at once, milliseconds.
+const WORK_MS: f64 = 5.0;
+/// The time limit in a frame where work goes on between frames, milliseconds: the panels are laid out
+/// in the same turn of the page.
+const WORK_IN_FRAME_MS: f64 = 1.0;
+/// The share of the time since the last frame that sliced work may take where there is none between
+/// frames. It matters where frames take long, as without a graphics card: work would hardly advance
+/// in [`WORK_MS`].
 const WORK_SHARE: f64 = 0.25;
-/// The longest time limit for sliced work in a frame, milliseconds.
+/// The longest time limit for sliced work in such a frame, milliseconds.
 const MAX_WORK_MS: f64 = 60.0;
 /// The time limit for taking in files that were read in a frame, milliseconds.
 const MAX_RECEIVING_MS: f64 = 8.0;
@@ -253,6 +257,11 @@ impl Segue {
     /// Receives answers of the platform, sends the session's requests, and does sliced work for a
     /// limited time. Returns whether there is more to do.
     pub(crate) fn poll(&mut self) -> bool {
+        self.poll_for(WORK_MS)
+    }
+
+    /// As [`poll`](Self::poll), with another time limit.
+    fn poll_for(&mut self, mut max_ms: f64) -> bool {
         platform::update_memory(&mut self.reader, &mut self.session);
         self.receive_all();
         let now_ms = platform::now_ms();
@@ -270,8 +279,11 @@ impl Segue {
         let is_converting = self.advance_conversion();
         // Before the work that takes the answers in: no frame may follow that would do it.
         self.pool.receive(&mut self.session);
-        let passed_ms = self.clock.left_work.map_or(0.0, |left_ms| now_ms - left_ms);
-        let max_ms = (WORK_SHARE * passed_ms).clamp(MIN_WORK_MS, MAX_WORK_MS);
+        if let Some(left_ms) = self.clock.left_work
+            && !platform::WORKS_BETWEEN_FRAMES
+        {
+            max_ms = (WORK_SHARE * (now_ms - left_ms)).clamp(max_ms, MAX_WORK_MS);
+        }
         let mut more = true;
         while more && platform::now_ms() - now_ms < max_ms {
             let began_ms = platform::now_ms();

@@ -1,7 +1,7 @@
 //! A frame of the window: the panels, their commands, the picture, and the time of the next frame.
 
 use super::window::Shown;
-use super::{Segue, picture};
+use super::{Segue, WORK_IN_FRAME_MS, picture};
 use crate::platform;
 use crate::ui::{self, Filming};
 use eframe::egui;
@@ -16,10 +16,10 @@ const SOFTWARE_FRAME_MS: f64 = 33.0;
 
 impl Segue {
     /// Advances the app before a frame, and now and then while the page is hidden. Draws nothing.
-    /// Returns whether there is work left.
-    pub(super) fn logic(&mut self, ctx: &egui::Context) -> bool {
+    /// Returns whether there is work left. Some is under way between frames if it `is_working`.
+    pub(super) fn logic(&mut self, ctx: &egui::Context, is_working: bool) -> bool {
         self.clock.frame_began = platform::now_ms();
-        let more = self.poll();
+        let more = if is_working { self.poll_for(WORK_IN_FRAME_MS) } else { self.poll() };
         let ticked = self.tick();
         if ticked {
             self.animate(ctx);

@@ -72,7 +72,8 @@ impl eframe::App for View {
             ctx.request_repaint();
             return;
         };
-        if segue.logic(ctx) {
+        let is_working = platform::WORKS_BETWEEN_FRAMES && self.is_working.get();
+        if segue.logic(ctx, is_working) {
             work_between_frames(&self.segue, &self.is_working, ctx);
         }
         segue.schedule(ctx);
