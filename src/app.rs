@@ -292,7 +292,7 @@ impl Segue {
             more = more || self.picture.work();
         }
         let has_begun = self.frame_stats.count() > 0;
-        more = self.pool.send(&mut self.session, has_begun) || more;
+        more = self.pool.send(&mut self.session, has_begun, now_ms + max_ms) || more;
         more = more || is_converting || !self.inbox.is_empty();
         self.clock.left_work = more.then_some(now_ms);
         // The work may have made new requests.

@@ -86,7 +86,7 @@ impl Pool {
     }
 
     /// Hands the session's jobs to threads. Returns `false`: nothing is left to send.
-    pub(crate) fn send(&mut self, session: &mut Session, _has_begun: bool) -> bool {
+    pub(crate) fn send(&mut self, session: &mut Session, _has_begun: bool, _until_ms: f64) -> bool {
         let dropped = session.take_dropped_clips();
         for thread in &self.threads {
             for &clip in &dropped {

@@ -46,8 +46,8 @@ const MAX_JOB_MS: f64 = 30_000.0;
 const MAX_TRIES: u8 = 2;
 /// The number of workers in a row that end without an answer before the page does without.
 const MAX_DEATHS: usize = 4;
-/// The time for sending clips at once, milliseconds.
-const SEND_MS: f64 = 4.0;
+/// The least time for sending clips at once, milliseconds.
+const MIN_SEND_MS: f64 = 1.0;
 /// The time without jobs after which the workers are ended, because their memory never shrinks,
 /// milliseconds.
 const MAX_IDLE_MS: f64 = 60_000.0;
@@ -158,9 +158,9 @@ impl Pool {
         }
     }
 
-    /// Hands the session's jobs to workers, which are not made before the page `has_begun`. Returns
-    /// whether there is more to send.
-    pub(crate) fn send(&mut self, session: &mut Session, has_begun: bool) -> bool {
+    /// Hands the session's jobs to workers, until a time on the page's clock or a little after it.
+    /// Workers are not made before the page `has_begun`. Returns whether there is more to send.
+    pub(crate) fn send(&mut self, session: &mut Session, has_begun: bool, until_ms: f64) -> bool {
         let now_ms = now_ms();
         let mut state = self.0.borrow_mut();
         if state.size == 0 {
@@ -187,7 +187,7 @@ impl Pool {
         let size = state.size;
         state.slots.resize_with(size, Slot::default);
         drop(state);
-        self.feed(session, now_ms + SEND_MS)
+        self.feed(session, until_ms.max(now_ms + MIN_SEND_MS))
     }
 
     /// Gives every worker jobs, one after the other, until a time. Returns whether there is more.

@@ -75,6 +75,18 @@ impl PathEditor {
     #[must_use]
     pub fn new(path: FittedPath, roles: &Roles, contacts: Contacts) -> Self {
         let slide_cm = foot_slide_cm(path.source().clip(), roles, &contacts);
+        Self::measured(path, roles, contacts, slide_cm)
+    }
+
+    /// Returns the editor as [`new`](Self::new) does, where the slide of the original is known, as
+    /// by a [`SlideMeter`].
+    #[must_use]
+    pub fn measured(
+        path: FittedPath,
+        roles: &Roles,
+        contacts: Contacts,
+        slide_cm: Option<f64>,
+    ) -> Self {
         Self { path, roles: roles.clone(), contacts, slide_cm }
     }
 
@@ -113,7 +125,7 @@ impl PathEditor {
     }
 
     /// Returns a carried motion with its contacts and hard turns, whose slide is not measured yet.
-    fn measured(&self, carried: CarriedMotion) -> EditedMotion {
+    fn unmeasured(&self, carried: CarriedMotion) -> EditedMotion {
         EditedMotion {
             contacts: carried.contacts(&self.contacts),
             hard_turns: hard_turns(&self.path, &carried),
@@ -160,7 +172,7 @@ impl MotionCarrying {
                 if carrying.advance(&editor.path, edited, count) {
                     Stage::Carry(carrying)
                 } else {
-                    let made = editor.measured(carrying.finish(&editor.path)?);
+                    let made = editor.unmeasured(carrying.finish(&editor.path)?);
                     let meter = SlideMeter::new(&made.clip, &editor.roles);
                     Stage::Slide(Box::new(made), meter)
                 }

@@ -14,7 +14,7 @@ use crate::params::{Key, List, Params, Value};
 use locked_feet::{LockedFeet, LockedFeetCache};
 use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::math::Planar;
-use segue_motion::metrics::{Extreme, worst_foot_slide};
+use segue_motion::metrics::{Extreme, SlideMeter, foot_slide_cm, worst_foot_slide};
 use segue_motion::path::{
     ArcLengthPath, CarryOptions, EditedMotion, FitError, FitOptions, FittedPath, GroundSpline,
     HardTurn, MotionCarrying, Offset, Orientation, PathEditError, PathEditor, PathFitting, Slide,
@@ -93,8 +93,9 @@ pub struct FittedMotion {
 }
 
 impl FittedMotion {
-    fn new(path: FittedPath) -> Self {
+    fn new(path: FittedPath, slide_cm: Option<f64>) -> Self {
         let motion = Arc::clone(path.source());
+        let contacts = motion.contacts().clone();
         let off = path.residuals().map(|residual| residual.shift.length() * 100.0);
         Self {
             curve: Arc::new(path.curve().clone()),
@@ -106,7 +107,7 @@ impl FittedMotion {
                 .zip(off)
                 .map(Into::into)
                 .collect(),
-            editor: PathEditor::new(path, motion.roles(), motion.contacts().clone()),
+            editor: PathEditor::measured(path, motion.roles(), contacts, slide_cm),
             motion,
         }
     }
@@ -270,8 +271,8 @@ impl PartialEq for PathInputs {
 }
 
 /// A clip of up to this number of frames gets its path in the frame in which it is chosen: about
-/// 4 ms in a browser. A change of the fit always shows in its own frame: a stage that waits is
-/// dimmed, and would flicker while a slider is dragged.
+/// 4 ms in a browser. Up to [`PLACED_AT_ONCE`], a change of the fit shows in its own frame: a stage
+/// that waits is dimmed, and would flicker while a slider is dragged.
 const FITTED_AT_ONCE: usize = 1_500;
 
 /// The motion and the options of a fit.
@@ -282,8 +283,8 @@ type FittedOf = (Arc<Motion>, FitOptions);
 enum Fitting {
     Requested,
     UnderWay(Box<PathFitting>),
-    /// A path that is fitted, without what its motion needs besides.
-    Fitted(Box<FittedPath>),
+    /// A path that is fitted; the slide of its motion is measured.
+    Fitted(Box<FittedPath>, SlideMeter),
 }
 
 impl Fitting {
@@ -297,9 +298,18 @@ impl Fitting {
             Self::Requested => under_way(PathFitting::new(Arc::clone(motion), options)?),
             Self::UnderWay(fitting) => match fitting.advance()? {
                 ControlFlow::Continue(rest) => under_way(rest),
-                ControlFlow::Break(path) => ControlFlow::Continue(Self::Fitted(Box::new(path))),
+                ControlFlow::Break(path) => {
+                    let meter = SlideMeter::new(motion.clip(), motion.roles());
+                    ControlFlow::Continue(Self::Fitted(Box::new(path), meter))
+                }
             },
-            Self::Fitted(path) => ControlFlow::Break(FittedMotion::new(*path)),
+            Self::Fitted(path, mut meter) => {
+                if meter.advance(motion.clip(), motion.contacts(), PLACED_PER_SLICE) {
+                    ControlFlow::Continue(Self::Fitted(path, meter))
+                } else {
+                    ControlFlow::Break(FittedMotion::new(*path, meter.worst_cm()))
+                }
+            }
         })
     }
 }
@@ -364,11 +374,13 @@ impl Paths {
         let is_new = self.fitted.known(|(of, _)| Arc::ptr_eq(of, motion)).is_none();
         let is_it = |(of, by): &FittedOf| Arc::ptr_eq(of, motion) && *by == options;
         self.fitted.request_or_begin((Arc::clone(motion), options), is_it, |_| {
-            if is_new && motion.clip().frames() > FITTED_AT_ONCE {
+            let at_once = if is_new { FITTED_AT_ONCE } else { PLACED_AT_ONCE };
+            if motion.clip().frames() > at_once {
                 return Ok(ControlFlow::Continue(Fitting::Requested));
             }
             let path = FittedPath::new(Arc::clone(motion), &options)?;
-            Ok(ControlFlow::Break(Arc::new(FittedMotion::new(path))))
+            let slide_cm = foot_slide_cm(motion.clip(), motion.roles(), motion.contacts());
+            Ok(ControlFlow::Break(Arc::new(FittedMotion::new(path, slide_cm))))
         })
     }
 }
