@@ -9,7 +9,7 @@ mod stances;
 
 use self::handles::Handles;
 use self::look::{
-    moment_ui, outside_loop, paint_playhead, paint_ruler, paint_stripe, paint_track, stripe_lanes,
+    moments_ui, outside_loop, paint_playhead, paint_ruler, paint_stripe, paint_track, stripe_lanes,
 };
 use self::scrub::scrub_ui;
 use self::stances::Lanes;
@@ -136,14 +136,7 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> TimelineRespo
             key_ui(curves, key, now, ui);
         }
     }
-    for (index, moment) in timeline.moments.iter().enumerate() {
-        moment_ui(
-            moment,
-            pos2(axis.x_of(moment.time), bars.top() + head / 2.0),
-            id.with(("moment", index)),
-            ui,
-        );
-    }
+    moments_ui(timeline.moments, axis, bars.top() + head / 2.0, id.with("moments"), ui);
     outside_loop(timeline, axis, area, ui);
 
     for (index, (stripe, row)) in timeline.stripes.iter().zip(rows).enumerate() {

@@ -171,3 +171,35 @@ fn place_of_the_position_is_that_of_every_frame() {
     });
     assert_eq!(places, [places[0]; 7]);
 }
+
+#[test]
+fn many_moments_are_one_element_that_names_the_nearest() {
+    let of = |count: usize| {
+        bench((), move |(), ui| {
+            let moment = |at: usize| Moment {
+                time: 9.0 * at as f64 / count as f64,
+                color: egui::Color32::WHITE,
+                name: Word::new("fault"),
+            };
+            let moments: Vec<Moment> = (0..count).map(moment).collect();
+            let view = Timeline { duration: 10.0, moments: &moments, ..Timeline::default() };
+            timeline_ui(&view, ui);
+        })
+    };
+    let few = of(3);
+    assert!(few.query_by_label("fault, 3.00 s").is_some());
+    assert!(few.query_by_label("fault, 3 times").is_none());
+    let mut many = of(90);
+    assert!(many.query_by_label("fault, 3.00 s").is_none());
+    let row = many.get_by_label("fault, 90 times").rect();
+    // Beyond the last moment there is no name.
+    for (secs, is_named) in [(3.01, true), (9.8, false)] {
+        let at = pos2(row.left() + secs / 10.0 * row.width(), row.center().y);
+        move_to(&mut many, at, Modifiers::NONE);
+        for _ in 0..60 {
+            many.step();
+        }
+        let shown = many.query_by_label_contains("fault, 3.00 s").is_some();
+        assert_eq!(shown, is_named, "{secs}");
+    }
+}

@@ -8,11 +8,11 @@ use super::content::{Moment, Stripe, Timeline, Track};
 use crate::ui::language::{Text, say};
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{
-    Align2, Id, Pos2, Rangef, Rect, Response, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2,
-    vec2,
+    Align2, Id, Pos2, Rangef, Rect, Response, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo,
+    pos2, vec2,
 };
 use segue_motion::math::sort::sort_by;
-use segue_text::msg;
+use segue_text::{Message, msg};
 
 /// Draws the bar of a track, and returns its place.
 pub(super) fn paint_track(
@@ -151,8 +151,50 @@ pub(super) fn paint_stripe(stripe: &Stripe<'_>, row: Rangef, axis: TimeAxis, ui:
     }
 }
 
-/// Draws a moment: a small diamond, with its name as the hint.
-pub(super) fn moment_ui(moment: &Moment, center: Pos2, id: Id, ui: &Ui) {
+/// The greatest number of moments that are elements of their own. More would be too many to read
+/// aloud, and hardly apart on the screen.
+const MAX_APART: usize = 60;
+/// The width and height of the area of a moment that shows its name, points.
+const MOMENT_AREA: f32 = 12.0;
+
+/// Draws the moments in a row around the height `y`. Where there are many of them they are one
+/// element, whose hint is the name of the moment nearest to the pointer.
+pub(super) fn moments_ui(moments: &[Moment], axis: TimeAxis, y: f32, id: Id, ui: &Ui) {
+    let place = |moment: &Moment| pos2(axis.x_of(moment.time), y);
+    let Some(first) = moments.first().filter(|_| moments.len() > MAX_APART) else {
+        for (index, moment) in moments.iter().enumerate() {
+            let area = Rect::from_center_size(place(moment), Vec2::splat(MOMENT_AREA));
+            paint_moment(moment, place(moment), ui);
+            let response = ui.interact(area, id.with(index), Sense::hover());
+            let said = name_of(moment);
+            describe(&response, &WidgetInfo::labeled(Role::Label, true, say(&said, ui)));
+            response.on_hover_text(say(&said, ui));
+        }
+        return;
+    };
+    for moment in moments {
+        paint_moment(moment, place(moment), ui);
+    }
+    let row = Rect::from_x_y_ranges(axis.x, Rangef::new(y - 6.0, y + 6.0));
+    let response = ui.interact(row, id, Sense::hover());
+    let said = msg!("{name}, {count} times", name = first.name, count = moments.len());
+    describe(&response, &WidgetInfo::labeled(Role::Label, true, say(&said, ui)));
+    let off = |moment: &Moment, at: Pos2| (place(moment).x - at.x).abs();
+    let nearest = response.hover_pos().and_then(|at| {
+        let nearest = moments.iter().min_by(|a, b| off(a, at).total_cmp(&off(b, at)))?;
+        (off(nearest, at) <= 0.5 * MOMENT_AREA).then_some(nearest)
+    });
+    if let Some(moment) = nearest {
+        response.on_hover_text(say(&name_of(moment), ui));
+    }
+}
+
+fn name_of(moment: &Moment) -> Message {
+    msg!("{name}, {secs:.2} s", name = moment.name, secs = moment.time)
+}
+
+/// Draws a moment: a small diamond.
+fn paint_moment(moment: &Moment, center: Pos2, ui: &Ui) {
     let size = 3.0 * theme_of(ui).scale();
     let diamond = vec![
         center - vec2(0.0, size),
@@ -161,9 +203,4 @@ pub(super) fn moment_ui(moment: &Moment, center: Pos2, id: Id, ui: &Ui) {
         center - vec2(size, 0.0),
     ];
     ui.painter().add(Shape::convex_polygon(diamond, moment.color, Stroke::NONE));
-    let response =
-        ui.interact(Rect::from_center_size(center, vec2(12.0, 12.0)), id, Sense::hover());
-    let said = msg!("{name}, {secs:.2} s", name = moment.name, secs = moment.time);
-    describe(&response, &WidgetInfo::labeled(Role::Label, true, say(&said, ui)));
-    response.on_hover_text(say(&said, ui));
 }
