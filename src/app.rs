@@ -257,13 +257,13 @@ impl Segue {
     /// Receives answers of the platform, sends the session's requests, and does sliced work for a
     /// limited time. Returns whether there is more to do.
     pub(crate) fn poll(&mut self) -> bool {
-        self.poll_for(WORK_MS)
+        self.receive_all();
+        self.work_for(WORK_MS)
     }
 
-    /// As [`poll`](Self::poll), with another time limit.
-    fn poll_for(&mut self, mut max_ms: f64) -> bool {
-        platform::update_memory(&mut self.reader, &mut self.session);
-        self.receive_all();
+    /// Sends the session's requests, and does sliced work for a time limit, milliseconds. Returns
+    /// whether there is more to do.
+    fn work_for(&mut self, mut max_ms: f64) -> bool {
         let now_ms = platform::now_ms();
         if self.autosave.begin_if_overdue(&mut self.session, &mut self.large_files, now_ms) {
             self.address.sync_from_session(&self.session);
@@ -315,6 +315,7 @@ impl Segue {
     /// Takes in the answers of the platform. Those of files wait for the next frame once that has
     /// taken [`MAX_RECEIVING_MS`].
     fn receive_all(&mut self) {
+        platform::update_memory(&mut self.reader, &mut self.session);
         let began_ms = platform::now_ms();
         while let Some(incoming) = self.inbox.pop() {
             // The consequences of several files are computed once.

@@ -1,7 +1,7 @@
 //! A frame of the window: the panels, their commands, the picture, and the time of the next frame.
 
 use super::window::Shown;
-use super::{Segue, WORK_IN_FRAME_MS, picture};
+use super::{Segue, WORK_IN_FRAME_MS, WORK_MS, picture};
 use crate::platform;
 use crate::ui::{self, Filming};
 use eframe::egui;
@@ -19,7 +19,13 @@ impl Segue {
     /// Returns whether there is work left. Some is under way between frames if it `is_working`.
     pub(super) fn logic(&mut self, ctx: &egui::Context, is_working: bool) -> bool {
         self.clock.frame_began = platform::now_ms();
-        let more = if is_working { self.poll_for(WORK_IN_FRAME_MS) } else { self.poll() };
+        self.receive_all();
+        let mut max_ms = if is_working { WORK_IN_FRAME_MS } else { WORK_MS };
+        if platform::WORKS_BETWEEN_FRAMES {
+            // The turns between frames go on after a frame that has received much.
+            max_ms -= platform::now_ms() - self.clock.frame_began;
+        }
+        let more = self.work_for(max_ms);
         let ticked = self.tick();
         if ticked {
             self.animate(ctx);

@@ -7,8 +7,8 @@
 
 import process from "node:process";
 import { parseArgs } from "node:util";
-import { tracedTasks } from "./help.mjs";
-import { close, endBrowser, openSegue } from "./segue.mjs";
+import { tracedTasks, until } from "./help.mjs";
+import { close, dropPrepared, endBrowser, openSegue } from "./segue.mjs";
 
 const { values } = parseArgs({
   options: { frames: { type: "string", default: "67200" }, backend: { type: "string", default: "webgpu" }, limit: { type: "string", default: "25" }, other: { type: "string" } },
@@ -61,11 +61,12 @@ async function open(base) {
     const [, head, time, rows] = /^([^]*)Frames: .*\n(.*)\n([^]*)$/.exec(once);
     const times = Math.ceil(frames / rows.trim().split("\n").length);
     const all = times * rows.trim().split("\n").length;
-    window.long = new TextEncoder().encode(`${head}Frames: ${all}\n${time}\n${rows.repeat(times)}`);
+    window.toDrop = [new File([`${head}Frames: ${all}\n${time}\n${rows.repeat(times)}`], "long.bvh")];
   }, [once, Number(values.frames)]);
   let id;
   const row = await measured(page, async () => {
-    id = await page.evaluate(async () => (await window.segue.load("long.bvh", window.long)).clips[0].id);
+    await dropPrepared(page);
+    id = await until("the long clip is there", async () => (await segue("clips")).find(({ name }) => name === "long")?.id);
   });
   return { page, id, row };
 }

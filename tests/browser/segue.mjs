@@ -111,18 +111,23 @@ export async function openSegue(backend, query = "", options = {}) {
  * real ones.
  */
 export async function dropFiles(page, files, [x, y] = [400, 300]) {
-  await page.evaluate(async ([files, x, y]) => {
+  await page.evaluate((files) => {
+    window.toDrop = files.map(([name, base64]) => new File([Uint8Array.from(atob(base64), (char) => char.charCodeAt(0))], name));
+  }, files.map(([name, bytes]) => [name, Buffer.from(bytes).toString("base64")]));
+  await dropPrepared(page, [x, y]);
+}
+
+/** Drops the files in `toDrop`, a variable of the page. */
+export async function dropPrepared(page, [x, y] = [400, 300]) {
+  await page.evaluate(async ([x, y]) => {
     const dataTransfer = new DataTransfer();
-    for (const [name, base64] of files) {
-      const bytes = Uint8Array.from(atob(base64), (char) => char.charCodeAt(0));
-      dataTransfer.items.add(new File([bytes], name));
-    }
+    for (const file of window.toDrop) dataTransfer.items.add(file);
     const canvas = document.getElementById("segue");
     for (const type of ["dragenter", "dragover", "dragover", "drop"]) {
       canvas.dispatchEvent(new DragEvent(type, { bubbles: true, cancelable: true, composed: true, clientX: x, clientY: y, dataTransfer }));
       await new Promise((resolve) => requestAnimationFrame(resolve));
     }
-  }, [files.map(([name, bytes]) => [name, Buffer.from(bytes).toString("base64")]), x, y]);
+  }, [x, y]);
 }
 
 /** Drags the real mouse with its first button down. */

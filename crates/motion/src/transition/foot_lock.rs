@@ -193,7 +193,9 @@ struct State {
     feet: Vec<anchor::Foot>,
     posed: Vec<Vec<LimbPose>>,
     body_yaws: Vec<f64>,
-    /// Computed when all frames are posed.
+    /// The shifts and turns of the feet, of one after the other when all frames are posed.
+    corrections: Vec<[Vec<Vec3>; 2]>,
+    /// Computed after them.
     plan: Option<Plan>,
 }
 
@@ -247,6 +249,7 @@ impl State {
                 .collect(),
             posed: legs.iter().map(|_| Vec::with_capacity(clip.frames())).collect(),
             body_yaws: Vec::new(),
+            corrections: Vec::new(),
             legs,
             plan: None,
         })
@@ -265,7 +268,10 @@ impl State {
             return true;
         }
         let Some(plan) = &mut self.plan else {
-            self.plan = Some(self.plan(clip));
+            match self.feet.get(self.corrections.len()) {
+                Some(foot) => self.corrections.push(self.correction(foot, clip.fps())),
+                None => self.plan = Some(self.plan(clip)),
+            }
             return true;
         };
         if plan.is_idle || plan.turned >= last {
@@ -300,16 +306,20 @@ impl State {
         }
     }
 
-    fn plan(&self, clip: &Clip) -> Plan {
-        let corrections = self.stances.iter().zip(&self.feet).map(|(stances, foot)| {
-            let stances = foot.merged(stances, clip.fps(), self.scale);
-            let turns = foot.turns(&stances, &self.body_yaws, clip.fps(), &self.options);
-            let shifts =
-                |foot: &anchor::Foot| foot.shifts(&stances, clip.fps(), self.scale, &self.options);
-            let stays = turns.iter().all(|turn| *turn == Vec3::ZERO);
-            (if stays { shifts(foot) } else { shifts(&foot.turned(&turns)) }, turns)
-        });
-        let (shifts, turns): (Vec<Vec<Vec3>>, Vec<Vec<Vec3>>) = corrections.unzip();
+    /// Returns the shifts and turns of the next foot.
+    fn correction(&self, foot: &anchor::Foot, fps: f64) -> [Vec<Vec3>; 2] {
+        let stances = self.stances.get(self.corrections.len()).map_or(&[][..], Vec::as_slice);
+        let stances = foot.merged(stances, fps, self.scale);
+        let turns = foot.turns(&stances, &self.body_yaws, fps, &self.options);
+        let shifts = |foot: &anchor::Foot| foot.shifts(&stances, fps, self.scale, &self.options);
+        let stays = turns.iter().all(|turn| *turn == Vec3::ZERO);
+        [if stays { shifts(foot) } else { shifts(&foot.turned(&turns)) }, turns]
+    }
+
+    fn plan(&mut self, clip: &Clip) -> Plan {
+        let corrections = std::mem::take(&mut self.corrections).into_iter();
+        let (shifts, turns): (Vec<Vec<Vec3>>, Vec<Vec<Vec3>>) =
+            corrections.map(|[shifts, turns]| (shifts, turns)).unzip();
         let is_idle = shifts.iter().chain(&turns).flatten().all(|value| *value == Vec3::ZERO);
         Plan {
             heights: hips::heights(&self.posed, &shifts, clip.fps()),

@@ -54,5 +54,6 @@ fn height_of_least_change<'a>(legs: impl Iterator<Item = (&'a LimbPose, Vec3)>) 
 
 /// Returns by how much the hips would be too high for the legs to reach, metres.
 fn too_high<'a>(legs: impl Iterator<Item = (&'a LimbPose, Vec3)>, height: f32) -> f32 {
-    legs.map(|(leg, shift)| leg.too_high(shift, height)).fold(0.0, f32::max)
+    let beyond = legs.map(|(leg, shift)| leg.too_high(shift, height));
+    beyond.fold(0.0, |most, beyond| if beyond > most { beyond } else { most })
 }
