@@ -53,8 +53,8 @@ use window::Window;
 
 /// The time limit for sliced work at once, milliseconds.
 const WORK_MS: f64 = 5.0;
-/// The time limit in a frame where work goes on between frames, milliseconds: the panels are laid out
-/// in the same turn of the page.
+/// The time limit in a frame where work goes on between frames, milliseconds: the panels are laid
+/// out in the same turn of the page.
 const WORK_IN_FRAME_MS: f64 = 1.0;
 /// The share of the time since the last frame that sliced work may take where there is none between
 /// frames. It matters where frames take long, as without a graphics card: work would hardly advance

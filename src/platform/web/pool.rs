@@ -402,8 +402,8 @@ impl State {
     }
 }
 
-/// Appends a piece of an answer's array, which has a number and a length; that of the rotations of a
-/// clip is a multiple of four.
+/// Appends a piece of an answer's array, which has a number and a length; that of the rotations of
+/// a clip is a multiple of four.
 fn put_piece(arrived: &mut Parcel, array: usize, length: usize, piece: &Float32Array) {
     let more = piece.length() as usize;
     let Some(clip) = array.checked_sub(1) else {

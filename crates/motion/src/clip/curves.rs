@@ -65,8 +65,8 @@ pub fn joint_values(
     frames.into_iter().filter(|&frame| frame <= last).map(value).collect()
 }
 
-/// The world position and rotation of one joint. Computes kinematics of its own chain alone, because
-/// plots are updated while a slider moves.
+/// The world position and rotation of one joint. Computes kinematics of its own chain alone,
+/// because plots are updated while a slider moves.
 struct JointTrack<'a> {
     clip: &'a Clip,
     joint: usize,

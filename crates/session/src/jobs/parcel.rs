@@ -10,8 +10,8 @@ use std::vec;
 pub struct Parcel {
     /// The header.
     pub head: String,
-    /// The rotations of each clip that an answer brings, most of its numbers: the clip takes them as
-    /// they are.
+    /// The rotations of each clip that an answer brings, most of its numbers: the clip takes them
+    /// as they are.
     pub rotations: Vec<Vec<Quat>>,
     /// The other numbers.
     pub floats: Vec<f32>,

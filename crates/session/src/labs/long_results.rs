@@ -125,9 +125,9 @@ pub(crate) struct LongResults {
 }
 
 impl LongResults {
-    /// Requests a result of a worker: `None` while it is made. Where the clips are short or not those
-    /// of A and B alone, where there are no workers and where none could make it, the lab has to
-    /// make it ([`ControlFlow::Continue`]).
+    /// Requests a result of a worker: `None` while it is made. Where the clips are short or not
+    /// those of A and B alone, where there are no workers and where none could make it, the lab has
+    /// to make it ([`ControlFlow::Continue`]).
     pub(crate) fn inputs(
         &mut self,
         clips: &LabClips,
