@@ -1,14 +1,12 @@
 //! The analysis of a long clip: its ground frames, contacts and ground height.
 
 use super::error::JobError;
-use super::motion_parcel::take_contacts;
-use super::parcel::{put, take};
+use super::motion_parcel::{take_contacts, take_places};
+use super::parcel::put;
 use super::task::{JobClip, Task};
 use super::worker_memory::WorkerMemory;
 use super::{Parcel, ParcelError};
-use glam::DVec2;
 use segue_motion::clip::MotionAnalysis;
-use segue_motion::math::Planar;
 use segue_motion::skeleton::Foot;
 use serde::{Deserialize, Serialize};
 
@@ -58,11 +56,10 @@ impl Task for AnalysisTask {
     fn unpack(&self, _clips: &[JobClip], parcel: Parcel) -> Result<MotionAnalysis, ParcelError> {
         let head: Head = serde_json::from_str(&parcel.head)?;
         let mut bytes = &parcel.bytes[..];
-        let places = take::<[f64; 3]>(&mut bytes, head.frames)?.into_iter();
-        let places = places.map(|[yaw, x, z]| Planar { yaw, shift: DVec2::new(x, z) });
+        let places = take_places(&mut bytes, head.frames)?;
         let feet = Foot::ALL.get(..head.feet).ok_or(ParcelError::Arrays)?;
         Ok(MotionAnalysis {
-            ground_frames: places.collect(),
+            ground_frames: places,
             contacts: take_contacts(&mut bytes, head.frames, feet)?,
             ground_m: f32::from_bits(head.ground_m),
         })

@@ -2,12 +2,12 @@
 
 use super::clip_parcel::{ClipHead, put_clip};
 use super::error::JobError;
-use super::motion_parcel::take_contacts;
-use super::parcel::{Arrays, put, split_floats, take, take_floats};
+use super::motion_parcel::{take_contacts, take_places};
+use super::parcel::{Arrays, put, split_floats, split_values, take_floats};
 use super::task::{JobClip, Task};
 use super::worker_memory::WorkerMemory;
 use super::{Parcel, ParcelError};
-use glam::{DVec2, Vec3};
+use glam::Vec3;
 use segue_motion::clip::{Clip, Motion};
 use segue_motion::matching::{
     ClipMeasurement, DatabaseClip, DatabaseClipParts, DatabaseOptions, FootState, MeasuredClip,
@@ -135,14 +135,13 @@ impl<'a> MotionHead<'a> {
         let joints_radps = take_floats(floats, clip.skeleton().len())?;
         let body = split_floats(floats, frames, DatabaseClipParts::BODY_FEATURES)?;
         let body = body.as_chunks().0.to_vec();
-        let roots = take::<[f64; 3]>(bytes, frames)?.into_iter();
-        let roots = roots.map(|[yaw, x, z]| Planar { yaw, shift: DVec2::new(x, z) }).collect();
+        let roots = take_places(bytes, frames)?;
         let with_contacts = Foot::ALL.get(..self.feet).ok_or(ParcelError::Arrays)?;
         let contacts = take_contacts(bytes, frames, with_contacts)?;
         let mut states_of = |foot: Foot| -> Result<Vec<FootState>, ParcelError> {
-            let counts = take::<[u32; 2]>(bytes, frames)?;
-            let numbers = split_floats(floats, frames, 5)?.chunks_exact(5);
-            let state = |(frame, (counts, numbers)): (usize, ([u32; 2], &[f32]))| FootState {
+            let counts = split_values::<[u32; 2]>(bytes, frames)?;
+            let numbers = split_floats(floats, frames, 5)?.as_chunks().0;
+            let state = |(frame, (counts, numbers)): (usize, ([u32; 2], &[f32; 5]))| FootState {
                 planted: contacts.planted(foot, frame),
                 stance_frames: counts[0] as usize,
                 stillest: counts[1] as usize,
@@ -150,7 +149,7 @@ impl<'a> MotionHead<'a> {
                 descent_m: numbers[1],
                 velocity_mps: Vec3::from_slice(&numbers[2..]),
             };
-            Ok(counts.into_iter().zip(numbers).enumerate().map(state).collect())
+            Ok(counts.zip(numbers).enumerate().map(state).collect())
         };
         let mut feet: [Vec<FootState>; 4] = Default::default();
         let with_states = Foot::ALL.get(..self.states).ok_or(ParcelError::Arrays)?;

@@ -1,7 +1,7 @@
 //! Clips on their way to a worker.
 
 use super::clip_parcel::ClipHead;
-use super::parcel::{Arrays, put, take};
+use super::parcel::{Arrays, put, split_values};
 use super::{Parcel, ParcelError};
 use glam::DVec2;
 use segue_motion::clip::{ContactCorrection, ContactOptions, Contacts, FootOptions, Motion};
@@ -58,9 +58,7 @@ impl<'a> MotionHead<'a> {
         let frames = self.clip.frames;
         let clip = self.clip.take(skeleton, arrays)?;
         let bytes = &mut arrays.bytes;
-        let places = take::<[f64; 3]>(bytes, if self.knows_places { frames } else { 0 })?;
-        let places =
-            places.into_iter().map(|[yaw, x, z]| Planar { yaw, shift: DVec2::new(x, z) }).collect();
+        let places = take_places(bytes, if self.knows_places { frames } else { 0 })?;
         let known_feet = Foot::ALL.get(..self.feet).ok_or(ParcelError::Arrays)?;
         let contacts = take_contacts(bytes, frames, known_feet)?;
         let corrections = self.corrections.into_iter().filter_map(|(foot, frames, planted)| {
@@ -135,6 +133,12 @@ pub(crate) fn unpack(parcel: &Parcel) -> Result<Motion, ParcelError> {
     head.motion.take(&skeleton, &head.roles, &mut arrays)
 }
 
+/// Moves places on the ground from the front of `bytes`.
+pub(super) fn take_places(bytes: &mut &[u8], count: usize) -> Result<Vec<Planar>, ParcelError> {
+    let places = split_values::<[f64; 3]>(bytes, count)?;
+    Ok(places.map(|[yaw, x, z]| Planar { yaw, shift: DVec2::new(x, z) }).collect())
+}
+
 /// Moves the flags of some feet from the front of `bytes`, foot by foot.
 pub(super) fn take_contacts(
     bytes: &mut &[u8],
@@ -143,7 +147,7 @@ pub(super) fn take_contacts(
 ) -> Result<Contacts, ParcelError> {
     let mut planted: Vec<Vec<bool>> = Vec::with_capacity(feet.len());
     for _ in feet {
-        planted.push(take::<u8>(bytes, frames)?.into_iter().map(|flag| flag != 0).collect());
+        planted.push(split_values::<u8>(bytes, frames)?.map(|flag| flag != 0).collect());
     }
     let mut planted = planted.into_iter();
     Ok(Contacts::of_feet(feet, |_| planted.next().unwrap_or_default()))

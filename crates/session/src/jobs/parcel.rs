@@ -63,10 +63,18 @@ pub(super) fn put<T: NoUninit>(bytes: &mut Vec<u8>, values: &[T]) {
 
 /// Moves `count` values from the front of `bytes`.
 pub(crate) fn take<T: Pod>(bytes: &mut &[u8], count: usize) -> Result<Vec<T>, ParcelError> {
+    Ok(split_values(bytes, count)?.collect())
+}
+
+/// Splits `count` values from the front of `bytes`.
+pub(super) fn split_values<'a, T: Pod>(
+    bytes: &mut &'a [u8],
+    count: usize,
+) -> Result<impl Iterator<Item = T> + 'a, ParcelError> {
     let length = count.checked_mul(size_of::<T>()).ok_or(ParcelError::Arrays)?;
     let (now, later) = bytes.split_at_checked(length).ok_or(ParcelError::Arrays)?;
     *bytes = later;
-    Ok(now.chunks_exact(size_of::<T>()).map(pod_read_unaligned).collect())
+    Ok(now.chunks_exact(size_of::<T>()).map(pod_read_unaligned))
 }
 
 /// Moves `count` numbers from the front of `floats`.
