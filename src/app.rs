@@ -51,16 +51,19 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use window::Window;
 
-/// The time limit for sliced work at once, milliseconds.
+/// The time limit for sliced work in one call, milliseconds.
 const WORK_MS: f64 = 5.0;
-/// The time limit in a frame where work goes on between frames, milliseconds: the panels are laid
-/// out in the same turn of the page.
+/// The same in a frame while work goes on between frames: the panels are laid out in the same task
+/// of the page's thread.
 const WORK_IN_FRAME_MS: f64 = 1.0;
+/// The shortest and the longest time limit for sending clips to workers in one call, milliseconds.
+const MIN_SEND_MS: f64 = 1.0;
+const MAX_SEND_MS: f64 = 3.0;
 /// The share of the time since the last frame that sliced work may take where there is none between
 /// frames. It matters where frames take long, as without a graphics card: work would hardly advance
 /// in [`WORK_MS`].
 const WORK_SHARE: f64 = 0.25;
-/// The longest time limit for sliced work in such a frame, milliseconds.
+/// The longest time limit for sliced work where there is none between frames, milliseconds.
 const MAX_WORK_MS: f64 = 60.0;
 /// The time limit for taking in files that were read in a frame, milliseconds.
 const MAX_RECEIVING_MS: f64 = 8.0;
@@ -261,8 +264,9 @@ impl Segue {
         self.work_for(WORK_MS)
     }
 
-    /// Sends the session's requests, and does sliced work for a time limit, milliseconds. Returns
-    /// whether there is more to do.
+    /// Sends the session's requests, and does sliced work for `max_ms` milliseconds; where no work
+    /// is done between frames, for [`WORK_SHARE`] of the time since the last frame if that is
+    /// longer. Returns whether there is more to do.
     fn work_for(&mut self, mut max_ms: f64) -> bool {
         let now_ms = platform::now_ms();
         if self.autosave.begin_if_overdue(&mut self.session, &mut self.large_files, now_ms) {
@@ -292,7 +296,9 @@ impl Segue {
             more = more || self.picture.work();
         }
         let has_begun = self.frame_stats.count() > 0;
-        more = self.pool.send(&mut self.session, has_begun, now_ms + max_ms) || more;
+        // Workers wait for their clips while the page works itself.
+        let until_ms = platform::now_ms() + max_ms.clamp(MIN_SEND_MS, MAX_SEND_MS);
+        more = self.pool.send(&mut self.session, has_begun, until_ms) || more;
         more = more || is_converting || !self.inbox.is_empty();
         self.clock.left_work = more.then_some(now_ms);
         // The work may have made new requests.

@@ -16,13 +16,14 @@ const SOFTWARE_FRAME_MS: f64 = 33.0;
 
 impl Segue {
     /// Advances the app before a frame, and now and then while the page is hidden. Draws nothing.
-    /// Returns whether there is work left. Some is under way between frames if it `is_working`.
+    /// Returns whether there is work left. `is_working` tells whether work goes on between frames:
+    /// then this frame does less.
     pub(super) fn logic(&mut self, ctx: &egui::Context, is_working: bool) -> bool {
         self.clock.frame_began = platform::now_ms();
         self.receive_all();
         let mut max_ms = if is_working { WORK_IN_FRAME_MS } else { WORK_MS };
         if platform::WORKS_BETWEEN_FRAMES {
-            // The turns between frames go on after a frame that has received much.
+            // Receiving counts towards the limit; what is left is done between frames.
             max_ms -= platform::now_ms() - self.clock.frame_began;
         }
         let more = self.work_for(max_ms);

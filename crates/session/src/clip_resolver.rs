@@ -199,21 +199,31 @@ impl ClipResolver<'_> {
         shown: Option<&Inputs>,
         match_window: usize,
     ) -> Answer {
-        match self.inputs(params, match_window) {
-            Ok(None) => Answer::Awaited,
-            Ok(Some(inputs)) if shown == Some(&inputs) => {
-                Answer::Same { is_draft: inputs.is_draft() }
-            }
-            Ok(Some(inputs)) => match inputs.run() {
-                Ok(outcome) => Answer::Made {
-                    outcome: Arc::new(outcome),
-                    is_draft: inputs.is_draft(),
-                    inputs: Some(inputs),
-                },
-                Err(problem) => Answer::Refused(problem),
+        answer_by(self.inputs(params, match_window), shown)
+    }
+
+    /// Returns the answer to parameters of a command that waits for no worker to make the result.
+    pub(crate) fn answer_here(&mut self, params: &Params) -> Answer {
+        let inputs = self.lab_clips(params);
+        answer_by(inputs.and_then(|clips| self.labs.inputs_here(clips, params, 0)), None)
+    }
+}
+
+/// Returns the answer by the inputs of a result, if they are known; `shown` are those of the
+/// present one.
+fn answer_by(inputs: Result<Option<Inputs>, LabError>, shown: Option<&Inputs>) -> Answer {
+    match inputs {
+        Ok(None) => Answer::Awaited,
+        Ok(Some(inputs)) if shown == Some(&inputs) => Answer::Same { is_draft: inputs.is_draft() },
+        Ok(Some(inputs)) => match inputs.run() {
+            Ok(outcome) => Answer::Made {
+                outcome: Arc::new(outcome),
+                is_draft: inputs.is_draft(),
+                inputs: Some(inputs),
             },
             Err(problem) => Answer::Refused(problem),
-        }
+        },
+        Err(problem) => Answer::Refused(problem),
     }
 }
 

@@ -45,7 +45,7 @@ pub(crate) use database_clip::DatabaseClipTask;
 pub(crate) use distances::DistanceTask;
 pub use error::JobError;
 pub(crate) use faults::FaultTask;
-pub(crate) use mend::{MendAnswer, MendTask, measured};
+pub(crate) use mend::{MendAnswer, MendTask, with_slide};
 pub(crate) use motion_parcel::{pack_without_floats, unpack as unpack_motion};
 pub(crate) use parcel::take;
 pub use parcel::{Parcel, ParcelError};

@@ -46,8 +46,6 @@ const MAX_JOB_MS: f64 = 30_000.0;
 const MAX_TRIES: u8 = 2;
 /// The number of workers in a row that end without an answer before the page does without.
 const MAX_DEATHS: usize = 4;
-/// The least time for sending clips at once, milliseconds.
-const MIN_SEND_MS: f64 = 1.0;
 /// The time without jobs after which the workers are ended, because their memory never shrinks,
 /// milliseconds.
 const MAX_IDLE_MS: f64 = 60_000.0;
@@ -158,7 +156,7 @@ impl Pool {
         }
     }
 
-    /// Hands the session's jobs to workers, until a time on the page's clock or a little after it.
+    /// Hands the session's jobs to workers, until a time on the page's clock or a little later.
     /// Workers are not made before the page `has_begun`. Returns whether there is more to send.
     pub(crate) fn send(&mut self, session: &mut Session, has_begun: bool, until_ms: f64) -> bool {
         let now_ms = now_ms();
@@ -187,7 +185,7 @@ impl Pool {
         let size = state.size;
         state.slots.resize_with(size, Slot::default);
         drop(state);
-        self.feed(session, until_ms.max(now_ms + MIN_SEND_MS))
+        self.feed(session, until_ms)
     }
 
     /// Gives every worker jobs, one after the other, until a time. Returns whether there is more.
@@ -357,36 +355,36 @@ impl State {
         }
     }
 
-    /// Takes in a message of a worker.
-    fn on_message(&mut self, at: usize, data: &JsValue) {
+    /// Takes in a message of a worker. Returns whether the app has something to do about it.
+    fn on_message(&mut self, at: usize, data: &JsValue) -> bool {
         let part =
             |name: &str| Reflect::get(data, &JsValue::from(name)).unwrap_or(JsValue::UNDEFINED);
         if let Some(reason) = part("unusable").as_string() {
             log::warn!("no workers: {reason}");
             self.close();
-            return;
+            return true;
         }
         if part("trapped").is_truthy() {
             self.replace(at, &part("failed").as_string().unwrap_or_default());
-            return;
+            return true;
         }
-        let Some(slot) = self.slots.get_mut(at) else { return };
+        let Some(slot) = self.slots.get_mut(at) else { return false };
         if part("ready").is_truthy() {
             slot.is_ready = true;
             if let Some(first) = slot.jobs.front_mut() {
                 first.since_ms = now_ms();
             }
-            return;
+            return true;
         }
-        let Some(number) = part("job").as_f64() else { return };
+        let Some(number) = part("job").as_f64() else { return false };
         let is_it = |posted: &Posted| posted.job.number as f64 == number;
-        let Some(place) = slot.jobs.iter().position(is_it) else { return };
+        let Some(place) = slot.jobs.iter().position(is_it) else { return false };
         if let (Some(posted), Ok(piece)) = (slot.jobs.get_mut(place), part("piece").dyn_into()) {
             let number = |name: &str| part(name).as_f64().unwrap_or(0.0) as usize;
-            put_piece(&mut posted.arrived, number("array"), number("length"), &piece);
-            return;
+            append_piece(&mut posted.arrived, number("array"), number("length"), &piece);
+            return false;
         }
-        let Some(mut posted) = slot.jobs.remove(place) else { return };
+        let Some(mut posted) = slot.jobs.remove(place) else { return false };
         if let Some(next) = slot.jobs.front_mut() {
             next.since_ms = now_ms();
         }
@@ -399,12 +397,13 @@ impl State {
         }
         let secs = part("secs").as_f64().unwrap_or(0.0);
         self.finished.push_back((posted.job.number, answer, secs));
+        true
     }
 }
 
-/// Appends a piece of an answer's array, which has a number and a length; that of the rotations of
-/// a clip is a multiple of four.
-fn put_piece(arrived: &mut Parcel, array: usize, length: usize, piece: &Float32Array) {
+/// Appends a piece of an array of an answer. Array 0 holds the floats, array n the rotations of the
+/// clip n - 1, four floats each. `length` is that of the whole array, floats.
+fn append_piece(arrived: &mut Parcel, array: usize, length: usize, piece: &Float32Array) {
     let more = piece.length() as usize;
     let Some(clip) = array.checked_sub(1) else {
         let floats = &mut arrived.floats;
@@ -489,7 +488,10 @@ fn new_worker(state: &Rc<RefCell<State>>, at: usize) -> Result<Worker, JsValue> 
             if let Some(event) =
                 event.dyn_ref::<MessageEvent>().filter(|event| event.type_() == "message")
             {
-                state.borrow_mut().on_message(at, &event.data());
+                let is_due = state.borrow_mut().on_message(at, &event.data());
+                if !is_due {
+                    return;
+                }
             } else {
                 event.prevent_default();
                 let message = Reflect::get(&event, &"message".into()).ok();

@@ -20,16 +20,18 @@ pub enum CurveKind {
     AngularSpeed,
 }
 
-/// Returns one value per frame; see [`joint_values`].
+/// Returns the values of all frames, in the units of [`CurveKind`]; empty if the clip has no such
+/// joint. See [`joint_values`].
 #[must_use]
 pub fn joint_curve(clip: &Clip, joint: usize, kind: CurveKind) -> Vec<f32> {
     joint_values(clip, joint, kind, 0..clip.frames())
 }
 
-/// Returns the values of some frames; those that the clip does not have are left out. Rates are
-/// central differences at the clip's own frame rate, one-sided at the ends.
+/// Returns the values of the given frames in their order, in the units of [`CurveKind`]; frames
+/// outside the clip are left out. Rates are central differences at the clip's own frame rate,
+/// one-sided at the ends.
 ///
-/// There are none when the clip has no such joint; rates are 0 in a clip of one frame.
+/// Empty if the clip has no such joint. Rates are 0 in a clip of one frame.
 #[must_use]
 pub fn joint_values(
     clip: &Clip,
@@ -72,19 +74,19 @@ struct JointTrack<'a> {
     joint: usize,
     chain: Vec<usize>,
     world: WorldPose,
-    /// The last ones: a rate needs both neighbours of its frame.
-    known: [Option<(usize, Vec3, Quat)>; 4],
+    /// The last poses by frame modulo 4: the rates of consecutive frames share neighbours.
+    cached: [Option<(usize, Vec3, Quat)>; 4],
 }
 
 impl<'a> JointTrack<'a> {
     fn new(clip: &'a Clip, joint: usize) -> Self {
         let chain = clip.skeleton().with_ancestors([joint]);
-        Self { clip, joint, chain, world: WorldPose::default(), known: [None; 4] }
+        Self { clip, joint, chain, world: WorldPose::default(), cached: [None; 4] }
     }
 
-    /// Returns the position and rotation in a frame, which the clip has.
+    /// Returns the world position and rotation in a frame of the clip.
     fn at(&mut self, frame: usize) -> (Vec3, Quat) {
-        let place = &mut self.known[frame % 4];
+        let place = &mut self.cached[frame % 4];
         if let Some((known, position, rotation)) = *place
             && known == frame
         {
@@ -147,7 +149,23 @@ mod tests {
         let mean = speeds.iter().sum::<f32>() / speeds.len() as f32;
         assert!((mean - 1.4).abs() < 0.1, "{mean}");
         assert!(joint_curve(&clip, 999, CurveKind::Speed).is_empty());
-        let some = joint_values(&clip, 0, CurveKind::Speed, [7, 3, last, last + 1]);
-        assert_eq!(some, [speeds[7], speeds[3], speeds[last]]);
+    }
+
+    #[test]
+    fn joint_values_of_some_frames_are_those_of_the_curve() {
+        let clip = synthesize(&Params::new(Action::Run)).unwrap().clip;
+        let last = clip.frames() - 1;
+        for kind in [
+            CurveKind::Speed,
+            CurveKind::Height,
+            CurveKind::Distance,
+            CurveKind::Angle,
+            CurveKind::AngularSpeed,
+        ] {
+            let all = joint_curve(&clip, 3, kind);
+            assert_eq!(all.len(), clip.frames());
+            let some = joint_values(&clip, 3, kind, [7, 3, last, last + 1]);
+            assert_eq!(some, [all[7], all[3], all[last]], "{kind:?}");
+        }
     }
 }

@@ -209,10 +209,10 @@ impl DatabaseBuilder {
             Stage::Normalise(_) => CLIPS_SHARE + GATHER_SHARE,
             Stage::Sort(sorting) => {
                 let Progress { done, total } = sorting.progress;
-                CLIPS_SHARE
-                    + GATHER_SHARE
-                    + 50
-                    + (950 - CLIPS_SHARE - GATHER_SHARE) * done / total.max(1)
+                let left = 950 - CLIPS_SHARE - GATHER_SHARE;
+                // The product may exceed 32 bits.
+                let sorted = left as u64 * done as u64 / total.max(1) as u64;
+                CLIPS_SHARE + GATHER_SHARE + 50 + sorted as usize
             }
         };
         Progress { done, total: 1_000 }

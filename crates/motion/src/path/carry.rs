@@ -103,8 +103,10 @@ pub fn carry(
 #[derive(Clone, Debug)]
 pub(super) struct Carrying {
     options: CarryOptions,
-    /// For each frame of the original, the distance on the new path, if it keeps its speed.
+    /// For the frames of the original that are measured, the distance along the new path, metres;
+    /// used by [`Timing::Speed`] alone.
     along: Vec<f64>,
+    /// For every frame of the result, the frame of the original; `None` until known.
     frames: Option<Vec<f64>>,
     places: Vec<Waypoint>,
     characters: Vec<Planar>,
@@ -137,21 +139,22 @@ impl Carrying {
         count: usize,
     ) -> bool {
         let Some(frames) = self.frames.take() else {
-            self.frames = self.frames_of(path, edited, count);
+            self.frames = self.prepare_frames(path, edited, count);
             return true;
         };
         let next = self.places.len()..self.places.len().saturating_add(count).min(frames.len());
         for &frame in &frames[next.clone()] {
-            self.place(path, edited, frame);
+            self.push_frame(path, edited, frame);
         }
         let is_left = next.end < frames.len();
         self.frames = Some(frames);
         is_left
     }
 
-    /// Returns the frames of the original, if all is known that they depend on; up to `count` of
-    /// them are measured on the new path.
-    fn frames_of(
+    /// Measures up to `count` more frames of the original on the new path if timing depends on it.
+    /// Once all are measured, allocates the result and returns, for each of its frames, the frame
+    /// of the original.
+    fn prepare_frames(
         &mut self,
         path: &FittedPath,
         edited: &ArcLengthPath,
@@ -184,8 +187,8 @@ impl Carrying {
         Some(frames)
     }
 
-    /// Places a frame of the original on the new path.
-    fn place(&mut self, path: &FittedPath, edited: &ArcLengthPath, frame: f64) {
+    /// Appends a frame of the original, carried to the new path.
+    fn push_frame(&mut self, path: &FittedPath, edited: &ArcLengthPath, frame: f64) {
         let (index, part) = path.between(frame);
         let parameter = path.parameter(frame);
         let old = if part == 0.0 { path.places()[index] } else { path.curve().at(parameter) };
@@ -208,12 +211,12 @@ impl Carrying {
         self.characters.push(planar.after(&stood));
         self.turns.push(planar.yaw);
         self.places.push(place);
-        self.pose(path.source().clip(), frame, &planar);
+        self.push_pose(path.source().clip(), frame, &planar);
     }
 
-    /// Appends a frame of a clip, moved over the ground; between frames positions are interpolated
+    /// Appends the pose of a frame, moved by `planar`; between frames positions are interpolated
     /// linearly and rotations spherically.
-    fn pose(&mut self, clip: &Clip, frame: f64, planar: &Planar) {
+    fn push_pose(&mut self, clip: &Clip, frame: f64, planar: &Planar) {
         let last = clip.frames().saturating_sub(1);
         let before = (frame as usize).min(last);
         let (after, part) = ((before + 1).min(last), frame.fract() as f32);
@@ -233,7 +236,10 @@ impl Carrying {
         }
     }
 
-    /// Returns the motion, of which all frames are processed.
+    /// Returns the motion. Call it when [`advance`](Self::advance) has returned `false`.
+    ///
+    /// # Errors
+    /// [`PathEditError`] when the result is not a valid clip.
     pub(super) fn finish(self, path: &FittedPath) -> Result<CarriedMotion, PathEditError> {
         let clip = path.source().clip();
         let skeleton = clip.skeleton().clone();

@@ -75,13 +75,13 @@ impl PathEditor {
     #[must_use]
     pub fn new(path: FittedPath, roles: &Roles, contacts: Contacts) -> Self {
         let slide_cm = foot_slide_cm(path.source().clip(), roles, &contacts);
-        Self::measured(path, roles, contacts, slide_cm)
+        Self::with_slide_cm(path, roles, contacts, slide_cm)
     }
 
-    /// Returns the editor as [`new`](Self::new) does, where the slide of the original is known, as
-    /// by a [`SlideMeter`].
+    /// Returns the editor of a fitted motion whose slide is known: that of the original in its
+    /// worst stance, centimetres ([`SlideMeter::worst_cm`]). `None` where there is no stance.
     #[must_use]
-    pub fn measured(
+    pub fn with_slide_cm(
         path: FittedPath,
         roles: &Roles,
         contacts: Contacts,
@@ -124,8 +124,8 @@ impl PathEditor {
         Ok(made)
     }
 
-    /// Returns a carried motion with its contacts and hard turns, whose slide is not measured yet.
-    fn unmeasured(&self, carried: CarriedMotion) -> EditedMotion {
+    /// Returns a carried motion with its contacts and hard turns, before its slide is measured.
+    fn without_slide(&self, carried: CarriedMotion) -> EditedMotion {
         EditedMotion {
             contacts: carried.contacts(&self.contacts),
             hard_turns: hard_turns(&self.path, &carried),
@@ -172,7 +172,7 @@ impl MotionCarrying {
                 if carrying.advance(&editor.path, edited, count) {
                     Stage::Carry(carrying)
                 } else {
-                    let made = editor.unmeasured(carrying.finish(&editor.path)?);
+                    let made = editor.without_slide(carrying.finish(&editor.path)?);
                     let meter = SlideMeter::new(&made.clip, &editor.roles);
                     Stage::Slide(Box::new(made), meter)
                 }

@@ -107,7 +107,7 @@ impl DistanceMatrix {
         let factor = factor.max(1);
         let (rows, columns) = (self.rows.div_ceil(factor), self.columns.div_ceil(factor));
         let mut rms_m = Vec::with_capacity(rows * columns);
-        // Row by row first: neighbours are added side by side.
+        // Rows are added first, column by column: these additions are contiguous and can use SIMD.
         let mut sums = vec![0.0_f32; self.columns];
         for first in (0..self.rows).step_by(factor) {
             let block = first..(first + factor).min(self.rows);

@@ -160,7 +160,8 @@ impl FootLocking {
     }
 
     /// Processes up to `frames` more frames (at least one). Returns `false` when nothing is left to
-    /// do. A frame of 31 joints takes 2 µs, in each of two passes.
+    /// do. A frame of 31 joints takes 2 µs, in each of two passes. Between the passes, each call
+    /// computes the corrections of one foot, in all frames at once.
     pub fn advance(&mut self, frames: usize) -> bool {
         self.state.advance(&self.clip, frames)
     }
@@ -193,9 +194,10 @@ struct State {
     feet: Vec<anchor::Foot>,
     posed: Vec<Vec<LimbPose>>,
     body_yaws: Vec<f64>,
-    /// The shifts and turns of the feet, of one after the other when all frames are posed.
-    corrections: Vec<[Vec<Vec3>; 2]>,
-    /// Computed after them.
+    /// For each foot so far, its shifts, metres, and its turns as rotation vectors, radians, in
+    /// every frame. One foot is computed in a slice, after all frames are posed.
+    corrections: Vec<(Vec<Vec3>, Vec<Vec3>)>,
+    /// Computed when every foot has its corrections.
     plan: Option<Plan>,
 }
 
@@ -306,20 +308,20 @@ impl State {
         }
     }
 
-    /// Returns the shifts and turns of the next foot.
-    fn correction(&self, foot: &anchor::Foot, fps: f64) -> [Vec<Vec3>; 2] {
+    /// Returns the shifts and turns of a foot, the one after those in `corrections`, in every
+    /// frame.
+    fn correction(&self, foot: &anchor::Foot, fps: f64) -> (Vec<Vec3>, Vec<Vec3>) {
         let stances = self.stances.get(self.corrections.len()).map_or(&[][..], Vec::as_slice);
         let stances = foot.merged(stances, fps, self.scale);
         let turns = foot.turns(&stances, &self.body_yaws, fps, &self.options);
         let shifts = |foot: &anchor::Foot| foot.shifts(&stances, fps, self.scale, &self.options);
         let stays = turns.iter().all(|turn| *turn == Vec3::ZERO);
-        [if stays { shifts(foot) } else { shifts(&foot.turned(&turns)) }, turns]
+        (if stays { shifts(foot) } else { shifts(&foot.turned(&turns)) }, turns)
     }
 
     fn plan(&mut self, clip: &Clip) -> Plan {
-        let corrections = std::mem::take(&mut self.corrections).into_iter();
         let (shifts, turns): (Vec<Vec<Vec3>>, Vec<Vec<Vec3>>) =
-            corrections.map(|[shifts, turns]| (shifts, turns)).unzip();
+            std::mem::take(&mut self.corrections).into_iter().unzip();
         let is_idle = shifts.iter().chain(&turns).flatten().all(|value| *value == Vec3::ZERO);
         Plan {
             heights: hips::heights(&self.posed, &shifts, clip.fps()),

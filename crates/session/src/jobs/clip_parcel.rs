@@ -1,6 +1,6 @@
 //! Clips without their skeleton, as parts of parcels.
 
-use super::parcel::{Arrays, split_floats};
+use super::parcel::{ArrayReader, split_floats};
 use super::{Parcel, ParcelError};
 use glam::Vec3;
 use segue_motion::clip::{Clip, JointTranslations, Provenance};
@@ -35,10 +35,10 @@ impl<'a> ClipHead<'a> {
     pub(super) fn take(
         self,
         skeleton: &Arc<Skeleton>,
-        arrays: &mut Arrays<'_>,
+        arrays: &mut ArrayReader<'_>,
     ) -> Result<Clip, ParcelError> {
-        let rotations = self.frames.checked_mul(skeleton.len()).ok_or(ParcelError::Arrays)?;
-        let rotations = arrays.rotations(rotations)?;
+        let count = self.frames.checked_mul(skeleton.len()).ok_or(ParcelError::Arrays)?;
+        let rotations = arrays.take_rotations(count)?;
         let mut values = || -> Result<Vec<Vec3>, ParcelError> {
             let all = split_floats(&mut arrays.floats, self.frames, 3)?;
             Ok(all.chunks_exact(3).map(Vec3::from_slice).collect())
@@ -66,7 +66,7 @@ fn translations_of(clip: &Clip) -> impl Iterator<Item = &[f32]> {
     std::iter::once(clip.root_translations()).chain(tracks).map(bytemuck::cast_slice)
 }
 
-/// Appends the arrays of a clip.
+/// Appends the arrays of a clip to an answer.
 pub(super) fn put_clip(parcel: &mut Parcel, clip: &Clip) {
     parcel.rotations.push(clip.all_rotations().to_vec());
     parcel.floats.reserve(translations_of(clip).map(<[f32]>::len).sum());

@@ -3,7 +3,7 @@
 use super::clip_parcel::{ClipHead, put_clip};
 use super::error::JobError;
 use super::motion_parcel::{take_contacts, take_places};
-use super::parcel::{Arrays, put, split_floats, split_values, take_floats};
+use super::parcel::{ArrayReader, put, split_floats, split_values, take_floats};
 use super::task::{JobClip, Task};
 use super::worker_memory::WorkerMemory;
 use super::{Parcel, ParcelError};
@@ -95,7 +95,7 @@ impl Task for DatabaseClipTask {
         let ([own, ..], Some(first)) = (clips, clips.last()) else {
             return Err(ParcelError::Arrays);
         };
-        let mut arrays = Arrays::new(parcel.rotations, &parcel.floats, &parcel.bytes);
+        let mut arrays = ArrayReader::new(parcel.rotations, &parcel.floats, &parcel.bytes);
         let mut motions = Vec::new();
         for mut head in head.motions {
             let clip = match head.clip.take() {
@@ -129,7 +129,7 @@ impl<'a> MotionHead<'a> {
     fn take(
         self,
         clip: Arc<Clip>,
-        Arrays { floats, bytes, .. }: &mut Arrays<'_>,
+        ArrayReader { floats, bytes, .. }: &mut ArrayReader<'_>,
     ) -> Result<DatabaseClip, ParcelError> {
         let frames = clip.frames();
         let joints_radps = take_floats(floats, clip.skeleton().len())?;

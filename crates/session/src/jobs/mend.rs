@@ -3,7 +3,7 @@
 use super::clip_parcel::put_clip;
 use super::error::JobError;
 use super::motion_parcel::{MotionHead, put_known};
-use super::parcel::Arrays;
+use super::parcel::ArrayReader;
 use super::task::{JobClip, Task};
 use super::worker_memory::WorkerMemory;
 use super::{Parcel, ParcelError};
@@ -31,8 +31,8 @@ struct Head<'a> {
     slide: Option<Extreme>,
 }
 
-/// Measures the slide of the feet of a mended take.
-pub(crate) fn measured(mended: Mended) -> MendAnswer {
+/// Returns a mended take with the slide of its feet in the worst stance, centimetres.
+pub(crate) fn with_slide(mended: Mended) -> MendAnswer {
     let motion = &mended.motion;
     let slide = worst_foot_slide(motion.clip(), motion.roles(), motion.contacts());
     (mended, slide)
@@ -48,7 +48,7 @@ impl Task for MendTask {
         let mended = mend(take, &faults, &self.options).map_err(|_| JobError::NoResult)?;
         // The page draws the motion: what it needs for that travels with it.
         drop(mended.motion.analysis());
-        Ok(measured(mended))
+        Ok(with_slide(mended))
     }
 
     fn pack(_clips: &[JobClip], (mended, slide): MendAnswer) -> Result<Parcel, ParcelError> {
@@ -63,7 +63,7 @@ impl Task for MendTask {
     fn unpack(&self, clips: &[JobClip], parcel: Parcel) -> Result<MendAnswer, ParcelError> {
         let Head { motion, frames, slide } = serde_json::from_str(&parcel.head)?;
         let take = &clips.first().ok_or(ParcelError::Arrays)?.motion;
-        let mut arrays = Arrays::new(parcel.rotations, &parcel.floats, &parcel.bytes);
+        let mut arrays = ArrayReader::new(parcel.rotations, &parcel.floats, &parcel.bytes);
         let motion = motion.take(take.clip().skeleton(), take.roles(), &mut arrays)?;
         Ok((Mended { motion: Arc::new(motion), frames }, slide))
     }

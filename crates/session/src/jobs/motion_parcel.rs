@@ -1,7 +1,7 @@
 //! Clips on their way to a worker.
 
 use super::clip_parcel::ClipHead;
-use super::parcel::{Arrays, put, split_values};
+use super::parcel::{ArrayReader, put, split_values};
 use super::{Parcel, ParcelError};
 use glam::DVec2;
 use segue_motion::clip::{ContactCorrection, ContactOptions, Contacts, FootOptions, Motion};
@@ -53,7 +53,7 @@ impl<'a> MotionHead<'a> {
         self,
         skeleton: &Arc<Skeleton>,
         roles: &Roles,
-        arrays: &mut Arrays<'_>,
+        arrays: &mut ArrayReader<'_>,
     ) -> Result<Motion, ParcelError> {
         let frames = self.clip.frames;
         let clip = self.clip.take(skeleton, arrays)?;
@@ -129,7 +129,7 @@ pub(crate) fn unpack(parcel: &Parcel) -> Result<Motion, ParcelError> {
     let head: Head<'_> = serde_json::from_str(&parcel.head)?;
     let skeleton = Skeleton::new(head.joints.into_owned()).map_err(|_| ParcelError::Arrays)?;
     let skeleton = Arc::new(skeleton.with_folded_chain(head.above.into_owned()));
-    let mut arrays = Arrays::new(parcel.rotations.clone(), &parcel.floats, &parcel.bytes);
+    let mut arrays = ArrayReader::new(parcel.rotations.clone(), &parcel.floats, &parcel.bytes);
     head.motion.take(&skeleton, &head.roles, &mut arrays)
 }
 

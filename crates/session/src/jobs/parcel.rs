@@ -10,8 +10,8 @@ use std::vec;
 pub struct Parcel {
     /// The header.
     pub head: String,
-    /// The rotations of each clip that an answer brings, most of its numbers: the clip takes them
-    /// as they are.
+    /// The rotations of each clip of an answer, which are moved into the clip without a copy. Empty
+    /// in a clip that is sent to a worker: its rotations are the first of its floats.
     pub rotations: Vec<Vec<Quat>>,
     /// The other numbers.
     pub floats: Vec<f32>,
@@ -30,21 +30,25 @@ pub enum ParcelError {
     Arrays,
 }
 
-/// The arrays of a parcel: whoever reads it takes its values from the front of each.
+/// The values of a parcel that are not read yet. Each read takes values from the front.
 #[derive(Debug)]
-pub(super) struct Arrays<'a> {
+pub(super) struct ArrayReader<'a> {
     pub(super) rotations: vec::IntoIter<Vec<Quat>>,
     pub(super) floats: &'a [f32],
     pub(super) bytes: &'a [u8],
 }
 
-impl<'a> Arrays<'a> {
+impl<'a> ArrayReader<'a> {
     pub(super) fn new(rotations: Vec<Vec<Quat>>, floats: &'a [f32], bytes: &'a [u8]) -> Self {
         Self { rotations: rotations.into_iter(), floats, bytes }
     }
 
-    /// Takes the rotations of a clip: on its way to a worker it has all its numbers in one array.
-    pub(super) fn rotations(&mut self, count: usize) -> Result<Vec<Quat>, ParcelError> {
+    /// Takes the `count` rotations of the next clip. An answer has an array of them for each clip;
+    /// a clip that is sent to a worker has them among its floats.
+    ///
+    /// # Errors
+    /// [`ParcelError::Arrays`] when there are more or fewer.
+    pub(super) fn take_rotations(&mut self, count: usize) -> Result<Vec<Quat>, ParcelError> {
         match self.rotations.next() {
             Some(rotations) if rotations.len() == count => Ok(rotations),
             Some(_) => Err(ParcelError::Arrays),
@@ -66,7 +70,10 @@ pub(crate) fn take<T: Pod>(bytes: &mut &[u8], count: usize) -> Result<Vec<T>, Pa
     Ok(split_values(bytes, count)?.collect())
 }
 
-/// Splits `count` values from the front of `bytes`.
+/// Moves `count` values from the front of `bytes`, as an iterator.
+///
+/// # Errors
+/// [`ParcelError::Arrays`] when there are fewer.
 pub(super) fn split_values<'a, T: Pod>(
     bytes: &mut &'a [u8],
     count: usize,

@@ -3,7 +3,7 @@
 use super::clip_parcel::put_clip;
 use super::error::JobError;
 use super::motion_parcel::{MotionHead, put_known};
-use super::parcel::Arrays;
+use super::parcel::ArrayReader;
 use super::task::{JobClip, Task};
 use super::worker_memory::WorkerMemory;
 use super::{Parcel, ParcelError};
@@ -151,7 +151,7 @@ impl Task for ResultTask {
 
     fn unpack(&self, clips: &[JobClip], parcel: Parcel) -> Result<Outcome, ParcelError> {
         let head: Head<'_> = serde_json::from_str(&parcel.head)?;
-        let mut arrays = Arrays::new(parcel.rotations, &parcel.floats, &parcel.bytes);
+        let mut arrays = ArrayReader::new(parcel.rotations, &parcel.floats, &parcel.bytes);
         let mut motions: Vec<_> = clips.iter().map(|clip| Arc::clone(&clip.motion)).collect();
         for (body, head) in head.own {
             let body = &clips.get(body).ok_or(ParcelError::Arrays)?.motion;

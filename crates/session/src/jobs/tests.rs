@@ -6,7 +6,7 @@ use crate::fixtures::*;
 use crate::labs::Distances;
 use crate::params::MAX_PANES;
 use crate::reading::{Content, read};
-use crate::{JobKind, Request};
+use crate::{ClipEdit, JobKind, Request};
 use proptest::prelude::*;
 use segue_motion::clip::ContactCorrection;
 use segue_motion::clip::fixtures::QuadrupedWalk;
@@ -251,30 +251,35 @@ fn made_bvh_of_12_secs(seed: f64) -> Arc<[u8]> {
 }
 
 /// Returns a walk of more than two minutes as a BVH file: some seconds again and again.
-fn long_bvh() -> Arc<[u8]> {
+fn long_bvh(times: usize) -> Arc<[u8]> {
     let once = made_bvh_of_12_secs(4.0);
     let text = std::str::from_utf8(&once).unwrap();
     let (head, rows) = text.split_once("Frame Time:").unwrap();
     let (time, rows) = rows.split_once('\n').unwrap();
     let (skeleton, _) = head.split_once("Frames:").unwrap();
-    let frames = 12 * rows.lines().count();
-    format!("{skeleton}Frames: {frames}\nFrame Time:{time}\n{}", rows.repeat(12))
+    let frames = times * rows.lines().count();
+    format!("{skeleton}Frames: {frames}\nFrame Time:{time}\n{}", rows.repeat(times))
         .into_bytes()
         .into()
 }
 
+/// Loads a long file as a page does, and returns the id of its clip.
+fn load_long(bytes: &[u8], session: &mut Session) -> String {
+    let size = bytes.len() as u64;
+    let task = session.begin_reading("long.bvh", Content::Outside("file 1".into()), size);
+    let setup = session.take_requests().into_iter().find_map(|request| match request {
+        Request::Read(task) => Some(task.setup),
+        _ => None,
+    });
+    let report = read("long.bvh", bytes, &setup.unwrap(), &mut |_| true).unwrap();
+    session.finish_reading(task, Ok(report)).unwrap().unwrap().ids.remove(0)
+}
+
 #[test]
 fn work_for_a_long_clip_is_the_same_by_workers_and_without() {
-    let bytes = long_bvh();
+    let bytes = long_bvh(12);
     let open = |session: &mut Session| {
-        let size = bytes.len() as u64;
-        let task = session.begin_reading("long.bvh", Content::Outside("file 1".into()), size);
-        let setup = session.take_requests().into_iter().find_map(|request| match request {
-            Request::Read(task) => Some(task.setup),
-            _ => None,
-        });
-        let report = read("long.bvh", &bytes, &setup.unwrap(), &mut |_| true).unwrap();
-        let id = session.finish_reading(task, Ok(report)).unwrap().unwrap().ids.remove(0);
+        let id = load_long(&bytes, session);
         session.apply(Command::OpenLink(format!("lab=view&play=off&a={id}"))).unwrap();
     };
     let mut workers = Workers::new(2, 3);
@@ -327,6 +332,48 @@ fn work_for_a_long_clip_is_the_same_by_workers_and_without() {
     while both.alone.work() {}
     assert_same(&alone, &both.alone);
     assert!(!alone.is_analyzing(&motion(&alone)));
+}
+
+#[test]
+fn registration_without_a_path_is_tried_by_a_worker_once() {
+    let made = [1.0, 2.0].map(made_bvh_of_12_secs);
+    let open = |session: &mut Session| {
+        let ids: Vec<String> = (made.iter().zip(["x.bvh", "y.bvh"]))
+            .map(|(bytes, name)| session.load(name, Arc::clone(bytes)).unwrap().ids.remove(0))
+            .collect();
+        // No path leads forwards through both pins.
+        let link = format!(
+            "lab=register&play=off&a={}&b={}&pins=600-100,100-600&compare=slope_limit:2,3",
+            ids[0], ids[1]
+        );
+        session.apply(Command::OpenLink(link)).unwrap();
+    };
+    let problems = |session: &Session| -> Vec<_> {
+        session.panes().iter().map(|pane| pane.problem.clone().unwrap()).collect()
+    };
+    let mut alone = Session::new();
+    open(&mut alone);
+    while alone.work() {}
+    for seed in 0..8 {
+        let (mut workers, mut session) = (Workers::new(2, seed), Session::new());
+        session.set_workers(2);
+        open(&mut session);
+        workers.settle(&mut session);
+        assert_eq!((workers.run, problems(&session)), (2, problems(&alone)));
+    }
+}
+
+#[test]
+fn edit_for_the_library_waits_for_no_worker() {
+    let mut session = Session::new();
+    let id = load_long(&long_bvh(48), &mut session);
+    assert!(session.library().find(&id).unwrap().facts.as_ref().unwrap().frames >= 32_000);
+    session.set_workers(1);
+    session.apply(Command::OpenLink(format!("lab=view&play=off&a={id}"))).unwrap();
+    Workers::new(1, 1).settle(&mut session);
+    let clips = session.library().entries().len();
+    session.apply(Command::Edit(id, ClipEdit::Mirror, None)).unwrap();
+    assert_eq!(session.library().entries().len(), clips + 1);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::clip_parcel::{ClipHead, put_clip};
 use super::error::JobError;
-use super::parcel::Arrays;
+use super::parcel::ArrayReader;
 use super::task::{JobClip, Task};
 use super::worker_memory::WorkerMemory;
 use super::{Parcel, ParcelError};
@@ -71,7 +71,7 @@ impl Task for ViewTask {
     fn unpack(&self, clips: &[JobClip], parcel: Parcel) -> Result<ViewAnswer, ParcelError> {
         let Head { locked, before, found } = serde_json::from_str(&parcel.head)?;
         let skeleton = clips.first().ok_or(ParcelError::Arrays)?.motion.clip().skeleton();
-        let mut arrays = Arrays::new(parcel.rotations, &parcel.floats, &parcel.bytes);
+        let mut arrays = ArrayReader::new(parcel.rotations, &parcel.floats, &parcel.bytes);
         let locked = locked.map(|head| head.take(skeleton, &mut arrays)).transpose()?;
         Ok(ViewAnswer { locked, before, found })
     }

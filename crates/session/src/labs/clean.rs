@@ -101,8 +101,8 @@ impl Mends {
             && !self.skipped.contains(&(fault.kind, fault.frames.start))
     }
 
-    /// Returns the faults that are mended.
-    fn of_faults<'a>(&self, faults: &'a [Fault]) -> Vec<&'a Fault> {
+    /// Returns the chosen faults; none while nothing is mended.
+    fn faults_to_mend<'a>(&self, faults: &'a [Fault]) -> Vec<&'a Fault> {
         faults.iter().filter(|fault| self.is_on && self.choose(fault)).collect()
     }
 
@@ -119,7 +119,7 @@ impl Mends {
 pub fn cleaned(motion: &Arc<Motion>) -> Result<(Arc<Motion>, usize), LabError> {
     let mends = Mends::of(&Params::default());
     let faults = find_faults(motion);
-    let chosen = mends.of_faults(&faults);
+    let chosen = mends.faults_to_mend(&faults);
     Ok((mend(motion, &chosen, &mends.options())?.motion, chosen.len()))
 }
 

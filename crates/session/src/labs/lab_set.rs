@@ -127,15 +127,27 @@ impl LabSet {
         params: &Params,
         match_window: usize,
     ) -> Result<Option<Inputs>, LabError> {
+        if self.knows(&clips)
+            && let ControlFlow::Break(inputs) =
+                self.long_results.inputs(&clips, params, match_window, &self.jobs)
+        {
+            return Ok(inputs);
+        }
+        self.inputs_here(clips, params, match_window)
+    }
+
+    /// Returns the inputs of a result that no worker makes, however long its clips are; `None`
+    /// while they are being computed.
+    pub(crate) fn inputs_here(
+        &mut self,
+        clips: LabClips,
+        params: &Params,
+        match_window: usize,
+    ) -> Result<Option<Inputs>, LabError> {
         if !self.knows(&clips) {
             return Ok(None);
         }
-        match self.long_results.inputs(&clips, params, match_window, &self.jobs) {
-            ControlFlow::Break(inputs) => Ok(inputs),
-            ControlFlow::Continue(()) => {
-                lab_of(params.lab()).inputs(self, clips, params, match_window)
-            }
-        }
+        lab_of(params.lab()).inputs(self, clips, params, match_window)
     }
 
     /// Returns whether a worker is at what is derived from a motion.

@@ -13,7 +13,7 @@ use super::sliced::{JobKind, Sliced};
 use super::transition::TransitionLab;
 use crate::LabId;
 use crate::jobs::{JobBoard, ResultTask};
-use crate::params::Params;
+use crate::params::{Key, Params};
 use segue_motion::clip::Motion;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -125,9 +125,9 @@ pub(crate) struct LongResults {
 }
 
 impl LongResults {
-    /// Requests a result of a worker: `None` while it is made. Where the clips are short or not
-    /// those of A and B alone, where there are no workers and where none could make it, the lab has
-    /// to make it ([`ControlFlow::Continue`]).
+    /// Requests a result of a worker: `None` while it is made. The lab makes it itself
+    /// ([`ControlFlow::Continue`]) if the clips are short, if it takes clips besides those in its
+    /// slots, if it scales the body, if there are no workers, or if none could make it.
     pub(crate) fn inputs(
         &mut self,
         clips: &LabClips,
@@ -137,7 +137,9 @@ impl LongResults {
     ) -> ControlFlow<Option<Inputs>> {
         let frames: usize = clips.slots.iter().map(|clip| clip.clip().frames()).sum();
         let is_long = worker_frames(params.lab()).is_some_and(|least| frames >= least);
-        if !is_long || !clips.more.is_empty() || !jobs.has_workers() {
+        // A body of another size is none of the page's, and cannot be packed.
+        let keeps_body = params.lab() != LabId::Edit || params.number(Key::Scale) == 1.0;
+        if !is_long || !keeps_body || !clips.more.is_empty() || !jobs.has_workers() {
             return ControlFlow::Continue(());
         }
         let task = ResultTask::new(params, match_window);

@@ -107,7 +107,7 @@ impl FittedMotion {
                 .zip(off)
                 .map(Into::into)
                 .collect(),
-            editor: PathEditor::measured(path, motion.roles(), contacts, slide_cm),
+            editor: PathEditor::with_slide_cm(path, motion.roles(), contacts, slide_cm),
             motion,
         }
     }
@@ -168,8 +168,8 @@ pub(crate) struct PathInputs {
     /// The edited path; `None` for the fitted one.
     edited: Option<GroundSpline>,
     carry: CarryOptions,
-    /// The motion on the path without foot lock, if it is long; a short one is computed with the
-    /// result.
+    /// The motion on the fitted path without foot lock, if it is long; any other is computed with
+    /// the result.
     free: Option<Arc<FreeMotion>>,
     /// The foot lock options, if feet are locked.
     lock: Option<Lock>,
@@ -196,11 +196,13 @@ enum Feet {
 /// browser.
 const AT_ONCE: usize = 400;
 
-/// Motions of up to this number of frames are placed on a path in the frame in which it changes, so
-/// that it can be dragged; longer ones in slices.
-const PLACED_AT_ONCE: usize = 16_000;
-/// The number of frames that are placed on a path, or measured there, in one slice: about 4 ms.
-const PLACED_PER_SLICE: usize = 12_000;
+/// The greatest number of frames of a motion that is carried to its fitted path at once; longer
+/// ones are carried in slices. A motion on an edited path always follows in the same frame of the
+/// display: the next edit begins with what is shown.
+const CARRIED_AT_ONCE: usize = 16_000;
+/// The number of frames that are carried, or whose slide is measured, in one slice: about 4 ms in a
+/// browser.
+const FRAMES_PER_SLICE: usize = 12_000;
 
 impl PathInputs {
     /// Returns whether the motion and the path are the same.
@@ -216,12 +218,13 @@ impl PathInputs {
         self.is_on_the_same_path(other) && self.lock == other.lock
     }
 
-    fn placing(&self) -> Result<Placing, LabError> {
+    /// Begins to carry the motion to its path; [`LabError`] when the path has no length.
+    fn begin_carrying(&self) -> Result<FreeMotionCarrying, LabError> {
         let curve = match &self.edited {
             Some(edited) => Arc::new(ArcLengthPath::new(edited.clone())?),
             None => Arc::clone(&self.fitted.curve),
         };
-        Ok(Placing { curve, carrying: MotionCarrying::new(self.carry) })
+        Ok(FreeMotionCarrying { curve, carrying: MotionCarrying::new(self.carry) })
     }
 
     /// Returns the motion on the path without foot lock.
@@ -229,24 +232,24 @@ impl PathInputs {
         if let Some(free) = &self.free {
             return Ok(Arc::clone(free));
         }
-        let mut placing = self.placing()?;
+        let mut carrying = self.begin_carrying()?;
         loop {
-            match placing.advance(&self.fitted, usize::MAX)? {
-                ControlFlow::Continue(rest) => placing = rest,
+            match carrying.advance(&self.fitted, usize::MAX)? {
+                ControlFlow::Continue(rest) => carrying = rest,
                 ControlFlow::Break(free) => return Ok(Arc::new(free)),
             }
         }
     }
 }
 
-/// The placing of a motion on a path in slices.
+/// The computation of a [`FreeMotion`] in slices.
 #[derive(Debug)]
-struct Placing {
+struct FreeMotionCarrying {
     curve: Arc<ArcLengthPath>,
     carrying: MotionCarrying,
 }
 
-impl Placing {
+impl FreeMotionCarrying {
     fn advance(
         self,
         fitted: &FittedMotion,
@@ -271,8 +274,8 @@ impl PartialEq for PathInputs {
 }
 
 /// A clip of up to this number of frames gets its path in the frame in which it is chosen: about
-/// 4 ms in a browser. Up to [`PLACED_AT_ONCE`], a change of the fit shows in its own frame: a stage
-/// that waits is dimmed, and would flicker while a slider is dragged.
+/// 4 ms in a browser. Up to [`CARRIED_AT_ONCE`], a change of the fit shows in its own frame: a
+/// stage that waits is dimmed, and would flicker while a slider is dragged.
 const FITTED_AT_ONCE: usize = 1_500;
 
 /// The motion and the options of a fit.
@@ -304,7 +307,7 @@ impl Fitting {
                 }
             },
             Self::Fitted(path, mut meter) => {
-                if meter.advance(motion.clip(), motion.contacts(), PLACED_PER_SLICE) {
+                if meter.advance(motion.clip(), motion.contacts(), FRAMES_PER_SLICE) {
                     ControlFlow::Continue(Self::Fitted(path, meter))
                 } else {
                     ControlFlow::Break(FittedMotion::new(*path, meter.worst_cm()))
@@ -314,18 +317,18 @@ impl Fitting {
     }
 }
 
-/// A cache of the last fitted paths: dragging a point changes none of them. And of the long motions
-/// on their paths.
+/// A cache of the last fitted paths, which do not change while a point is dragged, and of the long
+/// motions that are carried to them.
 #[derive(Debug, Default)]
 pub(crate) struct Paths {
     fitted: RequestCache<FittedOf, Fitting, Result<Arc<FittedMotion>, LabError>>,
-    placed: RequestCache<PathInputs, Placing, Result<Arc<FreeMotion>, LabError>>,
+    free: RequestCache<PathInputs, FreeMotionCarrying, Result<Arc<FreeMotion>, LabError>>,
     locked_feet: LockedFeetCache,
 }
 
 impl Paths {
     /// Returns the motion on a path of the parameters for a clip; `None` if the path is not fitted
-    /// yet, or a long motion not placed on it: call [`work`](Self::work), then ask again.
+    /// yet, or a long motion not carried to it: call [`work`](Self::work), then ask again.
     pub(crate) fn inputs(
         &mut self,
         motion: &Arc<Motion>,
@@ -348,10 +351,10 @@ impl Paths {
             lock: Lock::of(params),
             feet: Feet::Free,
         };
-        if motion.clip().frames() > PLACED_AT_ONCE {
+        if motion.clip().frames() > CARRIED_AT_ONCE && inputs.edited.is_none() {
             let is_it = |of: &PathInputs| of.is_on_the_same_path(&inputs);
-            let begin = |of: &PathInputs| Ok(ControlFlow::Continue(of.placing()?));
-            inputs.free = self.placed.request_or_begin(inputs.clone(), is_it, begin)?;
+            let begin = |of: &PathInputs| Ok(ControlFlow::Continue(of.begin_carrying()?));
+            inputs.free = self.free.request_or_begin(inputs.clone(), is_it, begin)?;
             if inputs.free.is_none() {
                 return Ok(None);
             }
@@ -374,7 +377,7 @@ impl Paths {
         let is_new = self.fitted.known(|(of, _)| Arc::ptr_eq(of, motion)).is_none();
         let is_it = |(of, by): &FittedOf| Arc::ptr_eq(of, motion) && *by == options;
         self.fitted.request_or_begin((Arc::clone(motion), options), is_it, |_| {
-            let at_once = if is_new { FITTED_AT_ONCE } else { PLACED_AT_ONCE };
+            let at_once = if is_new { FITTED_AT_ONCE } else { CARRIED_AT_ONCE };
             if motion.clip().frames() > at_once {
                 return Ok(ControlFlow::Continue(Fitting::Requested));
             }
@@ -388,7 +391,7 @@ impl Paths {
 impl Sliced for Paths {
     fn clear_requests(&mut self) {
         self.fitted.clear_requests();
-        self.placed.clear_requests();
+        self.free.clear_requests();
         self.locked_feet.clear_requests();
     }
 
@@ -398,25 +401,25 @@ impl Sliced for Paths {
             Ok(ControlFlow::Break(fitted)) => ControlFlow::Break(Ok(Arc::new(fitted))),
             Err(problem) => ControlFlow::Break(Err(problem.into())),
         };
-        let place = |of: &PathInputs, placing: Placing| match placing
-            .advance(&of.fitted, PLACED_PER_SLICE)
+        let carry = |of: &PathInputs, carrying: FreeMotionCarrying| match carrying
+            .advance(&of.fitted, FRAMES_PER_SLICE)
         {
             Ok(ControlFlow::Continue(rest)) => ControlFlow::Continue(rest),
             Ok(ControlFlow::Break(free)) => ControlFlow::Break(Ok(Arc::new(free))),
             Err(problem) => ControlFlow::Break(Err(problem)),
         };
-        self.fitted.work(fit) || self.placed.work(place) || self.locked_feet.work()
+        self.fitted.work(fit) || self.free.work(carry) || self.locked_feet.work()
     }
 
     fn is_ready(&self) -> bool {
-        self.fitted.is_ready() || self.placed.is_ready() || self.locked_feet.is_ready()
+        self.fitted.is_ready() || self.free.is_ready() || self.locked_feet.is_ready()
     }
 
     fn progress(&self) -> Option<(JobKind, f64)> {
         if self.fitted.under_way().next().is_some() {
             return Some((JobKind::Analyzing, 0.0));
         }
-        if self.placed.under_way().next().is_some() {
+        if self.free.under_way().next().is_some() {
             return Some((JobKind::Computing, 0.0));
         }
         Some((JobKind::HoldingFeet, f64::from(self.locked_feet.progress()?)))

@@ -82,7 +82,7 @@ impl Session {
             "what was found lies beyond what a link can say: use shorter clips",
         );
         let params = edit_params(&source, edit).ok_or(unsayable.clone())?;
-        let outcome = match self.clips().answer(&params, None, 0) {
+        let outcome = match self.clips().answer_here(&params) {
             Answer::Made { outcome, .. } => outcome,
             Answer::Refused(problem) => return Err(NoResult::Refused(problem).into()),
             Answer::Same { .. } | Answer::Awaited => return Err(NoResult::Awaited.into()),

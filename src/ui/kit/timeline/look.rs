@@ -151,19 +151,20 @@ pub(super) fn paint_stripe(stripe: &Stripe<'_>, row: Rangef, axis: TimeAxis, ui:
     }
 }
 
-/// The greatest number of moments that are elements of their own. More would be too many to read
-/// aloud, and hardly apart on the screen.
-const MAX_APART: usize = 60;
-/// The width and height of the area of a moment that shows its name, points.
-const MOMENT_AREA: f32 = 12.0;
+/// The greatest number of moments with an element each: more would be too many to read aloud, and
+/// hardly distinguishable on the screen.
+const MAX_MOMENT_ELEMENTS: usize = 60;
+/// The width and height of the area in which the pointer shows a moment's name, points.
+const MOMENT_SIZE: f32 = 12.0;
 
-/// Draws the moments in a row around the height `y`. Where there are many of them they are one
-/// element, whose hint is the name of the moment nearest to the pointer.
+/// Draws the moments in a row around the height `y`. More than [`MAX_MOMENT_ELEMENTS`], which must
+/// be of one kind, are one element: its label has the name of the first and their number, its hint
+/// the name of the moment nearest to the pointer.
 pub(super) fn moments_ui(moments: &[Moment], axis: TimeAxis, y: f32, id: Id, ui: &Ui) {
     let place = |moment: &Moment| pos2(axis.x_of(moment.time), y);
-    let Some(first) = moments.first().filter(|_| moments.len() > MAX_APART) else {
+    let Some(first) = moments.first().filter(|_| moments.len() > MAX_MOMENT_ELEMENTS) else {
         for (index, moment) in moments.iter().enumerate() {
-            let area = Rect::from_center_size(place(moment), Vec2::splat(MOMENT_AREA));
+            let area = Rect::from_center_size(place(moment), Vec2::splat(MOMENT_SIZE));
             paint_moment(moment, place(moment), ui);
             let response = ui.interact(area, id.with(index), Sense::hover());
             let said = name_of(moment);
@@ -175,14 +176,15 @@ pub(super) fn moments_ui(moments: &[Moment], axis: TimeAxis, y: f32, id: Id, ui:
     for moment in moments {
         paint_moment(moment, place(moment), ui);
     }
-    let row = Rect::from_x_y_ranges(axis.x, Rangef::new(y - 6.0, y + 6.0));
+    let row =
+        Rect::from_x_y_ranges(axis.x, Rangef::new(y - 0.5 * MOMENT_SIZE, y + 0.5 * MOMENT_SIZE));
     let response = ui.interact(row, id, Sense::hover());
     let said = msg!("{name}, {count} times", name = first.name, count = moments.len());
     describe(&response, &WidgetInfo::labeled(Role::Label, true, say(&said, ui)));
-    let off = |moment: &Moment, at: Pos2| (place(moment).x - at.x).abs();
+    let distance = |moment: &Moment, at: Pos2| (place(moment).x - at.x).abs();
     let nearest = response.hover_pos().and_then(|at| {
-        let nearest = moments.iter().min_by(|a, b| off(a, at).total_cmp(&off(b, at)))?;
-        (off(nearest, at) <= 0.5 * MOMENT_AREA).then_some(nearest)
+        let nearest = moments.iter().min_by(|a, b| distance(a, at).total_cmp(&distance(b, at)))?;
+        (distance(nearest, at) <= 0.5 * MOMENT_SIZE).then_some(nearest)
     });
     if let Some(moment) = nearest {
         response.on_hover_text(say(&name_of(moment), ui));

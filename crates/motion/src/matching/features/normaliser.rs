@@ -10,9 +10,9 @@ pub(in crate::matching) struct Normaliser {
     features: Features,
     normalisation: Normalisation,
     counted: Arc<Vec<u32>>,
-    /// The mean of each dimension, its sum before that is known; and the sum of the squared
-    /// differences from it.
+    /// The sums of the dimensions; their means after the first pass.
     means: Vec<f64>,
+    /// The sums of the squared differences from the means.
     squares: Vec<f64>,
     pass: Pass,
     /// The number of rows that the pass has processed.
@@ -27,7 +27,7 @@ enum Pass {
 }
 
 impl Normaliser {
-    /// Prepares the normalisation of raw rows by those in `counted`.
+    /// Prepares the normalisation; see [`Features::normalise`].
     pub(in crate::matching) fn new(
         layout: Layout,
         normalisation: Normalisation,

@@ -11,11 +11,12 @@ const GROUPS: usize = LEAF / LANES;
 
 type Lane = [f32; LANES];
 
-/// Boxes, one after the other: the lower bounds of each, then its upper bounds.
+/// Bounding boxes, one after the other: for each its lower bounds in all dimensions, then its upper
+/// bounds.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Boxes(Vec<f32>);
+pub(super) struct BoundingBoxes(Vec<f32>);
 
-impl Boxes {
+impl BoundingBoxes {
     pub(super) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
@@ -24,7 +25,12 @@ impl Boxes {
         self.0.len() / (2 * dims)
     }
 
-    /// Appends the box around boxes, each its lower and its upper bounds.
+    /// Makes room for `boxes` more.
+    pub(super) fn reserve(&mut self, dims: usize, boxes: usize) {
+        self.0.reserve_exact(2 * dims * boxes);
+    }
+
+    /// Appends the smallest box around all parts, each given by its lower and upper bounds.
     pub(super) fn push_around<'a>(
         &mut self,
         dims: usize,
@@ -45,14 +51,15 @@ impl Boxes {
         }
     }
 
-    /// Returns the boxes around each `count` of these.
-    pub(super) fn around_each(&self, count: usize, dims: usize) -> Self {
-        let mut around = Self::default();
-        for children in self.0.chunks(2 * dims * count) {
+    /// Returns the next level: boxes around `children` consecutive ones each; the last may have
+    /// fewer.
+    pub(super) fn parents(&self, dims: usize, children: usize) -> Self {
+        let mut parents = Self::default();
+        for children in self.0.chunks(2 * dims * children) {
             let parts = children.chunks_exact(2 * dims).map(|bounds| bounds.split_at(dims));
-            around.push_around(dims, parts);
+            parents.push_around(dims, parts);
         }
-        around
+        parents
     }
 }
 
@@ -65,7 +72,7 @@ pub(super) struct Level {
 }
 
 impl Level {
-    pub(super) fn pack(dims: usize, boxes: &Boxes) -> Self {
+    pub(super) fn pack(dims: usize, boxes: &BoundingBoxes) -> Self {
         let count = boxes.len(dims);
         let mut packs = Vec::with_capacity(count.div_ceil(LANES) * dims * 2 * LANES);
         for pack in boxes.0.chunks(2 * dims * LANES) {

@@ -1,7 +1,7 @@
 //! Construction of the index of boxes.
 
 use super::BoxIndex;
-use super::boxes::{Boxes, LANES, LEAF, Level};
+use super::boxes::{BoundingBoxes, LANES, LEAF, Level};
 use crate::matching::Features;
 use crate::matching::features::MAX_DIMS;
 use crate::registration::Progress;
@@ -12,7 +12,7 @@ use crate::registration::Progress;
 /// leaves, along the dimension in which it is widest. Splits lie at powers of two, so that groups
 /// of eight leaves, of 64 and so on are whole branches of that tree. O(n log n).
 ///
-/// Then frames are packed leaf by leaf, with the leaves' boxes.
+/// Then the features are packed leaf by leaf, and the bounding box of each leaf is computed.
 #[derive(Clone, Debug)]
 pub struct BoxBuilder {
     ids: Vec<u32>,
@@ -23,7 +23,7 @@ pub struct BoxBuilder {
     /// Their features, as in a [`BoxIndex`].
     cells: Vec<f32>,
     /// The boxes of their leaves.
-    leaves: Boxes,
+    leaves: BoundingBoxes,
     done: usize,
     total: usize,
 }
@@ -45,7 +45,7 @@ impl BoxBuilder {
             factors: factors.to_vec(),
             packed: 0,
             cells: Vec::new(),
-            leaves: Boxes::default(),
+            leaves: BoundingBoxes::default(),
             done: 0,
             total: valid.len() * (rounds + 1),
         }
@@ -83,11 +83,16 @@ impl BoxBuilder {
 
     /// Packs the next leaf. Returns the number of its frames.
     fn pack_leaf(&mut self, features: &Features) -> usize {
-        let end = (self.packed + LEAF).min(self.ids.len());
+        let count = self.ids.len();
+        let end = (self.packed + LEAF).min(count);
         let Some(ids) = self.ids.get_mut(self.packed..end) else { return 0 };
         // Within a leaf the frames are in order of time, whatever order bisection gave them.
         ids.sort_unstable();
         let dims = features.layout().dims();
+        if self.cells.is_empty() {
+            self.cells.reserve_exact(count.div_ceil(LANES) * dims * LANES);
+            self.leaves.reserve(dims, count.div_ceil(LEAF));
+        }
         for ids in ids.chunks(LANES) {
             let start = self.cells.len();
             self.cells.resize(start + dims * LANES, 0.0);
@@ -119,13 +124,14 @@ impl BoxBuilder {
             if boxes.len(dims) <= LANES {
                 break;
             }
-            boxes = boxes.around_each(LANES, dims);
+            boxes = boxes.parents(dims, LANES);
         }
         BoxIndex::new(dims, self.ids, self.cells, levels)
     }
 }
 
-/// Moves the `middle` least of some frames to the front, in the dimension in which they are widest.
+/// Partitions frames along the dimension in which they are widest: the `middle` ones with the least
+/// values come first. Does nothing if there are no more than `middle`.
 fn bisect(features: &Features, ids: &mut [u32], middle: usize, factors: &[f32]) {
     if middle >= ids.len() {
         return;

@@ -58,7 +58,7 @@ fn field(times: usize, frames: usize, seed: u64) -> Field {
         }
     }
     let valid = Arc::new(valid);
-    let features = Features::normalise(layout, Normalisation::Block, rows, &valid);
+    let features = Features::normalise(layout, Normalisation::Block, rows, Arc::clone(&valid));
     Field { features, tags, valid }
 }
 
@@ -177,7 +177,12 @@ fn search_of_an_invalid_query_finds_nothing() {
     // Rows that are all equal make a tree of no depth, or none.
     let layout = Layout::new(&FeatureOptions::default()).unwrap();
     let valid = Arc::new((0..5_000).collect());
-    let same = Features::normalise(layout, Normalisation::Block, vec![1.0; 27 * 5_000], &valid);
+    let same = Features::normalise(
+        layout,
+        Normalisation::Block,
+        vec![1.0; 27 * 5_000],
+        Arc::clone(&valid),
+    );
     let candidates = Candidates { features: &same, tags: &[], valid: &valid };
     let query = vec![0.5; 27];
     let query = Query { row: &query, weights: &weights, filter: TagFilter::default() };

@@ -21,10 +21,12 @@ pub(crate) fn smoothed(values: &[f32], reach: usize) -> Vec<f32> {
 
 /// Returns the largest of the values within `reach`; 0 where none is positive.
 pub(crate) fn largest_around(values: &[f32], reach: usize) -> Vec<f32> {
-    let largest = |at: usize| {
-        let around = &values[at.saturating_sub(reach)..(at + reach + 1).min(values.len())];
-        // A comparison, as `max` is a call in WebAssembly.
-        around.iter().fold(0.0, |most, &value| if value > most { value } else { most })
-    };
-    (0..values.len()).map(largest).collect()
+    let around = |at: usize| &values[at.saturating_sub(reach)..(at + reach + 1).min(values.len())];
+    (0..values.len()).map(|at| largest(around(at).iter().copied())).collect()
+}
+
+/// Returns the largest value; 0 where none is positive.
+pub(crate) fn largest(values: impl Iterator<Item = f32>) -> f32 {
+    // A comparison: `f32::max` is a call in WebAssembly.
+    values.fold(0.0, |most, value| if value > most { value } else { most })
 }

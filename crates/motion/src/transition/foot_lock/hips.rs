@@ -1,6 +1,6 @@
 //! The height of the hips for planted feet.
 
-use super::envelope::{largest_around, smoothed};
+use super::envelope::{largest, largest_around, smoothed};
 use crate::transition::limb::LimbPose;
 use glam::Vec3;
 
@@ -54,6 +54,5 @@ fn height_of_least_change<'a>(legs: impl Iterator<Item = (&'a LimbPose, Vec3)>) 
 
 /// Returns by how much the hips would be too high for the legs to reach, metres.
 fn too_high<'a>(legs: impl Iterator<Item = (&'a LimbPose, Vec3)>, height: f32) -> f32 {
-    let beyond = legs.map(|(leg, shift)| leg.too_high(shift, height));
-    beyond.fold(0.0, |most, beyond| if beyond > most { beyond } else { most })
+    largest(legs.map(|(leg, shift)| leg.too_high(shift, height)))
 }

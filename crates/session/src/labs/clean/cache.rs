@@ -4,7 +4,7 @@ use super::super::delegated::Delegated;
 use super::super::request_cache::{Step, work_on_first};
 use super::super::sliced::{JobKind, Sliced};
 use super::{CleanInputs, Mends};
-use crate::jobs::{FaultTask, JobBoard, MendAnswer, MendTask, measured};
+use crate::jobs::{FaultTask, JobBoard, MendAnswer, MendTask, with_slide};
 use crate::labs::LabError;
 use crate::params::{Key, MAX_PANES, Params};
 use segue_motion::clean::{Fault, FaultSearch, Mending, damage};
@@ -14,8 +14,8 @@ use std::sync::Arc;
 
 /// Takes of up to this number of frames are searched and mended at once.
 const AT_ONCE: usize = 500;
-/// The number of frames from which on a worker searches and mends a take: what takes it longer than
-/// to begin.
+/// The least number of frames of a take that a worker searches and mends: a shorter one takes less
+/// time than a worker's start.
 const FOR_WORKERS: usize = 2_000;
 
 /// The faults of a take.
@@ -163,7 +163,7 @@ impl CleanCache {
             pending.is_wanted = true;
             return None;
         }
-        let is_quick = at_once || mends.of_faults(&searched.faults).is_empty();
+        let is_quick = at_once || mends.faults_to_mend(&searched.faults).is_empty();
         let (of, mends) = (Arc::clone(searched), mends.clone());
         let work = Work::Mend { of, mends, mending: Delegated::New };
         self.begin(work, is_quick);
@@ -217,7 +217,7 @@ impl CleanCache {
                 }
             }
             Work::Mend { of, mends, mending } => {
-                let (faults, options) = (mends.of_faults(&of.faults), mends.options());
+                let (faults, options) = (mends.faults_to_mend(&of.faults), mends.options());
                 let offer = || {
                     let faults: Vec<Fault> = faults.iter().copied().cloned().collect();
                     let is_long = of.motion.clip().frames() >= FOR_WORKERS && !faults.is_empty();
@@ -232,7 +232,7 @@ impl CleanCache {
                     };
                     match mending.advance() {
                         Ok(true) => ControlFlow::Continue(mending),
-                        Ok(false) => ControlFlow::Break(Ok(measured(mending.finish()))),
+                        Ok(false) => ControlFlow::Break(Ok(with_slide(mending.finish()))),
                         Err(error) => ControlFlow::Break(Err(error.into())),
                     }
                 };

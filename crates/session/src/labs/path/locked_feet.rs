@@ -86,6 +86,7 @@ impl LockedFeetCache {
                 if self.done.len() >= MAX_PANES {
                     self.done.remove(0);
                 }
+                // `makes_the_same` does not compare the motion without foot lock.
                 let of = PathInputs { free: None, ..of };
                 self.done.push(Arc::new(LockedFeet { of, made }));
                 self.is_ready = true;

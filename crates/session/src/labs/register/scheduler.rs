@@ -150,8 +150,8 @@ struct RegistrationScheduler {
     is_ready: bool,
     /// The requests that workers were asked for.
     offered: Vec<(RegistrationRequest, Ticket<RegistrationTask>)>,
-    /// A request that workers gave no answer to.
-    in_line: Option<RegistrationRequest>,
+    /// The requests that workers gave no answer to.
+    refused: Vec<RegistrationRequest>,
 }
 
 impl RegistrationScheduler {
@@ -209,7 +209,7 @@ impl RegistrationScheduler {
         };
         let samples = |clip: &segue_motion::clip::Clip| clip.frames().div_ceil(self.stride.max(1));
         let pairs = samples(pair.a.clip()).saturating_mul(samples(pair.incoming.clip()));
-        pairs >= FOR_WORKERS && self.terms.is_none() && self.in_line.as_ref() != Some(wanted)
+        pairs >= FOR_WORKERS && self.terms.is_none() && !self.refused.contains(wanted)
     }
 
     /// Asks workers for what is requested, and takes one answer. Returns `false` if there was
@@ -218,6 +218,7 @@ impl RegistrationScheduler {
         // Jobs that are no longer requested are cancelled.
         let wanted = &self.wanted;
         self.offered.retain(|(asked, _)| wanted.contains(asked));
+        self.refused.retain(|refused| wanted.contains(refused));
         let mut worked = false;
         for wanted in self.wanted.clone() {
             let is_known = self.found.iter().any(|(known, _)| *known == wanted);
@@ -248,7 +249,7 @@ impl RegistrationScheduler {
             let (wanted, _) = self.offered.remove(at);
             match answer.and_then(|answer| self.taken(&wanted, answer)) {
                 Some(found) => self.keep(&wanted, Ok(found)),
-                None => self.in_line = Some(wanted),
+                None => self.refused.push(wanted),
             }
             self.is_ready = self.next().is_none();
             return true;
@@ -323,10 +324,10 @@ impl RegistrationScheduler {
             self.maps.push(Arc::clone(&map));
             map
         });
-        // First, so that no terms are computed where a worker's distances have no path.
-        let path = match &map {
-            Some(map) => match self.searched(wanted, map, rows) {
-                Some(path) => Some(path),
+        // The search comes first: where a worker's distances have no path, no terms are computed.
+        let found = match map {
+            Some(map) => match self.advance_search(wanted, &map, rows) {
+                Some(path) => Some((map, path)),
                 None => return,
             },
             None => None,
@@ -345,7 +346,7 @@ impl RegistrationScheduler {
             terms.advance(rows);
             return;
         }
-        if let (Some(map), Some(path)) = (map, path) {
+        if let Some((map, path)) = found {
             let found = curves(terms, &map, path, wanted.smoothing).map(|found| {
                 let [registration, lockstep] = found.map(Arc::new);
                 FoundRegistration { map: Arc::clone(&map), registration, lockstep }
@@ -371,21 +372,22 @@ impl RegistrationScheduler {
         }
     }
 
-    /// Returns the path through the distances, once it is found; otherwise this does a slice of the
-    /// search, and keeps the reason where there is none.
-    fn searched(
+    /// Returns the path through the distances if it is found. Otherwise does one slice of the
+    /// search; if there is no path, keeps the error as the result.
+    fn advance_search(
         &mut self,
         wanted: &RegistrationRequest,
         map: &DistanceMap,
         rows: usize,
     ) -> Option<RegistrationPath> {
+        if let Some((of, Search::Found(path))) = &self.search
+            && of == wanted
+        {
+            return Some(path.clone());
+        }
         let search = match self.search.take().filter(|(of, _)| of == wanted) {
-            Some((_, Search::Found(path))) => {
-                self.search = Some((wanted.clone(), Search::Found(path.clone())));
-                return Some(path);
-            }
             Some((_, Search::UnderWay(search))) => Ok(search),
-            None => TimeWarpSearch::new(map.matrix(), &in_cells(&wanted.path, map)).map(Box::new),
+            _ => TimeWarpSearch::new(map.matrix(), &in_cells(&wanted.path, map)).map(Box::new),
         };
         let advanced = search.and_then(|mut search| {
             let found = search.advance(map.matrix(), rows)?;
