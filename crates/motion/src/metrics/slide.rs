@@ -63,8 +63,6 @@ impl StanceSlide {
 #[derive(Clone, Debug)]
 pub struct SlideMeter {
     feet: Vec<SlidingFoot>,
-    /// The joints from the root to the points of the feet.
-    needed: Vec<usize>,
     slides: Vec<StanceSlide>,
     frame: usize,
 }
@@ -73,8 +71,11 @@ pub struct SlideMeter {
 #[derive(Clone, Debug)]
 struct SlidingFoot {
     foot: Foot,
-    /// Its points, and their positions in the previous frame.
+    /// Its points, and the joints from the root to them.
     points: Vec<(usize, Vec3)>,
+    needed: Vec<usize>,
+    /// The positions of the points in the previous frame and in the present one, where it is
+    /// planted.
     before: Vec<Vec3>,
     now: Vec<Vec3>,
     slid: Vec3,
@@ -83,19 +84,25 @@ struct SlidingFoot {
 }
 
 impl SlidingFoot {
-    /// Measures the step into `frame`, whose pose is `world`. Returns a stance that ended before.
+    /// Measures the step into `frame`, and returns a stance that ended before. The kinematics of
+    /// the foot are computed, in `world`, where it is planted.
     fn advance(
         &mut self,
-        world: &WorldPose,
+        clip: &Clip,
         contacts: &Contacts,
         frame: usize,
+        world: &mut WorldPose,
     ) -> Option<StanceSlide> {
-        self.now.clear();
-        self.now.extend(self.points.iter().map(|&(joint, point)| world.point(joint, point)));
         let planted = |frame: usize| contacts.planted(self.foot, frame);
-        let stands = planted(frame) && frame > 0 && planted(frame - 1);
-        let step = if stands { stillest_step(&self.before, &self.now) } else { None };
+        let is_planted = planted(frame);
+        let stands = is_planted && frame > 0 && planted(frame - 1);
         std::mem::swap(&mut self.before, &mut self.now);
+        self.now.clear();
+        if is_planted {
+            clip.world_pose_of(frame, &self.needed, world);
+            self.now.extend(self.points.iter().map(|&(joint, point)| world.point(joint, point)));
+        }
+        let step = if stands { stillest_step(&self.before, &self.now) } else { None };
         let Some(step) = step else {
             self.slid = Vec3::ZERO;
             return self.end_stance(frame);
@@ -130,18 +137,21 @@ impl SlideMeter {
     pub fn new(clip: &Clip, roles: &Roles) -> Self {
         let feet: Vec<SlidingFoot> = Foot::of(roles.body_plan())
             .iter()
-            .map(|&foot| SlidingFoot {
-                foot,
-                points: roles.foot_points(clip.skeleton(), foot),
-                before: Vec::new(),
-                now: Vec::new(),
-                slid: Vec3::ZERO,
-                stance: None,
+            .map(|&foot| {
+                let points = roles.foot_points(clip.skeleton(), foot);
+                let joints = points.iter().map(|&(joint, _)| joint);
+                SlidingFoot {
+                    foot,
+                    needed: clip.skeleton().with_ancestors(joints),
+                    points,
+                    before: Vec::new(),
+                    now: Vec::new(),
+                    slid: Vec3::ZERO,
+                    stance: None,
+                }
             })
             .collect();
-        let joints = feet.iter().flat_map(|foot| foot.points.iter().map(|&(joint, _)| joint));
-        let needed = clip.skeleton().with_ancestors(joints);
-        Self { feet, needed, slides: Vec::new(), frame: 0 }
+        Self { feet, slides: Vec::new(), frame: 0 }
     }
 
     /// Processes up to `frames` more frames (at least one). Returns `false` when all are done. A
@@ -153,9 +163,8 @@ impl SlideMeter {
         let end = self.frame.saturating_add(frames.max(1)).min(clip.frames());
         let mut world = WorldPose::default();
         for frame in self.frame..end {
-            clip.world_pose_of(frame, &self.needed, &mut world);
             for foot in &mut self.feet {
-                self.slides.extend(foot.advance(&world, contacts, frame));
+                self.slides.extend(foot.advance(clip, contacts, frame, &mut world));
             }
         }
         self.frame = end;
