@@ -51,8 +51,11 @@ pub(crate) struct Arc {
 pub(crate) fn drawn_arcs(arcs: &[Arc]) -> Vec<usize> {
     let mut drawn: Vec<usize> = (0..arcs.len()).collect();
     if drawn.len() > MAX_ARCS {
-        sort_by(&mut drawn, |&a, &b| arcs[b].weight.total_cmp(&arcs[a].weight));
+        let order =
+            |a: &usize, b: &usize| arcs[*b].weight.total_cmp(&arcs[*a].weight).then(a.cmp(b));
+        drawn.select_nth_unstable_by(MAX_ARCS, order);
         drawn.truncate(MAX_ARCS);
+        sort_by(&mut drawn, order);
     }
     drawn
 }

@@ -186,21 +186,27 @@ impl FrameDistances {
         let every = factor.div_ceil(4);
         let mut picture = Vec::new();
         for rows in rows.chunks(factor) {
-            for columns in columns.chunks(factor) {
-                let (mut sum, mut count) = (0.0, 0);
-                for &a in rows.iter().step_by(every).flatten() {
+            // Each sum, with the number of its values.
+            let mut sums = vec![(0.0_f32, 0); columns.len().div_ceil(factor)];
+            for &a in rows.iter().step_by(every).flatten() {
+                // Columns in a row are mostly those of one clip.
+                let mut block = None;
+                for ((sum, count), columns) in sums.iter_mut().zip(columns.chunks(factor)) {
                     for &b in columns.iter().step_by(every).flatten() {
+                        let of = match block {
+                            Some((clip, of)) if clip == b.clip => of,
+                            _ => self.block(a.clip.min(b.clip), a.clip.max(b.clip)),
+                        };
+                        block = Some((b.clip, of));
                         let (a, b) = (a.min(b), a.max(b));
-                        if let Some(found) =
-                            self.block(a.clip, b.clip).and_then(|block| block.get(a.frame, b.frame))
-                        {
-                            sum += found;
-                            count += 1;
+                        if let Some(found) = of.and_then(|block| block.get(a.frame, b.frame)) {
+                            *sum += found;
+                            *count += 1;
                         }
                     }
                 }
-                picture.push(sum / count as f32 * scale);
             }
+            picture.extend(sums.into_iter().map(|(sum, count)| sum / count as f32 * scale));
         }
         picture
     }
