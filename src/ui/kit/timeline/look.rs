@@ -187,7 +187,7 @@ pub(super) fn moments_ui(moments: &[Moment], axis: TimeAxis, y: f32, id: Id, ui:
         (distance(nearest, at) <= 0.5 * MOMENT_SIZE).then_some(nearest)
     });
     if let Some(moment) = nearest {
-        response.on_hover_text(say(&name_of(moment), ui));
+        response.on_hover_text_at_pointer(say(&name_of(moment), ui));
     }
 }
 
