@@ -2,7 +2,6 @@
 
 use super::MatchError;
 use std::ops::Range;
-use std::sync::Arc;
 
 mod normaliser;
 
@@ -263,19 +262,6 @@ pub struct Features {
 }
 
 impl Features {
-    /// Normalises raw rows (row-major, [`Layout::dims`] numbers each; an incomplete last row is
-    /// left out). Means and scales are those of the rows whose indices are in `counted`; each must
-    /// be the index of a row.
-    #[must_use]
-    pub fn normalise(
-        layout: Layout,
-        normalisation: Normalisation,
-        rows: Vec<f32>,
-        counted: Arc<Vec<u32>>,
-    ) -> Self {
-        Normaliser::new(layout, normalisation, rows, counted).finish()
-    }
-
     /// Normalises one raw row in place.
     pub fn normalise_row(&self, row: &mut [f32]) {
         for ((value, mean), scale) in row.iter_mut().zip(&self.means).zip(&self.scales) {
@@ -326,6 +312,7 @@ impl Features {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::Arc;
 
     #[test]
     fn default_layout_has_27_dimensions_in_disjoint_blocks() {
@@ -366,13 +353,12 @@ mod tests {
             rows[row * dims + 1] = 3.0 * sign;
         }
         let all = Arc::new((0..4).collect());
-        let own = Features::normalise(
-            layout.clone(),
-            Normalisation::Dimension,
-            rows.clone(),
-            Arc::clone(&all),
-        );
-        let features = Features::normalise(layout, Normalisation::Block, rows, all);
+        let normalised = |normalisation| {
+            let (rows, all) = (rows.clone(), Arc::clone(&all));
+            Normaliser::new(layout.clone(), normalisation, rows, all).finish()
+        };
+        let own = normalised(Normalisation::Dimension);
+        let features = normalised(Normalisation::Block);
         assert_eq!(features.scales()[..3], [2.0, 2.0, 1.0]);
         assert_eq!(features.scales()[dims - 1], 1.0);
         // With a scale of its own each dimension varies by 1.
@@ -388,9 +374,10 @@ mod tests {
         let rows: Vec<f32> = (0..4 * layout.dims()).map(|at| (at * at % 97) as f32).collect();
         let counted = Arc::new(vec![0, 1, 3]);
         let normalisation = Normalisation::Block;
-        let mut slices =
-            Normaliser::new(layout.clone(), normalisation, rows.clone(), Arc::clone(&counted));
+        let begin =
+            || Normaliser::new(layout.clone(), normalisation, rows.clone(), Arc::clone(&counted));
+        let mut slices = begin();
         assert_eq!((0..9).take_while(|_| slices.advance(2)).count(), 2 + 2 + 1);
-        assert_eq!(slices.finish(), Features::normalise(layout, normalisation, rows, counted));
+        assert_eq!(slices.finish(), begin().finish());
     }
 }

@@ -306,8 +306,8 @@ impl DatabaseClip {
 
 /// Returns the raw features of a clip at [`RATE`], for every frame of which the trajectory lies
 /// inside it: row-major, [`Layout::dims`] numbers each. `every` is the number of frames from one
-/// row to the next. They are those of a [`Database`](super::Database) of this clip, before
-/// [`Features::normalise`](super::Features::normalise).
+/// row to the next. They are those of a [`Database`](super::Database) of this clip before
+/// they are normalised.
 ///
 /// # Errors
 /// [`MatchError::NoFeet`] when hips or feet are unknown, [`MatchError::NotFinite`].

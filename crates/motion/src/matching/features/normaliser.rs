@@ -3,7 +3,7 @@
 use super::{Features, Layout, Normalisation};
 use std::sync::Arc;
 
-/// The normalisation of rows ([`Features::normalise`]) in slices.
+/// The normalisation of rows to [`Features`], in slices.
 #[derive(Clone, Debug)]
 pub(in crate::matching) struct Normaliser {
     /// The features, whose rows are raw before the last pass.
@@ -27,7 +27,9 @@ enum Pass {
 }
 
 impl Normaliser {
-    /// Prepares the normalisation; see [`Features::normalise`].
+    /// Prepares the normalisation of raw rows (row-major, [`Layout::dims`] numbers each; an
+    /// incomplete last row is left out). Means and scales are those of the rows whose indices are
+    /// in `counted`; each must be the index of a row.
     pub(in crate::matching) fn new(
         layout: Layout,
         normalisation: Normalisation,

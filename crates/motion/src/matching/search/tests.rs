@@ -1,6 +1,7 @@
 //! Tests that all searches agree.
 
 use super::*;
+use crate::matching::features::Normaliser;
 use crate::matching::tags::Tag;
 use crate::matching::{FeatureOptions, Features, Layout, Normalisation};
 use rand_pcg::Pcg64Mcg;
@@ -58,7 +59,7 @@ fn field(times: usize, frames: usize, seed: u64) -> Field {
         }
     }
     let valid = Arc::new(valid);
-    let features = Features::normalise(layout, Normalisation::Block, rows, Arc::clone(&valid));
+    let features = Normaliser::new(layout, Normalisation::Block, rows, Arc::clone(&valid)).finish();
     Field { features, tags, valid }
 }
 
@@ -177,12 +178,8 @@ fn search_of_an_invalid_query_finds_nothing() {
     // Rows that are all equal make a tree of no depth, or none.
     let layout = Layout::new(&FeatureOptions::default()).unwrap();
     let valid = Arc::new((0..5_000).collect());
-    let same = Features::normalise(
-        layout,
-        Normalisation::Block,
-        vec![1.0; 27 * 5_000],
-        Arc::clone(&valid),
-    );
+    let rows = vec![1.0; 27 * 5_000];
+    let same = Normaliser::new(layout, Normalisation::Block, rows, Arc::clone(&valid)).finish();
     let candidates = Candidates { features: &same, tags: &[], valid: &valid };
     let query = vec![0.5; 27];
     let query = Query { row: &query, weights: &weights, filter: TagFilter::default() };
