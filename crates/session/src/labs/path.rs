@@ -553,3 +553,5 @@ impl Outcome {
 
 #[cfg(test)]
 mod command_tests;
+#[cfg(test)]
+mod slice_tests;
