@@ -6,6 +6,7 @@ use super::{
 };
 use crate::math::Planar;
 use crate::registration::Progress;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// The greatest number of candidates in memory; the closest are kept.
@@ -191,15 +192,10 @@ impl CandidateSearch {
                 self.next = following(a, b, clips);
                 continue;
             }
-            let at = |row: usize, column: usize| block.get(row, column);
             let (first, cells) = block.row(row);
-            for (column, &distance) in cells.iter().enumerate().map(|(at, cell)| (first + at, cell))
-            {
-                if self.picker.is_worth(distance) {
-                    let minimum = || is_minimum(at, row, column);
-                    self.picker.offer(place(a, row), place(b, column), distance, minimum, align)?;
-                }
-            }
+            let minimum = |at: usize| is_minimum(|r, c| block.get(r, c), row, first + at);
+            let places = [place(a, row), place(b, first)];
+            self.picker.offer_minima(places, cells, 0..cells.len(), minimum, align)?;
             self.done += columns;
             self.next.2 += 1;
         }
@@ -277,6 +273,42 @@ impl Picker {
             set,
             options,
         }
+    }
+
+    /// Offers the minima among the cells `within` of a row of the matrix. The places are the window
+    /// of the row and that of its first cell; `is_minimum` is asked with the index of a cell.
+    pub(super) fn offer_minima(
+        &mut self,
+        [a, b]: [Place; 2],
+        row: &[f32],
+        within: Range<usize>,
+        is_minimum: impl Fn(usize) -> bool,
+        alignment: impl Fn(Place, Place) -> Result<Planar, GraphError>,
+    ) -> Result<(), GraphError> {
+        let mut from = within.start;
+        while let Some(at) = self.next_low(row, from..within.end) {
+            let b = Place { frame: b.frame + at, ..b };
+            self.offer(a, b, row[at], || is_minimum(at), &alignment)?;
+            from = at + 1;
+        }
+        Ok(())
+    }
+
+    /// Returns the first of some cells of a row that may be offered: its distance is below the
+    /// threshold, or smaller than all before, and it is no larger than its neighbours in the row.
+    /// Most cells are passed over here, a few instructions each. A separate function, because
+    /// browsers optimise a function between two of its calls.
+    #[inline(never)]
+    fn next_low(&self, row: &[f32], within: Range<usize>) -> Option<usize> {
+        let most =
+            if self.nearest_m > self.threshold_m { self.nearest_m } else { self.threshold_m };
+        let is_low = |at: usize| {
+            let here = row[at];
+            here <= most
+                && !(at > 0 && row[at - 1] <= here)
+                && !row.get(at + 1).is_some_and(|&next| next < here)
+        };
+        within.take_while(|&at| at < row.len()).find(|&at| is_low(at))
     }
 
     /// Returns whether a distance is relevant: below the threshold, or smaller than all before it.

@@ -217,28 +217,27 @@ fn compare_parts(
         let fallback = p.zip(q).map_or(0.0, |(p, q)| p.yaw - q.yaw);
         Ok(terms.alignment(leave.frame, enter.frame, window, fallback)?.transform)
     };
-    let at = |row: usize, column: usize| distances.get(row, column);
     let only_minima = options.construction == Construction::Minima;
     for i in a.starts.clone() {
         let leave = Place { clip: a.clip, frame: i };
-        if !only_minima && !options.is_end(set, leave) {
-            continue;
-        }
         let row = i - a.from;
         let cells = distances.row(row);
-        for j in b.starts.clone() {
-            let column = j - b.from;
-            let Some(&distance) = cells.get(column) else {
-                continue;
-            };
-            let enter = Place { clip: b.clip, frame: j };
-            // Distances within one clip are symmetric: each pair is offered once.
-            if leave < enter
-                && picker.is_worth(distance)
-                && (only_minima || options.is_end(set, enter))
-            {
-                let minimum = || !only_minima || is_minimum(at, row, column);
-                picker.offer(leave, enter, distance, minimum, align)?;
+        // Distances within one clip are symmetric: each pair is offered once.
+        let first = if a.clip == b.clip { b.starts.start.max(i + 1) } else { b.starts.start };
+        if only_minima {
+            let minimum = |column| is_minimum(|r, c| distances.get(r, c), row, column);
+            let places = [leave, Place { clip: b.clip, frame: b.from }];
+            let within = first - b.from..b.starts.end - b.from;
+            picker.offer_minima(places, cells, within, minimum, align)?;
+        } else if options.is_end(set, leave) {
+            for j in first..b.starts.end {
+                let enter = Place { clip: b.clip, frame: j };
+                if let Some(&distance) = cells.get(j - b.from)
+                    && picker.is_worth(distance)
+                    && options.is_end(set, enter)
+                {
+                    picker.offer(leave, enter, distance, || true, align)?;
+                }
             }
         }
     }

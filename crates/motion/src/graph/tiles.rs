@@ -188,12 +188,9 @@ impl TileComputer {
         let first = if rows.start == 0 { 0 } else { rows.start + 1 };
         for row in first..(rows.end + 1).min(height) {
             let (column, cells) = view.row(row);
-            for (column, &distance) in (column..).zip(cells) {
-                if picker.is_worth(distance) {
-                    let minimum = || is_minimum(|r, c| view.get(r, c), row, column);
-                    picker.offer(place(a, row), place(b, column), distance, minimum, align)?;
-                }
-            }
+            let minimum = |at: usize| is_minimum(|r, c| view.get(r, c), row, column + at);
+            let places = [place(a, row), place(b, column)];
+            picker.offer_minima(places, cells, 0..cells.len(), minimum, align)?;
         }
         Ok(())
     }
