@@ -3,6 +3,7 @@
 use super::cells::{count_cells, row_start};
 use super::{DistanceTile, FrameSet, Place};
 use crate::registration::{DistanceMatrix, ROWS_PER_SUM, SymmetricDistances};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// The distances between all windows of one length of a set.
@@ -170,45 +171,70 @@ impl FrameDistances {
     /// value is the mean distance (centimetres) of a square of `factor` × `factor` of them, of
     /// which at most 4 × 4 are sampled, row-major; NaN where no window starts.
     #[must_use]
-    pub fn picture(
-        &self,
-        rows: std::ops::Range<usize>,
-        columns: std::ops::Range<usize>,
-        factor: usize,
-    ) -> Vec<f32> {
+    pub fn picture(&self, rows: Range<usize>, columns: Range<usize>, factor: usize) -> Vec<f32> {
         let factor = factor.max(1);
-        let places = |range: std::ops::Range<usize>| -> Vec<Option<Place>> {
-            let range = range.start.min(self.set.frames())..range.end.min(self.set.frames());
-            range.map(|frame| self.set.place(frame)).collect()
+        let within =
+            |of: Range<usize>| of.start.min(self.set.frames())..of.end.min(self.set.frames());
+        let (rows, columns) = (within(rows), within(columns));
+        // Around the diagonal, the squares below it are those above it.
+        let is_mirrored = rows == columns;
+        let (height, width) = (rows.len().div_ceil(factor), columns.len().div_ceil(factor));
+        let (down, across) = (self.samples(rows, factor), self.samples(columns, factor));
+        // Each sum, with the number of its values.
+        let mut sums = vec![(0.0_f32, 0); height * width];
+        let mut add = |down: usize, across: usize, found: Option<&f32>| {
+            if let (Some((sum, count)), Some(found)) = (sums.get_mut(down * width + across), found)
+            {
+                *sum += found;
+                *count += 1;
+            }
         };
-        let (rows, columns) = (places(rows), places(columns));
-        let scale = self.set.cm_per_m() as f32;
-        let every = factor.div_ceil(4);
-        let mut picture = Vec::new();
-        for rows in rows.chunks(factor) {
-            // Each sum, with the number of its values.
-            let mut sums = vec![(0.0_f32, 0); columns.len().div_ceil(factor)];
-            for &a in rows.iter().step_by(every).flatten() {
-                // Columns in a row are mostly those of one clip.
-                let mut block = None;
-                for ((sum, count), columns) in sums.iter_mut().zip(columns.chunks(factor)) {
-                    for &b in columns.iter().step_by(every).flatten() {
-                        let of = match block {
-                            Some((clip, of)) if clip == b.clip => of,
-                            _ => self.block(a.clip.min(b.clip), a.clip.max(b.clip)),
-                        };
-                        block = Some((b.clip, of));
-                        let (a, b) = (a.min(b), a.max(b));
-                        if let Some(found) = of.and_then(|block| block.get(a.frame, b.frame)) {
-                            *sum += found;
-                            *count += 1;
-                        }
+        // Stored rows are read from their beginning to their end: from cell to cell of a column,
+        // each would have to be fetched from memory by itself.
+        for (a, rows) in down.iter().enumerate() {
+            for (b, columns) in across.iter().enumerate() {
+                let Some(block) = self.block(a.min(b), a.max(b)) else { continue };
+                for &(down, row) in rows.iter().filter(|_| a <= b) {
+                    let (first, cells) = block.row(row);
+                    for &(across, column) in columns {
+                        let at = column.checked_sub(first);
+                        add(down, across, at.and_then(|at| cells.get(at)));
+                    }
+                }
+                for &(across, column) in columns.iter().filter(|_| a >= b) {
+                    let (first, cells) = block.row(column);
+                    // Of a clip with itself, what lies below the diagonal is left.
+                    for &(down, row) in rows.iter().filter(|(down, row)| {
+                        (a > b || *row > column) && (!is_mirrored || *down == across)
+                    }) {
+                        let at = row.checked_sub(first);
+                        add(down, across, at.and_then(|at| cells.get(at)));
                     }
                 }
             }
-            picture.extend(sums.into_iter().map(|(sum, count)| sum / count as f32 * scale));
         }
-        picture
+        if is_mirrored {
+            for (down, across) in (0..height).flat_map(|down| (0..down).map(move |b| (down, b))) {
+                sums[down * width + across] = sums[across * width + down];
+            }
+        }
+        let scale = self.set.cm_per_m() as f32;
+        sums.into_iter().map(|(sum, count)| sum / count as f32 * scale).collect()
+    }
+
+    /// Returns the frames of each clip that a picture samples, at most 4 of `factor`, with the
+    /// squares that they belong to.
+    fn samples(&self, of: Range<usize>, factor: usize) -> Vec<Vec<(usize, usize)>> {
+        let mut samples = vec![Vec::new(); self.set.clips().len()];
+        for (square, first) in of.clone().step_by(factor).enumerate() {
+            let frames = first..(first + factor).min(of.end);
+            for place in
+                frames.step_by(factor.div_ceil(4)).filter_map(|frame| self.set.place(frame))
+            {
+                samples[place.clip].push((square, place.frame));
+            }
+        }
+        samples
     }
 
     /// Returns the number of pairs of windows in each of `bins` ranges of `bin_cm` centimetres; the
@@ -244,7 +270,7 @@ impl FrameDistances {
     fn count_rows(
         &self,
         block: &BlockDistances,
-        rows: std::ops::Range<usize>,
+        rows: Range<usize>,
         bin_cm: f64,
         counts: &mut [u32],
     ) {

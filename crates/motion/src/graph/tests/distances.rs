@@ -5,6 +5,7 @@ use crate::blend::align_onto;
 use crate::math::Planar;
 use crate::registration::rms_cm;
 use proptest::prelude::*;
+use std::ops::Range;
 
 #[test]
 fn frame_set_of_clips_numbers_frames_consecutively() {
@@ -350,16 +351,44 @@ fn histogram_and_picture_include_every_pair() {
     let windows = 26 + 18 + 14;
     let counts = distances.histogram(2.0, 10);
     assert_eq!(counts.iter().sum::<u32>() as usize, windows * (windows - 1) / 2);
-    let picture = distances.picture(0..70, 20..70, 10);
-    assert_eq!(picture.len(), 7 * 5);
-    let one = distances.picture(3..4, 40..41, 1)[0];
-    assert!(
-        (f64::from(one)
-            - distances.cm(Place { clip: 0, frame: 3 }, Place { clip: 1, frame: 10 }).unwrap())
-        .abs()
-            < 1e-3
-    );
-    assert!(distances.picture(27..28, 0..1, 1)[0].is_nan());
+    let tiled = {
+        let mut computer = TileComputer::new(Arc::clone(&set), 0).unwrap();
+        let options = options(Construction::Minima, 5, 1.0);
+        let tiles = DistanceTile::all(&set, 5).into_iter().map(|tile| {
+            let made = computer.compute(&tile, &options).unwrap();
+            (tile, made.rms_m)
+        });
+        FrameDistances::of_tiles(&set, 5, tiles)
+    };
+    for (rows, columns, factor) in
+        [(0..70, 20..70, 10), (0..70, 0..70, 9), (5..41, 5..41, 1), (40..70, 0..31, 3)]
+    {
+        let picture = distances.picture(rows.clone(), columns.clone(), factor);
+        let squares = |of: &Range<usize>| of.clone().step_by(factor).map(move |at| at..at + factor);
+        let mut texels = picture.iter();
+        for down in squares(&rows) {
+            for across in squares(&columns) {
+                let sampled = |of: &Range<usize>, all: &Range<usize>| {
+                    let frames = of.clone().filter(|frame| all.contains(frame));
+                    frames.step_by(factor.div_ceil(4)).collect::<Vec<_>>()
+                };
+                let mut found = Vec::new();
+                for row in sampled(&down, &rows) {
+                    for column in sampled(&across, &columns) {
+                        let place = |frame| set.place(frame).unwrap();
+                        found.extend(distances.cm(place(row), place(column)));
+                    }
+                }
+                let mean = found.iter().sum::<f64>() / found.len() as f64;
+                let texel = f64::from(*texels.next().unwrap());
+                let same = (texel - mean).abs() < 2e-3 || (texel.is_nan() && found.is_empty());
+                assert!(same, "{down:?} {across:?}: {texel} {mean}");
+            }
+        }
+        assert_eq!(texels.next(), None);
+        let bits = |picture: &[f32]| picture.iter().map(|cm| cm.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(&picture), bits(&tiled.picture(rows, columns, factor)));
+    }
     let _: Planar = all
         .alignment(Place { clip: 1, frame: 3 }, Place { clip: 0, frame: 4 }, 5)
         .unwrap()
