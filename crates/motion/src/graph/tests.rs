@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 mod construction;
 mod distances;
+mod long_run;
 mod stitching;
 mod walks;
 

@@ -1,5 +1,6 @@
 //! Probabilities of the ways out of a stretch.
 
+use super::long_run::{LongRun, Step, grouped};
 use super::{GraphError, MotionGraph, Way};
 use petgraph::graph::{EdgeIndex, NodeIndex};
 
@@ -54,8 +55,6 @@ impl Default for WeightOptions {
 const WHOLE: u64 = 1 << 32;
 /// The least distance used as a divisor, centimetres.
 const MIN_CM: f64 = 0.01;
-/// The greatest number of iterations for the stationary distribution.
-const MAX_ITERATIONS: usize = 2_000;
 
 /// The ways out of every node with their probabilities, as integers.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -140,77 +139,37 @@ impl Choices {
 
     /// Returns the mean time from one transition to the next in a long walk, seconds: frames per
     /// step over transitions per step, weighted by how often a walk visits each node (the
-    /// stationary distribution, by power iteration). `None` where a walk has no transitions in the
-    /// long run, or comes to an end.
+    /// stationary distribution; of several, those in which walks from all nodes end up). `None`
+    /// where a walk has no transitions in the long run, or comes to an end.
     #[must_use]
     pub fn expected_run_secs(&self, graph: &MotionGraph) -> Option<f64> {
         let mut run = RunLength::new(graph, self);
-        while !run.advance(MAX_ITERATIONS) {}
+        while !run.advance(usize::MAX) {}
         run.secs(graph, self)
     }
 }
 
 /// The computation of [`Choices::expected_run_secs`] in slices.
 #[derive(Clone, Debug)]
-pub struct RunLength {
-    /// The probability of each node.
-    now: Vec<f64>,
-    next: Vec<f64>,
-    /// The edges into every node, node by node: their origin, and half of their probability there.
-    ways: Vec<(u32, f64)>,
-    /// The end of each node's part of `ways`.
-    ends: Vec<usize>,
-    steps: usize,
-}
+pub struct RunLength(LongRun);
 
 impl RunLength {
     /// Begins the computation for walks through a graph.
     #[must_use]
     pub fn new(graph: &MotionGraph, choices: &Choices) -> Self {
-        let nodes = graph.graph.node_count();
-        let from_nodes = graph
-            .graph
-            .node_indices()
-            .flat_map(|node| choices.ways(node).iter().map(move |way| (node, way)));
         let edges = graph.graph.raw_edges();
-        let targets = choices.ways.iter().map(|(edge, _)| edges[edge.index()].target());
-        let (ends, order) = grouped(nodes, targets);
-        let all: Vec<(u32, f64)> = from_nodes
-            .map(|(node, &(_, share))| (node.index() as u32, 0.5 * share_of(share)))
-            .collect();
-        Self {
-            now: vec![1.0 / nodes as f64; nodes],
-            next: vec![0.0; nodes],
-            ways: order.iter().map(|&way| all[way]).collect(),
-            ends,
-            steps: 0,
-        }
+        let ways = graph.graph.node_indices().flat_map(|node| choices.ways(node));
+        let steps = ways.map(|&(edge, share)| {
+            let edge = &edges[edge.index()];
+            Step { from: edge.source(), to: edge.target(), probability: share_of(share) }
+        });
+        Self(LongRun::new(graph.graph.node_count(), &steps.collect::<Vec<_>>()))
     }
 
-    /// Computes up to `steps` more steps, O(edges) each; returns `true` when no more are needed.
-    pub fn advance(&mut self, steps: usize) -> bool {
-        for _ in 0..steps {
-            if self.steps >= MAX_ITERATIONS {
-                break;
-            }
-            self.steps += 1;
-            let (mut from, mut change) = (0, 0.0);
-            for ((next, &end), &now) in self.next.iter_mut().zip(&self.ends).zip(&self.now) {
-                // Half of the probability stays in place: otherwise a walk of a fixed period would
-                // not converge.
-                let arriving = self.ways[from..end]
-                    .iter()
-                    .map(|&(from, share)| self.now[from as usize] * share);
-                *next = arriving.fold(0.5 * now, |sum, p| sum + p);
-                change += (*next - now).abs();
-                from = end;
-            }
-            std::mem::swap(&mut self.now, &mut self.next);
-            if change < 1e-12 {
-                self.steps = MAX_ITERATIONS;
-            }
-        }
-        self.steps >= MAX_ITERATIONS
+    /// Follows about `edges` more edges, as often as they are followed; returns `true` when no more
+    /// are to be followed.
+    pub fn advance(&mut self, edges: usize) -> bool {
+        self.0.advance(edges)
     }
 
     /// Returns the mean time from one transition to the next, seconds; `None` where there are none
@@ -218,7 +177,7 @@ impl RunLength {
     #[must_use]
     pub fn secs(&self, graph: &MotionGraph, choices: &Choices) -> Option<f64> {
         let (mut frames, mut jumps) = (0.0, 0.0);
-        for (node, p) in graph.graph.node_indices().zip(&self.now) {
+        for (node, p) in graph.graph.node_indices().zip(self.0.shares()) {
             for (edge, share) in choices.probabilities(node) {
                 frames += p * share * graph.frames_of(edge) as f64;
                 jumps += if graph.jump(edge).is_some() { p * share } else { 0.0 };
@@ -231,28 +190,6 @@ impl RunLength {
 /// Returns a share as a probability.
 fn share_of(share: u64) -> f64 {
     share as f64 / WHOLE as f64
-}
-
-/// Groups items by `of`: returns the end of each group, and the indices of the items in that order,
-/// stable within a group. Three passes over flat arrays: with very many edges, lists of lists would
-/// take most of the time.
-fn grouped(groups: usize, of: impl Iterator<Item = NodeIndex> + Clone) -> (Vec<usize>, Vec<usize>) {
-    let mut next = vec![0; groups + 1];
-    let mut count = 0;
-    for group in of.clone() {
-        next[group.index() + 1] += 1;
-        count += 1;
-    }
-    for group in 0..groups {
-        next[group + 1] += next[group];
-    }
-    let mut order = vec![0; count];
-    for (thing, group) in of.enumerate() {
-        order[next[group.index()]] = thing;
-        next[group.index()] += 1;
-    }
-    next.pop();
-    (next, order)
 }
 
 /// Appends the ways out of one node with their shares. `edges` are those of the node, with the

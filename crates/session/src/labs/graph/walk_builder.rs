@@ -34,8 +34,8 @@ const PATH_NODES: usize = 2_000;
 const PATH_WAIT_SECS: f64 = 1.0;
 /// The number of frames that one slice assembles to be shown, about three milliseconds.
 const PUBLISHED_FRAMES: usize = 10_000;
-/// The number of edges that one slice visits for the expected run.
-const RUN_EDGES: usize = 200_000;
+/// The number of edges that one slice follows for the expected run, about a millisecond.
+const RUN_EDGES: usize = 500_000;
 
 /// The number of frames whose feet one slice locks, about four milliseconds.
 const LOCKED_FRAMES: usize = 2_000;
@@ -115,7 +115,8 @@ pub(super) struct WalkBuilder {
     built: Arc<BuiltGraph>,
     wanted: WalkRequest,
     choices: Arc<Choices>,
-    run: RunLength,
+    /// The expected run, as far as it is computed.
+    run: Option<RunLength>,
     run_is_known: bool,
     search: Option<(FollowSearch, GroundPath)>,
     /// Seconds of search since the best path so far was shown.
@@ -160,8 +161,7 @@ impl WalkBuilder {
             Self::with_known_run(known, wanted)?
         } else {
             let choices = Choices::new(built.graph(), &wanted.weights)?;
-            let run = RunLength::new(built.graph(), &choices);
-            Self::idle(built, wanted, Arc::new(choices), run)?
+            Self::idle(built, wanted, Arc::new(choices), None)?
         };
         if !wanted.path.is_empty() && wanted.jump.is_none() {
             let path = GroundPath::new(&wanted.path)?;
@@ -196,7 +196,7 @@ impl WalkBuilder {
         built: &Arc<BuiltGraph>,
         wanted: &WalkRequest,
         choices: Arc<Choices>,
-        run: RunLength,
+        run: Option<RunLength>,
     ) -> Result<Self, LabError> {
         Ok(Self {
             plan: Plan::new(built.graph(), &choices, wanted)?,
@@ -265,8 +265,11 @@ impl WalkBuilder {
             return Ok(true);
         }
         if !self.run_is_known {
-            let steps = (RUN_EDGES / self.built.graph().graph().edge_count().max(1)).max(1);
-            self.run_is_known = self.run.advance(steps);
+            if let Some(run) = &mut self.run {
+                self.run_is_known = run.advance(RUN_EDGES);
+            } else {
+                self.run = Some(RunLength::new(self.built.graph(), &self.choices));
+            }
             return Ok(false);
         }
         if self.search.is_some() {
@@ -503,7 +506,8 @@ impl WalkBuilder {
             None => self.measured(),
         };
         let slides = self.seen.iter().flat_map(|seen| &seen.slides);
-        let run_secs = self.run.secs(self.built.graph(), &self.choices);
+        let run = self.run.as_ref();
+        let run_secs = run.and_then(|run| run.secs(self.built.graph(), &self.choices));
         Walk {
             built: Arc::clone(&self.built),
             choices: Arc::clone(&self.choices),
