@@ -407,6 +407,11 @@ fn append_piece(arrived: &mut Parcel, array: usize, length: usize, piece: &Float
     let more = piece.length() as usize;
     let Some(clip) = array.checked_sub(1) else {
         let floats = &mut arrived.floats;
+        if more == length {
+            // All of it: memory that is to be filled need not be cleared.
+            *floats = piece.to_vec();
+            return;
+        }
         floats.reserve_exact(length - floats.len().min(length));
         let start = floats.len();
         floats.resize(start + more, 0.0);

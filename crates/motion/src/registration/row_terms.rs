@@ -110,6 +110,10 @@ mod tests {
                 let mut terms =
                     RowTerms::new(&source, target, is_itself, &(first..rows.end + window[1])).unwrap();
                 terms.extend(rows.end + window[0] - 1).unwrap();
+                // Not more memory than for the rows that are compared, in whole groups of four.
+                let end = (rows.end + window[1].max(window[0] - 1)).next_multiple_of(4);
+                let rows_held = end.min(source.samples()) - first;
+                prop_assert!(terms.bytes() <= 12 * rows_held * target.samples().next_multiple_of(4));
                 let found = terms.distances(window[0], &rows).unwrap();
                 prop_assert!(found == wanted[start(rows.start)..start(rows.end)], "row {}", first);
                 for (row, column) in [(first, 0), (rows.end - 1, columns.saturating_sub(1))] {

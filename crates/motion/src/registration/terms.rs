@@ -183,9 +183,18 @@ impl PairTerms {
             target: Arc::clone(&target.cloud),
             spread: Vec::new(),
         };
-        // Only reserved: to clear all of it at once would take longer than a frame of the screen.
-        terms.terms = Vec::with_capacity(terms.row_start(terms.rows.end));
+        terms.reserve();
         terms
+    }
+
+    /// Reserves the memory of all rows, exactly: grown step by step, it would take twice as much.
+    /// It is only reserved, because to clear all of it at once would take longer than a frame of
+    /// the screen.
+    fn reserve(&mut self) {
+        // Whole groups are compared.
+        let end = self.rows.end.next_multiple_of(LANES).min(self.source.samples);
+        let more = self.row_start(end).saturating_sub(self.terms.len());
+        self.terms.reserve_exact(more);
     }
 
     /// Prepares the comparison of two clips whose point clouds are known. Both clouds must have the
@@ -237,9 +246,7 @@ impl PairTerms {
         let pairs = (end - self.rows.start).saturating_mul(self.target.samples);
         check_pairs(pairs, || self.stride * 2)?;
         self.rows.end = end;
-        // Exactly: grown step by step, it would take twice the memory.
-        let more = self.row_start(end).saturating_sub(self.terms.len());
-        self.terms.reserve_exact(more);
+        self.reserve();
         Ok(())
     }
 

@@ -74,12 +74,15 @@ impl MapDrawing {
                 *slot = Some(p);
             }
         };
-        for edge in graph.graph().edge_indices() {
-            set_probable(edge, 0.0);
-        }
-        for node in graph.graph().node_indices() {
-            for (edge, p) in choices.into_iter().flat_map(|choices| choices.probabilities(node)) {
+        if let Some(choices) = choices {
+            for (edge, p) in
+                graph.graph().node_indices().flat_map(|node| choices.probabilities(node))
+            {
                 set_probable(edge, p);
+            }
+        } else {
+            for edge in graph.graph().edge_indices() {
+                set_probable(edge, 0.0);
             }
         }
         let number = |place: Place| set.number(place).unwrap_or(0);
