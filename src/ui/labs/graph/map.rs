@@ -9,7 +9,7 @@ use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{palette_of, space, theme_of};
 use eframe::egui::{Color32, ColorImage, Id, ScrollArea, TextureHandle, TextureOptions, Ui};
-use segue_motion::graph::{Choices, DistanceDetail, Place};
+use segue_motion::graph::{DistanceDetail, Place};
 use segue_session::LabId;
 use segue_session::{BuiltGraph, DistanceField, Distances, Session, Walk};
 use segue_text::Message;
@@ -36,7 +36,8 @@ pub(crate) fn map_panel_ui(session: &Session, state: &mut UiState, out: &mut Out
 /// The drawn parts of a graph, by the indices of the whole graph's transitions.
 pub(crate) struct MapDrawing {
     built: Arc<BuiltGraph>,
-    choices: Option<Arc<Choices>>,
+    /// The probabilities of a walk.
+    walked: Option<Arc<Vec<Option<f64>>>>,
     pub(super) ends: Vec<[Place; 2]>,
     marks: Vec<MatrixMark>,
     pub(super) arcs: Vec<kit::Arc>,
@@ -49,50 +50,37 @@ impl MapDrawing {
     /// Returns the parts, made anew when the graph or its probabilities have changed.
     pub(super) fn of(built: &Arc<BuiltGraph>, walk: Option<&Walk>, ui: &Ui) -> Arc<Self> {
         let id = Id::unique("graph drawn");
-        let choices = walk.filter(|walk| Arc::ptr_eq(&walk.built, built)).map(|walk| &walk.choices);
+        let walk = walk.filter(|walk| Arc::ptr_eq(&walk.built, built));
+        let walked = walk.map(|walk| &walk.probabilities);
         let known: Option<Arc<Self>> = ui.data(|data| data.get_temp(id));
         if let Some(known) = known {
-            let same_choices = match (&known.choices, choices) {
-                (Some(known), Some(choices)) => Arc::ptr_eq(known, choices),
-                (known, choices) => known.is_none() && choices.is_none(),
+            let is_same = match (&known.walked, walked) {
+                (Some(known), Some(walked)) => Arc::ptr_eq(known, walked),
+                (known, walked) => known.is_none() && walked.is_none(),
             };
-            if Arc::ptr_eq(&known.built, built) && same_choices {
+            if Arc::ptr_eq(&known.built, built) && is_same {
                 return known;
             }
         }
-        let drawn = Arc::new(Self::new(built, choices));
+        let drawn = Arc::new(Self::new(built, walked));
         ui.data_mut(|data| data.insert_temp(id, Arc::clone(&drawn)));
         drawn
     }
 
-    fn new(built: &Arc<BuiltGraph>, choices: Option<&Arc<Choices>>) -> Self {
-        let (whole, graph, set) = (built.whole(), built.graph(), built.clips().set());
-        // The probability of each transition of the whole graph; `None` where walks cannot take it.
-        let mut probable = vec![None; whole.jumps().len()];
-        let mut set_probable = |edge, p| {
-            if let Some(slot) = graph.origin(edge).and_then(|index| probable.get_mut(index)) {
-                *slot = Some(p);
-            }
+    fn new(built: &Arc<BuiltGraph>, walked: Option<&Arc<Vec<Option<f64>>>>) -> Self {
+        let (whole, set) = (built.whole(), built.clips().set());
+        let probable = match walked {
+            Some(walked) => Arc::clone(walked),
+            None => Arc::new(built.probabilities(None)),
         };
-        if let Some(choices) = choices {
-            for (edge, p) in
-                graph.graph().node_indices().flat_map(|node| choices.probabilities(node))
-            {
-                set_probable(edge, p);
-            }
-        } else {
-            for edge in graph.graph().edge_indices() {
-                set_probable(edge, 0.0);
-            }
-        }
         let number = |place: Place| set.number(place).unwrap_or(0);
         let ends: Vec<[Place; 2]> =
             whole.jumps().iter().map(|jump| [jump.leave, jump.enter]).collect();
-        let marks = ends.iter().zip(&probable).map(|(ends, p)| MatrixMark {
+        let marks = ends.iter().zip(&*probable).map(|(ends, p)| MatrixMark {
             at: ends.map(|end| number(end) as f32),
             faint: p.is_none(),
         });
-        let arcs = ends.iter().zip(&probable).map(|(ends, p)| kit::Arc {
+        let arcs = ends.iter().zip(&*probable).map(|(ends, p)| kit::Arc {
             ends: ends.map(number),
             weight: p.unwrap_or(0.0) as f32,
             faint: p.is_none(),
@@ -117,7 +105,7 @@ impl MapDrawing {
             stretches: stretches.collect(),
             ends,
             built: Arc::clone(built),
-            choices: choices.map(Arc::clone),
+            walked: walked.map(Arc::clone),
         }
     }
 

@@ -5,8 +5,8 @@ use super::requests::GraphKey;
 use petgraph::graph::NodeIndex;
 use petgraph::visit::Dfs;
 use segue_motion::graph::{
-    Candidates, CountedTo, DistanceOverview, FrameDistances, GraphError, GraphOptions, MotionGraph,
-    Place,
+    Candidates, Choices, CountedTo, DistanceOverview, FrameDistances, GraphError, GraphOptions,
+    MotionGraph, Place,
 };
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -259,6 +259,32 @@ impl BuiltGraph {
     #[must_use]
     pub fn component_shares(&self) -> &[f64] {
         &self.component_shares
+    }
+
+    /// Returns the probability of each transition of the whole graph at the end of its stretch, or
+    /// 0 without `choices`; `None` where walks cannot take it. O(edges).
+    #[must_use]
+    pub fn probabilities(&self, choices: Option<&Choices>) -> Vec<Option<f64>> {
+        let mut probabilities = vec![None; self.whole.jumps().len()];
+        let mut set = |edge, p| {
+            if let Some(slot) =
+                self.graph.origin(edge).and_then(|index| probabilities.get_mut(index))
+            {
+                *slot = Some(p);
+            }
+        };
+        let graph = self.graph.graph();
+        if let Some(choices) = choices {
+            let ways = graph.node_indices().flat_map(|node| choices.probabilities(node));
+            for (edge, p) in ways {
+                set(edge, p);
+            }
+        } else {
+            for edge in graph.edge_indices() {
+                set(edge, 0.0);
+            }
+        }
+        probabilities
     }
 
     /// Returns the number of nodes without an outgoing edge.

@@ -115,6 +115,8 @@ pub(super) struct WalkBuilder {
     built: Arc<BuiltGraph>,
     wanted: WalkRequest,
     choices: Arc<Choices>,
+    /// The probabilities of the transitions, once they are computed.
+    probabilities: Option<Arc<Vec<Option<f64>>>>,
     /// The expected run, as far as it is computed.
     run: Option<RunLength>,
     run_is_known: bool,
@@ -161,7 +163,7 @@ impl WalkBuilder {
             Self::with_known_run(known, wanted)?
         } else {
             let choices = Choices::new(built.graph(), &wanted.weights)?;
-            Self::idle(built, wanted, Arc::new(choices), None)?
+            Self::idle(built, wanted, Arc::new(choices))?
         };
         if !wanted.path.is_empty() && wanted.jump.is_none() {
             let path = GroundPath::new(&wanted.path)?;
@@ -186,21 +188,23 @@ impl WalkBuilder {
 
     /// Begins a walk in the same graph with the same weights, whose expected run is known.
     fn with_known_run(other: &Self, wanted: &WalkRequest) -> Result<Self, LabError> {
-        let mut builder =
-            Self::idle(&other.built, wanted, Arc::clone(&other.choices), other.run.clone())?;
-        builder.run_is_known = true;
-        Ok(builder)
+        Ok(Self {
+            run: other.run.clone(),
+            run_is_known: true,
+            probabilities: other.probabilities.clone(),
+            ..Self::idle(&other.built, wanted, Arc::clone(&other.choices))?
+        })
     }
 
     fn idle(
         built: &Arc<BuiltGraph>,
         wanted: &WalkRequest,
         choices: Arc<Choices>,
-        run: Option<RunLength>,
     ) -> Result<Self, LabError> {
         Ok(Self {
             plan: Plan::new(built.graph(), &choices, wanted)?,
-            run,
+            probabilities: None,
+            run: None,
             run_is_known: false,
             search: None,
             searched_secs: 0.0,
@@ -260,6 +264,10 @@ impl WalkBuilder {
         now_secs: f64,
         guide: Option<&mut Plan>,
     ) -> Result<bool, LabError> {
+        if self.probabilities.is_none() {
+            self.probabilities = Some(Arc::new(self.built.probabilities(Some(&self.choices))));
+            return Ok(false);
+        }
         if let Some([leave, enter]) = self.wanted.jump {
             self.walk = Some(Arc::new(self.jump(leave, enter)?));
             return Ok(true);
@@ -511,6 +519,7 @@ impl WalkBuilder {
         Walk {
             built: Arc::clone(&self.built),
             choices: Arc::clone(&self.choices),
+            probabilities: self.probabilities.clone().unwrap_or_default(),
             run_secs: run_secs.filter(|_| self.built.is_pruned() || self.built.dead_ends() == 0),
             passed: Arc::new(self.pieces.iter().map(WalkStay::of).collect()),
             missed: self.plan.missed().to_vec(),
