@@ -1,13 +1,13 @@
 //! The candidates for transitions of a set of clips, and the distances that they are found in.
 
+use super::DistanceField;
 use super::streamed_search::StreamedSearch;
 use super::tiled_search::{TiledSearch, TiledStep};
-use super::{DistanceField, GraphClips};
 use crate::jobs::JobBoard;
 use crate::params::MAX_PANES;
 use segue_motion::graph::{
-    AllPairs, CandidateSearch, CandidateStream, Candidates, CountedTo, GraphError, GraphOptions,
-    PausedAllSweep,
+    AllPairs, CandidateSearch, CandidateStream, Candidates, CountedTo, FrameSet, GraphError,
+    GraphOptions, PausedAllSweep,
 };
 use segue_motion::registration::Progress;
 use std::sync::Arc;
@@ -96,10 +96,10 @@ impl WorkerSearch {
     /// Returns the distances, if they were asked for, and the candidates. All jobs have ended.
     fn finish(
         self,
-        graph_clips: &GraphClips,
+        set: &Arc<FrameSet>,
     ) -> Result<(Option<DistanceField>, Candidates), GraphError> {
         match self {
-            Self::Tiled(search) => Ok(search.finish(graph_clips.set())),
+            Self::Tiled(search) => Ok(search.finish(set)),
             Self::Streamed(search) => {
                 let (found, overview) = search.finish()?;
                 Ok((Some(DistanceField::overview(overview)), found))
@@ -130,8 +130,8 @@ fn serves(known: &GraphOptions, options: &GraphOptions) -> bool {
 }
 
 /// Returns whether the distances of clips are not kept in memory.
-fn is_streamed(graph_clips: &GraphClips) -> bool {
-    graph_clips.set().frames() > MAX_FRAMES
+fn is_streamed(set: &Arc<FrameSet>) -> bool {
+    set.frames() > MAX_FRAMES
 }
 
 impl CandidateFinder {
@@ -145,28 +145,51 @@ impl CandidateFinder {
         self.by_workers = None;
     }
 
-    /// Does a slice of the search for the candidates of a graph. The clips are those of all calls.
+    /// Asks workers for the candidates of a graph, if these are for workers and have not been asked
+    /// for. The set is that of all calls.
+    ///
+    /// # Errors
+    /// [`GraphError`] with the reason why they cannot be found.
+    pub(super) fn begin(
+        &mut self,
+        set: &Arc<FrameSet>,
+        options: &GraphOptions,
+        jobs: &mut JobBoard,
+    ) -> Result<(), GraphError> {
+        let is_under_way = |search: &WorkerSearch| serves(search.options(), options);
+        if self.known(options).is_none()
+            && self.is_for_workers(set, jobs)
+            && !self.by_workers.as_ref().is_some_and(is_under_way)
+        {
+            self.by_workers = Some(self.begin_by_workers(set, widened(options), jobs)?);
+        }
+        Ok(())
+    }
+
+    /// Does a slice of the search for the candidates of a graph. The set is that of all calls.
     ///
     /// # Errors
     /// [`GraphError`] with the reason why they cannot be found.
     pub(super) fn advance(
         &mut self,
-        graph_clips: &GraphClips,
+        set: &Arc<FrameSet>,
         options: &GraphOptions,
         jobs: &mut JobBoard,
     ) -> Result<Searched, GraphError> {
         if let Some(found) = self.known(options) {
             return Ok(Searched::Found(Arc::clone(found)));
         }
-        if self.is_for_workers(graph_clips, jobs) {
-            return self.take_answer(graph_clips, options, jobs);
+        self.begin(set, options, jobs)?;
+        let serves_this = |search: &WorkerSearch| serves(search.options(), options);
+        if let Some(search) = self.by_workers.take().filter(serves_this) {
+            return self.take_answer(search, set, jobs);
         }
-        let found = self.advance_in_line(graph_clips, options)?;
+        let found = self.advance_in_line(set, options)?;
         Ok(found.map_or(Searched::Worked { worker_secs: 0.0 }, Searched::Found))
     }
 
     /// Returns the progress of the search for the candidates of a graph, 0 to 1.
-    pub(super) fn progress(&self, graph_clips: &GraphClips, options: &GraphOptions) -> f64 {
+    pub(super) fn progress(&self, set: &Arc<FrameSet>, options: &GraphOptions) -> f64 {
         /// The shares of the time that comparing, sweeping and searching take.
         const SHARES: [f64; 3] = [0.53, 0.33, 0.14];
         let share = |progress: Progress| progress.done as f64 / progress.total.max(1) as f64;
@@ -180,7 +203,7 @@ impl CandidateFinder {
         let searched = match search {
             Some((_, Search::Streamed(stream))) => return share(stream.progress()),
             // The distances are computed by the search for candidates, not before.
-            _ if is_streamed(graph_clips) => return 0.0,
+            _ if is_streamed(set) => return 0.0,
             Some((_, Search::Held(search))) => share(search.progress()),
             None => 0.0,
         };
@@ -195,8 +218,8 @@ impl CandidateFinder {
     }
 
     /// Returns whether workers compute the distances.
-    fn is_for_workers(&self, graph_clips: &GraphClips, jobs: &JobBoard) -> bool {
-        let frames = graph_clips.set().frames();
+    fn is_for_workers(&self, set: &Arc<FrameSet>, jobs: &JobBoard) -> bool {
+        let frames = set.frames();
         frames * (frames + 1) / 2 >= MIN_WORKER_PAIRS
             && jobs.has_workers()
             && !self.in_line
@@ -204,19 +227,13 @@ impl CandidateFinder {
             && self.search.is_none()
     }
 
-    /// Asks workers for the candidates, and for the distances where they are not known, or takes
-    /// one of their answers.
+    /// Takes one of the answers of workers.
     fn take_answer(
         &mut self,
-        graph_clips: &GraphClips,
-        options: &GraphOptions,
+        mut search: WorkerSearch,
+        set: &Arc<FrameSet>,
         jobs: &mut JobBoard,
     ) -> Result<Searched, GraphError> {
-        let under_way = self.by_workers.take().filter(|known| serves(known.options(), options));
-        let mut search = match under_way {
-            Some(search) => search,
-            None => self.begin_by_workers(graph_clips, widened(options), jobs)?,
-        };
         match search.advance(jobs)? {
             TiledStep::Waits => {
                 self.by_workers = Some(search);
@@ -228,7 +245,7 @@ impl CandidateFinder {
             }
             TiledStep::Complete => {
                 let options = *search.options();
-                let (field, found) = search.finish(graph_clips)?;
+                let (field, found) = search.finish(set)?;
                 self.keep_field(field);
                 Ok(Searched::Found(self.keep_found(options, found)))
             }
@@ -241,16 +258,16 @@ impl CandidateFinder {
 
     fn begin_by_workers(
         &self,
-        graph_clips: &GraphClips,
+        set: &Arc<FrameSet>,
         options: GraphOptions,
         jobs: &mut JobBoard,
     ) -> Result<WorkerSearch, GraphError> {
-        Ok(if is_streamed(graph_clips) {
-            let search = StreamedSearch::begin(graph_clips, options, jobs)?;
+        Ok(if is_streamed(set) {
+            let search = StreamedSearch::begin(set, options, jobs)?;
             WorkerSearch::Streamed(Box::new(search))
         } else {
             let wants_field = !self.has_field(options.blend_window);
-            let search = TiledSearch::begin(graph_clips, options, wants_field, jobs);
+            let search = TiledSearch::begin(set, options, wants_field, jobs);
             WorkerSearch::Tiled(Box::new(search))
         })
     }
@@ -258,17 +275,17 @@ impl CandidateFinder {
     /// Does a slice of the search without workers.
     fn advance_in_line(
         &mut self,
-        graph_clips: &GraphClips,
+        set: &Arc<FrameSet>,
         options: &GraphOptions,
     ) -> Result<Option<Arc<Candidates>>, GraphError> {
-        if is_streamed(graph_clips) {
+        if is_streamed(set) {
             let (widened, mut stream) = match self.search.take() {
                 Some((known, Search::Streamed(stream))) if serves(&known, options) => {
                     (known, stream)
                 }
                 _ => {
                     let options = widened(options);
-                    (options, Box::new(CandidateStream::new(graph_clips.set(), &options)?))
+                    (options, Box::new(CandidateStream::new(set, &options)?))
                 }
             };
             if stream.advance(1)?.is_complete() {
@@ -280,7 +297,7 @@ impl CandidateFinder {
             return Ok(None);
         }
         let Some(all) = &mut self.all else {
-            self.all = Some(AllPairs::new(Arc::clone(graph_clips.set()))?);
+            self.all = Some(AllPairs::new(Arc::clone(set))?);
             return Ok(None);
         };
         if !all.progress().is_complete() {
@@ -304,7 +321,7 @@ impl CandidateFinder {
                 Some(sweep) => sweep.resume(all),
                 None => all.sweep(window)?,
             };
-            if sweep.advance(CELLS.div_ceil(graph_clips.set().longest().max(1)))?.is_complete() {
+            if sweep.advance(CELLS.div_ceil(set.longest().max(1)))?.is_complete() {
                 self.counting = Some((DistanceField::held(sweep.finish()?), CountedTo::default()));
             } else {
                 self.sweep = Some(sweep.pause());

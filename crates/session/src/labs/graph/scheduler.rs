@@ -170,9 +170,9 @@ impl GraphScheduler {
         }
         let fitting = self.fitting.as_ref().map_or(0.0, |fitting| f64::from(fitting.progress()));
         let fitted = (self.fitted.len() as f64 + fitting) / self.clips.len().max(1) as f64;
-        let found = self
-            .graph_clips()
-            .map_or(0.0, |graph_clips| self.finder.progress(graph_clips, &wanted.graph.options));
+        let found = self.graph_clips().map_or(0.0, |graph_clips| {
+            self.finder.progress(graph_clips.set(), &wanted.graph.options)
+        });
         Some(0.1 * fitted + 0.75 * found)
     }
 
@@ -233,6 +233,11 @@ impl GraphScheduler {
             }
             return Ok(Progressed::Worked);
         }
+        if let Some(measuring) = &self.measuring_clips {
+            // Workers compare the clips while they are measured here.
+            wanted.graph.options.check(measuring.set())?;
+            self.finder.begin(measuring.set(), &wanted.graph.options, jobs)?;
+        }
         let Some(graph_clips) = self.ready_graph_clips()? else {
             return Ok(Progressed::Worked);
         };
@@ -247,7 +252,7 @@ impl GraphScheduler {
         self.worked_for = Some(wanted.graph);
         let key = wanted.graph;
         let Some((_, building)) = self.building.take().filter(|(known, _)| *known == key) else {
-            match self.finder.advance(&graph_clips, &key.options, jobs)? {
+            match self.finder.advance(graph_clips.set(), &key.options, jobs)? {
                 Searched::Found(found) => self.building = Some((key, Building::Found(found))),
                 Searched::Worked { worker_secs } => self.add_secs(key, worker_secs),
                 Searched::Waits => return Ok(Progressed::Waits),

@@ -1,11 +1,11 @@
 //! Candidates of clips that are too long for keeping their distances, computed by workers.
 
-use super::GraphClips;
 use super::tiled_search::TiledStep;
 use crate::jobs::{JobBoard, StreamTask, Taken, Ticket};
 use segue_motion::graph::{
-    CandidateStream, Candidates, DistanceOverview, GraphError, GraphOptions,
+    CandidateStream, Candidates, DistanceOverview, FrameSet, GraphError, GraphOptions,
 };
+use std::sync::Arc;
 
 /// The number of pairs of parts that one job compares, about: 1.5 ms each.
 const PAIRS_PER_JOB: usize = 64;
@@ -23,11 +23,10 @@ pub(super) struct StreamedSearch {
 impl StreamedSearch {
     /// Offers all jobs.
     pub(super) fn begin(
-        graph_clips: &GraphClips,
+        set: &Arc<FrameSet>,
         options: GraphOptions,
         board: &mut JobBoard,
     ) -> Result<Self, GraphError> {
-        let set = graph_clips.set();
         let stream = CandidateStream::new(set, &options)?;
         let (parts, body_height) = (stream.parts(), set.body_height());
         let (mut first, mut pairs, mut jobs) = (0, 0, Vec::new());

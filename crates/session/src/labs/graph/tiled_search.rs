@@ -1,6 +1,6 @@
 //! Distances and candidates of the Graph lab, computed by workers.
 
-use super::{DistanceField, GraphClips};
+use super::DistanceField;
 use crate::jobs::{DistanceTask, JobBoard, Taken, Ticket};
 use segue_motion::graph::{
     Candidates, DistanceOverview, DistanceTile, FrameDistances, FrameSet, GraphOptions,
@@ -42,12 +42,11 @@ impl TiledSearch {
     /// Offers all jobs. `options` are those of the candidates; with `wants_field` the distances are
     /// asked for, too.
     pub(super) fn begin(
-        graph_clips: &GraphClips,
+        set: &Arc<FrameSet>,
         options: GraphOptions,
         wants_field: bool,
         board: &mut JobBoard,
     ) -> Self {
-        let set = graph_clips.set();
         let mut search = Self {
             options,
             wants_field,
