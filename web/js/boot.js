@@ -87,7 +87,7 @@ async function start() {
   const corpora = async (call, ...args) => (await import("./corpus/corpora.js"))[call](app, ...args);
   try {
     const started = Promise.race([SegueHandle.start(canvas(), newReader, newComputer, corpora), app.trapped]);
-    app.handle = await (chosen.hasWebgl2 ? started : answerOf(started));
+    app.handle = await (mayUseWebgpu() ? answerOf(started) : started);
     app.watch();
     rest.compile();
     await Promise.race([app.handle.firstFrame(), app.trapped]);
@@ -95,7 +95,7 @@ async function start() {
     const text = app.handle ? app.panicText(reason) : String(reason?.message ?? reason);
     if (reason instanceof WebAssembly.RuntimeError) {
       showPanic(text, app.facts());
-    } else if (!chosen.hasWebgl2 && !isAsked("webgpu")) {
+    } else if (mayUseWebgpu() && !isAsked("webgpu")) {
       return withWebgl2Instead(text);
     } else if (!(await hasGraphics())) {
       showUnsupported();
@@ -200,6 +200,12 @@ function compiled(module) {
 
 /** Returns whether `backend=` in the page's address has this value. */
 const isAsked = (backend) => new URLSearchParams(location.search).get("backend") === backend;
+
+/**
+ * Returns whether the app asks for WebGPU, which may fail, or never answer. The module with WebGL 2
+ * does, too, unless the address says otherwise.
+ */
+const mayUseWebgpu = () => Boolean(navigator.gpu) && !isAsked("webgl2") && !isAsked("fallback");
 
 /** Returns whether there is a WebGPU device. An adapter alone may have none. */
 async function hasWebgpu() {
