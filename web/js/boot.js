@@ -95,7 +95,7 @@ async function start() {
     const text = app.handle ? app.panicText(reason) : String(reason?.message ?? reason);
     if (reason instanceof WebAssembly.RuntimeError) {
       showPanic(text, app.facts());
-    } else if (mayUseWebgpu() && !isAsked("webgpu")) {
+    } else if ((!chosen.hasWebgl2 || reason === NO_ANSWER) && !isAsked("webgpu")) {
       return withWebgl2Instead(text);
     } else if (!(await hasGraphics())) {
       showUnsupported();
