@@ -26,7 +26,11 @@ impl Segue {
             // Receiving counts towards the limit; what is left is done between frames.
             max_ms -= platform::now_ms() - self.clock.frame_began;
         }
-        let more = self.work_for(max_ms);
+        let mut more = self.work_for(max_ms);
+        if !more {
+            let is_between = platform::WORKS_BETWEEN_FRAMES;
+            more = if is_between { self.curves.is_coarse() } else { self.refine_curves() };
+        }
         let ticked = self.tick();
         if ticked {
             self.animate(ctx);
@@ -39,6 +43,17 @@ impl Segue {
             ctx.request_repaint_after(WATCH_WORKERS);
         }
         more && !self.autosave.is_waiting()
+    }
+
+    /// Refines the curves under the timeline for a while, when nothing else is to do. Returns
+    /// whether there is more.
+    pub(super) fn refine_curves(&mut self) -> bool {
+        let until_ms = platform::now_ms() + WORK_MS;
+        let mut more = self.curves.is_coarse();
+        while more && platform::now_ms() < until_ms {
+            more = self.curves.work();
+        }
+        more
     }
 
     /// Shows the panels, carries out their commands and draws the picture.
@@ -120,6 +135,7 @@ impl Segue {
     fn is_quiet(&mut self, ctx: &egui::Context) -> bool {
         let shown = Shown {
             revision: self.session.revision(),
+            refined_curves: self.curves.refined(),
             stored: self.panels.stored,
             theme: self.window.theme,
             page: ctx.content_rect(),

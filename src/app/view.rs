@@ -48,7 +48,7 @@ fn work_between_frames(segue: &Shared, is_working: &Rc<Cell<bool>>, ctx: &egui::
             return true;
         };
         let before = segue.session.revision();
-        let more = segue.poll();
+        let more = segue.poll() || segue.refine_curves();
         if !more || segue.session.revision() != before {
             ctx.request_repaint();
         }

@@ -56,7 +56,7 @@ pub(crate) use button::{Button, button_ui, icon_button_ui};
 pub(crate) use chip::{Mood, Part, recording_ui};
 pub(crate) use clip_row::{ClipRow, ClipRowEvent, SlotLetter, clip_row_ui, group_head_ui};
 pub(crate) use cost_bars::{CostBars, CostRow, cost_bars_ui};
-pub(crate) use curves::{Curves, Series};
+pub(crate) use curves::{Curves, Series, SeriesValues};
 pub(crate) use dialog::{dialog_ui, max_dialog_width};
 pub(crate) use drop_zone::{DropButton, drop_buttons_ui, drop_zone_ui};
 pub(crate) use field::{search_field_ui, text_field_ui, value_row_ui};

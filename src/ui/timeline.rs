@@ -1,6 +1,7 @@
 //! The bottom panel: the timeline.
 
 mod contacts;
+mod curve_values;
 mod curves;
 mod events;
 mod tracks;
@@ -170,24 +171,26 @@ pub(crate) fn timeline_panel_ui(
 
 /// Returns the curves of a plot in the colours of their owners.
 fn series_of<'a>(lines: &'a [Curve], palette: &Palette) -> Vec<Series<'a>> {
-    let series = |Curve { of, points }: &'a Curve| match of {
+    let series = |curve: &'a Curve| match &curve.of {
         CurveOf::Source(part) => Series {
-            name: of.name(),
+            name: curve.of.name(),
             color: part.fill(palette).0,
             ink: part.ink(palette),
             strong: false,
             is_source: true,
-            points,
+            points: &curve.points,
+            values: curve.values.as_ref().map(|values| values as _),
         },
         CurveOf::Pane(index, _) => Series {
-            name: of.name(),
+            name: curve.of.name(),
             // The first result, which the rest of the page shows, has the accent; two more differ
             // in lightness, the last has a colour that neither clip has.
             color: [palette.accent, palette.text, palette.muted, palette.others[1]][index % 4],
             ink: [palette.accent_ink, palette.text, palette.muted, palette.others[1]][index % 4],
             strong: *index == 0,
             is_source: false,
-            points,
+            points: &curve.points,
+            values: curve.values.as_ref().map(|values| values as _),
         },
     };
     lines.iter().map(series).collect()

@@ -9,6 +9,7 @@ use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{
     Align2, Color32, Galley, Rect, Response, Stroke, StrokeKind, Ui, Vec2, pos2, vec2,
 };
+use std::fmt;
 use std::sync::Arc;
 
 /// One curve.
@@ -26,6 +27,24 @@ pub(crate) struct Series<'a> {
     pub(crate) is_source: bool,
     /// Times in seconds and values, in rising time. A value that is not finite makes a gap.
     pub(crate) points: &'a [[f64; 2]],
+    /// All of its values, where the points are only some of them.
+    pub(crate) values: Option<&'a dyn SeriesValues>,
+}
+
+/// All values of a curve.
+pub(crate) trait SeriesValues: fmt::Debug {
+    /// Returns the value at a time, seconds; `None` outside the curve or in a gap.
+    fn at(&self, secs: f64) -> Option<f64>;
+}
+
+impl Series<'_> {
+    /// Returns the value at a time, seconds; `None` outside the curve or in a gap.
+    fn value_at(&self, secs: f64) -> Option<f64> {
+        match self.values {
+            Some(values) => values.at(secs),
+            None => value_at(self.points, secs),
+        }
+    }
 }
 
 /// The least range of values that is shown, in units of the last digit of a value.
@@ -198,7 +217,7 @@ fn key_parts(curves: &Curves<'_>, width: f32, now: f64, ui: &Ui) -> Vec<(Vec2, A
                 let name = line_of(&name, width, ui);
                 return (name.size().x, name);
             }
-            let value = value_at(series.points, now).map(|value| curves.written(value));
+            let value = series.value_at(now).map(|value| curves.written(value));
             (room, with_value(&value.unwrap_or_default(), ui))
         })
         .collect();
@@ -267,7 +286,7 @@ fn values_ui(curves: &Curves<'_>, plot: Rect, x: f32, (time, is_first): (f64, bo
         .series
         .iter()
         .filter_map(|series| {
-            let value = value_at(series.points, time)?;
+            let value = series.value_at(time)?;
             let y = plot.bottom() - ((value - low) / (high - low)) as f32 * plot.height();
             painter.circle(
                 pos2(x, y),
@@ -352,6 +371,7 @@ mod tests {
             strong: name == "inertialize",
             is_source: name.len() == 1,
             points: &[],
+            values: None,
         });
         let curves = Curves { title: Word::new("speed"), series: &series, ..Curves::default() };
         let mut placed = Vec::new();
@@ -381,6 +401,7 @@ mod tests {
             strong: false,
             is_source,
             points,
+            values: None,
         });
         let curves = Curves { decimals: 2, series: &series, ..Curves::default() };
         let mut at_times = Vec::new();
@@ -411,6 +432,7 @@ mod tests {
             strong: true,
             is_source: false,
             points: &points,
+            values: None,
         }];
         let curves = Curves { include: Some(0.0), series: &series, ..Curves::default() };
         let (low, high) = curves.bounds();

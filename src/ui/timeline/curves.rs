@@ -1,12 +1,13 @@
 //! The curves of a joint, cached, and the menu that chooses them.
 
+use super::curve_values::{CurveValues, Extremes};
 use crate::ui::kit::{self, MenuItem, Part};
 use crate::ui::language::{Text, Word, say};
 use crate::ui::out::Out;
 use crate::ui::text;
 use crate::ui::theme::palette_of;
 use eframe::egui::{self, RectAlign, Ui};
-use segue_motion::clip::{Motion, joint_values};
+use segue_motion::clip::Motion;
 use segue_motion::skeleton::Role;
 use segue_session::choices::{self, Selected as _};
 use segue_session::{
@@ -23,6 +24,8 @@ pub(crate) struct CurveCache {
     what: Option<Plotted>,
     /// A plot for each quantity.
     pub(super) plots: Vec<Plot>,
+    /// The number of curves that were refined.
+    refined: u64,
 }
 
 /// The choice of curves.
@@ -45,6 +48,10 @@ pub(super) struct Plot {
 pub(super) struct Curve {
     pub(super) of: CurveOf,
     pub(super) points: Vec<[f64; 2]>,
+    /// Its values, where the points are not all of them.
+    pub(super) values: Option<CurveValues>,
+    /// The points of a long curve that are to take the place of samples.
+    extremes: Option<Extremes>,
 }
 
 /// The owner of a curve.
@@ -56,8 +63,17 @@ pub(super) enum CurveOf {
     Pane(usize, Message),
 }
 
-/// The greatest number of points of a curve: no screen shows more.
-const MAX_CURVE_POINTS: usize = 900;
+/// The number of frames of a long curve that are computed at once, about a millisecond.
+const FRAMES_AT_ONCE: usize = 1_000;
+
+impl Curve {
+    /// Returns a curve of samples, if it is long; `None` where the motion lacks the joint.
+    fn new(of: CurveOf, values: Option<CurveValues>) -> Self {
+        let points = values.as_ref().map(CurveValues::sampled).unwrap_or_default();
+        let values = values.filter(CurveValues::is_long);
+        Self { of, points, extremes: values.as_ref().map(CurveValues::extremes), values }
+    }
+}
 
 impl CurveOf {
     /// Returns its name beside the plot.
@@ -101,6 +117,30 @@ impl CurveCache {
         let plot = |&quantity| Plot { quantity, lines: lines(main, panes, what, quantity) };
         self.plots = what.quantities.iter().map(plot).collect();
     }
+
+    /// Returns whether long curves are still made of samples.
+    pub(crate) fn is_coarse(&self) -> bool {
+        self.plots.iter().flat_map(|plot| &plot.lines).any(|line| line.extremes.is_some())
+    }
+
+    /// Computes a part of the long curves, so that no peak is missing. Returns whether there is
+    /// more to do.
+    pub(crate) fn work(&mut self) -> bool {
+        let mut lines = self.plots.iter_mut().flat_map(|plot| &mut plot.lines);
+        let Some(line) = lines.find(|line| line.extremes.is_some()) else { return false };
+        if let (Some(values), Some(extremes)) = (&line.values, &mut line.extremes)
+            && let Some(points) = extremes.advance(values, FRAMES_AT_ONCE)
+        {
+            (line.points, line.extremes) = (points, None);
+            self.refined += 1;
+        }
+        self.is_coarse()
+    }
+
+    /// Returns a number that changes when a curve does without a change of what is plotted.
+    pub(crate) fn refined(&self) -> u64 {
+        self.refined
+    }
 }
 
 /// Returns the curves of one quantity.
@@ -118,10 +158,8 @@ fn lines(
     for source in sources {
         let part = if source.slot == Slot::A { Part::A } else { Part::B };
         if let Some(registered) = main.registered() {
-            lines.push(Curve {
-                of: CurveOf::Source(part),
-                points: registered_curve(source, registered, joint, quantity),
-            });
+            let values = registered_values(source, registered, joint, quantity);
+            lines.push(Curve::new(CurveOf::Source(part), values));
             continue;
         }
         // Sources are shown where they can be compared with the result.
@@ -129,58 +167,46 @@ fn lines(
             let margin = (transition.end_secs - transition.start_secs).max(0.25);
             transition.start_secs - margin..transition.end_secs + margin
         });
-        let mut points = curve(&source.motion, joint, quantity, source.starts_at_secs);
-        points.retain(|point| window.contains(&point[0]) && (0.0..=end).contains(&point[0]));
-        lines.push(Curve { of: CurveOf::Source(part), points });
+        let values = values(&source.motion, joint, quantity, source.starts_at_secs);
+        let values = values.map(|values| {
+            values.within(|secs| window.contains(&secs) && (0.0..=end).contains(&secs))
+        });
+        lines.push(Curve::new(CurveOf::Source(part), values));
     }
     let shows_results = *of != choices::CurvesOf::Sources || !has_sources;
     let results = panes.iter().enumerate().filter(|_| shows_results);
-    lines.extend(results.map(|(index, (name, outcome))| Curve {
-        of: CurveOf::Pane(index, name.clone()),
-        points: curve(&outcome.motion, joint, quantity, 0.0),
+    lines.extend(results.map(|(index, (name, outcome))| {
+        let values = values(&outcome.motion, joint, quantity, 0.0);
+        Curve::new(CurveOf::Pane(index, name.clone()), values)
     }));
     lines
 }
 
-/// Returns the curve of a joint, in the time of a result that the motion begins in at that time.
-fn curve(
-    motion: &Motion,
+/// Returns the values of a joint, in the time of a result that the motion begins in at that time;
+/// `None` without the joint.
+fn values(
+    motion: &Arc<Motion>,
     joint: &str,
     quantity: choices::Curve,
     starts_at_secs: f64,
-) -> Vec<[f64; 2]> {
-    let Some(joint) = joint_of(motion, joint) else {
-        return Vec::new();
-    };
-    let (clip, fps) = (motion.clip(), motion.clip().fps());
-    let shown = (0..clip.frames()).step_by(clip.frames().div_ceil(MAX_CURVE_POINTS).max(1));
-    let values = joint_values(clip, joint, curve_kind(quantity), shown.clone());
-    let point =
-        |(frame, value): (usize, f32)| [starts_at_secs + frame as f64 / fps, f64::from(value)];
-    shown.zip(values).map(point).collect()
+) -> Option<CurveValues> {
+    let joint = joint_of(motion, joint)?;
+    Some(CurveValues::of_motion(motion, joint, curve_kind(quantity), starts_at_secs))
 }
 
-/// Returns the curve of a source in the result's time: its values in the frames that the result is
-/// made of.
-fn registered_curve(
+/// Returns the values of a source in the result's time: those in the frames that the result is made
+/// of.
+fn registered_values(
     source: &PlacedClip,
     registered: &RegistrationFacts,
     joint: &str,
     quantity: choices::Curve,
-) -> Vec<[f64; 2]> {
-    let Some(joint) = joint_of(&source.motion, joint) else {
-        return Vec::new();
-    };
+) -> Option<CurveValues> {
+    let joint = joint_of(&source.motion, joint)?;
     let (fps, of) = (registered.map.fps(), usize::from(source.slot == Slot::B));
-    let stride = registered.frame_pairs.len().div_ceil(MAX_CURVE_POINTS).max(1);
-    let clip = source.motion.clip();
-    let shown = (registered.frame_pairs.iter().enumerate().step_by(stride))
-        .filter(|(_, frame_pair)| frame_pair.frames[of] > -0.5)
-        .map(|(frame, frame_pair)| (frame, frame_pair.frames[of].round() as usize))
-        .filter(|(_, own)| *own < clip.frames());
-    let own = shown.clone().map(|(_, own)| own);
-    let values = joint_values(clip, joint, curve_kind(quantity), own);
-    shown.zip(values).map(|((frame, _), value)| [frame as f64 / fps, f64::from(value)]).collect()
+    let own = registered.frame_pairs.iter().map(|frame_pair| frame_pair.frames[of]);
+    let own = own.map(|frame| (frame > -0.5).then(|| frame.round() as usize)).collect();
+    Some(CurveValues::of_frames(&source.motion, joint, curve_kind(quantity), fps, own))
 }
 
 /// Returns the unit of a curve.

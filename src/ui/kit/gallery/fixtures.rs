@@ -489,6 +489,7 @@ fn time_ui(mock: &mut Mock, phone: bool, ui: &mut Ui) {
             strong: false,
             is_source: true,
             points: &a,
+            values: None,
         },
         Series {
             name: Word::new("B").into(),
@@ -497,6 +498,7 @@ fn time_ui(mock: &mut Mock, phone: bool, ui: &mut Ui) {
             strong: false,
             is_source: true,
             points: &b,
+            values: None,
         },
         Series {
             name: Word::new("result").into(),
@@ -505,6 +507,7 @@ fn time_ui(mock: &mut Mock, phone: bool, ui: &mut Ui) {
             strong: true,
             is_source: false,
             points: &result,
+            values: None,
         },
     ];
     let moments = [

@@ -22,6 +22,7 @@ fn timeline() -> Harness<'static, Timed> {
             strong: true,
             is_source: false,
             points: &points,
+            values: None,
         }];
         let view = Timeline {
             duration: 10.0,

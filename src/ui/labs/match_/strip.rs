@@ -90,6 +90,7 @@ fn time_ui(
             strong: false,
             is_source: false,
             points: &current,
+            values: None,
         },
         Series {
             name: text::COST_BEST.into(),
@@ -98,6 +99,7 @@ fn time_ui(
             strong: true,
             is_source: false,
             points: &best,
+            values: None,
         },
     ];
     let mut jumps: Vec<Moment> = driven
