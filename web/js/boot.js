@@ -119,7 +119,7 @@ async function start() {
   app.handle.setComplete();
   window.segue = api;
   answerParent(api, app.handle.isEmbedded());
-  registerServiceWorker(chosen);
+  registerServiceWorker(app.handle.stats().backend);
   // After the first frame, so that nothing waits for it.
   import("./outline.js").then(({ Outline }) => new Outline(app.handle, canvas), (reason) => console.error(reason));
   return api;
@@ -150,14 +150,15 @@ function notDownloaded(reason) {
 }
 
 /**
- * Registers sw.js, which serves the page without a network. A development build has no name, and
- * registers nothing.
+ * Registers sw.js, which serves the page without a network, with the module for the graphics that
+ * the app draws with: after a late answer about WebGPU it is another one than that of this visit. A
+ * development build has no name, and registers nothing.
  */
-function registerServiceWorker({ hasWebgl2 }) {
+function registerServiceWorker(backend) {
   if (!document.querySelector('meta[name="build"]')) return;
   // After the start of the page, because all files are requested again, from the browser's cache
   // where it has them.
-  const worker = new URL(`sw.js?module=${hasWebgl2 ? "webgl2" : "webgpu"}`, document.baseURI);
+  const worker = new URL(`sw.js?module=${backend === "webgpu" ? backend : "webgl2"}`, document.baseURI);
   const register = () => navigator.serviceWorker?.register(worker).catch((reason) => console.info(reason));
   (window.requestIdleCallback ?? setTimeout)(register);
 }
@@ -278,7 +279,8 @@ function loaded() {
 }
 
 async function hasGraphics() {
-  if (await navigator.gpu?.requestAdapter().catch(() => null)) return true;
+  const adapter = navigator.gpu && answerOf(navigator.gpu.requestAdapter());
+  if (await adapter?.catch(() => null)) return true;
   return Boolean(document.createElement("canvas").getContext("webgl2"));
 }
 

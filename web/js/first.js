@@ -15,12 +15,12 @@ document.documentElement.lang = ((asked) => {
 
 // The app comes as one or two modules: with WebGL 2, and, a fifth smaller, with WebGPU alone. The
 // latter is begun before it is known whether there is an adapter: most browsers that could have one
-// do, and find it soon. A browser that does not may have none, which can take it a third of a
-// second to say. So it gets the module with WebGL 2, which does either, and starts meanwhile. A
-// service worker keeps the module of earlier visits, which come without a network, too. boot.js
-// takes the module that is downloaded here, or, if the adapter has no device, stops that and takes
-// `withWebgl2()`. As deployed, `wasm` is the first part of a module, and rest.js downloads the
-// rest.
+// do, and find it soon. One without an adapter may take a third of a second to say so. After
+// `MAX_ADAPTER_MS` a first visit takes the module with WebGL 2, which draws with WebGPU, too, if an
+// adapter comes later. Later visits take the module that the service worker keeps, because it is
+// there without a network. boot.js takes the module that is downloaded here, or, if the adapter has
+// no device, stops that and takes `withWebgl2()`. As deployed, `wasm` is the first part of a
+// module, and rest.js downloads the rest.
 window.segueDownload = (({ js, wasm, rest, webgpuJs, webgpuWasm, webgpuRest }) => {
   const begin = (js, wasm, rest, hasWebgl2) => {
     const abort = new AbortController();
@@ -31,18 +31,17 @@ window.segueDownload = (({ js, wasm, rest, webgpuJs, webgpuWasm, webgpuRest }) =
   };
   const withWebgl2 = () => begin(js, wasm, rest, true);
   const withWebgpu = () => begin(webgpuJs, webgpuWasm, webgpuRest, false);
-  /** The longest time for which a first visit waits for an adapter. */
   const MAX_ADAPTER_MS = 100;
   const asked = new URLSearchParams(location.search).get("backend");
-  const keeper = navigator.serviceWorker?.controller?.scriptURL;
-  const kept = keeper && new URL(keeper).searchParams.get("module");
+  const worker = navigator.serviceWorker?.controller?.scriptURL;
+  const keptModule = worker && new URL(worker).searchParams.get("module");
   const choose = async () => {
-    if (!webgpuWasm || !navigator.gpu || kept === "webgl2" || ["webgl2", "fallback"].includes(asked)) return withWebgl2();
+    if (!webgpuWasm || !navigator.gpu || keptModule === "webgl2" || ["webgl2", "fallback"].includes(asked)) return withWebgl2();
     const module = withWebgpu();
     if (asked === "webgpu") return module;
     const adapter = navigator.gpu.requestAdapter().catch(() => null);
-    const late = new Promise((resolve) => { if (!kept) setTimeout(resolve, MAX_ADAPTER_MS); });
-    if (await Promise.race([adapter, late])) return module;
+    const late = new Promise((resolve) => setTimeout(resolve, MAX_ADAPTER_MS));
+    if (await (keptModule ? adapter : Promise.race([adapter, late]))) return module;
     module.stop();
     return withWebgl2();
   };

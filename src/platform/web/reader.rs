@@ -2,7 +2,7 @@
 //! `web/js/reader.js` starts.
 
 use super::js_error_text;
-use super::page::{listen, next_turn, window};
+use super::page::{listen, window};
 use super::stored_place::stored_place;
 use crate::platform::begun::Begun;
 use crate::platform::{FileBytes, Inbox, Incoming, ReadError, ReadEvent};
@@ -18,9 +18,6 @@ use std::rc::Rc;
 use std::sync::Arc;
 use wasm_bindgen::{JsCast as _, JsValue};
 use web_sys::{Blob, MessageEvent, Worker};
-
-/// The number of bytes of a file that are copied at once, about 5 ms.
-const PIECE_BYTES: u32 = 8 << 20;
 
 /// A file that the browser holds, so that the app's memory has no copy of its bytes.
 #[derive(Clone, PartialEq)]
@@ -71,21 +68,7 @@ impl LargeFile {
         Self::of_pieces(&Array::of1(bytes))
     }
 
-    /// Returns what [`Self::of_bytes`] returns, and copies long files in several turns.
-    pub(crate) async fn copied(bytes: &Uint8Array) -> Option<Self> {
-        let pieces = Array::new();
-        for from in (0..bytes.length()).step_by(PIECE_BYTES as usize) {
-            if from > 0 {
-                next_turn().await;
-            }
-            let piece = bytes.subarray(from, from.saturating_add(PIECE_BYTES));
-            let copy = Blob::new_with_u8_array_sequence(&Array::of1(&piece)).ok()?;
-            pieces.push(copy.as_ref());
-        }
-        Self::of_pieces(&pieces)
-    }
-
-    /// Returns a file of these pieces, each a `Uint8Array` or a `Blob`; `None` when the browser has no room for
+    /// Returns a file of these pieces, each a `Uint8Array`; `None` when the browser has no room for
     /// it.
     pub(super) fn of_pieces(pieces: &Array) -> Option<Self> {
         Blob::new_with_u8_array_sequence(pieces).ok().map(Self::new)
