@@ -359,10 +359,14 @@ impl Segue {
         self.autosave.is_waiting()
     }
 
-    /// Polls, and returns whether stored work may still come, even if the session has begun
-    /// without it.
+    /// Receives what has come, and returns whether stored work may still come, even if the session
+    /// has begun without it.
     pub(crate) fn is_restoring(&mut self) -> bool {
-        self.is_waiting()
+        self.receive_all();
+        if !self.has_begun || self.autosave.is_waiting() {
+            self.poll();
+        }
+        self.autosave.is_waiting()
             || self.autosave.is_late(platform::now_ms())
             || self.session.is_reading_small()
     }

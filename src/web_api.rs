@@ -215,12 +215,11 @@ impl SegueHandle {
             .map(|summary| format!("{}\n{}", summary.message(), summary.callstack()))
     }
 
-    /// Reads a file, as if it were dropped on the page. Its bytes must not be changed meanwhile.
+    /// Reads a file, as if it were dropped on the page.
     pub async fn load(&self, name: String, bytes: Uint8Array) -> Result<JsValue, JsValue> {
         self.opened().await?;
         // The browser holds it, so that the app's memory has no copy.
-        let large = LargeFile::copied(&bytes)
-            .await
+        let large = LargeFile::of_bytes(&bytes)
             .ok_or_else(|| error(format!("{name}: this browser has no room for the file")))?;
         let file = FileBytes::Large(large);
         let task = self.borrow_mut()?.load_in_background(&name, file);
@@ -539,14 +538,12 @@ impl SegueHandle {
         while self.borrow_mut()?.is_restoring() {
             sleep(5).await;
         }
-        // To ask does work, too, and the call gets a turn of its own.
-        next_turn().await;
         Ok(())
     }
 
     /// Waits until everything that depends on the last change is computed.
     async fn settled(&self) -> Result<(), JsValue> {
-        // The change itself has had this turn.
+        // The change itself may have used up this turn.
         next_turn().await;
         loop {
             // Frames do not run on a hidden page, so poll here.
