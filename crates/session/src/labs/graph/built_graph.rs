@@ -2,7 +2,7 @@
 
 use super::GraphClips;
 use super::requests::GraphKey;
-use petgraph::graph::NodeIndex;
+use petgraph::graph::{EdgeIndex, NodeIndex};
 use petgraph::visit::Dfs;
 use segue_motion::graph::{
     Candidates, Choices, CountedTo, DistanceOverview, FrameDistances, GraphError, GraphOptions,
@@ -261,30 +261,30 @@ impl BuiltGraph {
         &self.component_shares
     }
 
-    /// Returns the probability of each transition of the whole graph at the end of its stretch, or
-    /// 0 without `choices`; `None` where walks cannot take it. O(edges).
+    /// Returns the probability of each transition of the whole graph at the end of its stretch;
+    /// `None` where walks cannot take it. O(edges).
     #[must_use]
-    pub fn probabilities(&self, choices: Option<&Choices>) -> Vec<Option<f64>> {
-        let mut probabilities = vec![None; self.whole.jumps().len()];
-        let mut set = |edge, p| {
-            if let Some(slot) =
-                self.graph.origin(edge).and_then(|index| probabilities.get_mut(index))
-            {
-                *slot = Some(p);
-            }
-        };
-        let graph = self.graph.graph();
-        if let Some(choices) = choices {
-            let ways = graph.node_indices().flat_map(|node| choices.probabilities(node));
-            for (edge, p) in ways {
-                set(edge, p);
-            }
-        } else {
-            for edge in graph.edge_indices() {
-                set(edge, 0.0);
+    pub fn probabilities(&self, choices: &Choices) -> Vec<Option<f64>> {
+        let nodes = self.graph.graph().node_indices();
+        self.of_transitions(nodes.flat_map(|node| choices.probabilities(node)))
+    }
+
+    /// Returns 0 for each transition of the whole graph that walks can take, else `None`. O(edges).
+    #[must_use]
+    pub fn reachable(&self) -> Vec<Option<f64>> {
+        self.of_transitions(self.graph.graph().edge_indices().map(|edge| (edge, 0.0)))
+    }
+
+    /// Returns values of edges of the graph of the walks by the transitions of the whole graph.
+    fn of_transitions(&self, values: impl Iterator<Item = (EdgeIndex, f64)>) -> Vec<Option<f64>> {
+        let mut of_transitions = vec![None; self.whole.jumps().len()];
+        for (edge, value) in values {
+            let index = self.graph.origin(edge);
+            if let Some(slot) = index.and_then(|index| of_transitions.get_mut(index)) {
+                *slot = Some(value);
             }
         }
-        probabilities
+        of_transitions
     }
 
     /// Returns the number of nodes without an outgoing edge.

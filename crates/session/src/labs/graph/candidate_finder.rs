@@ -79,6 +79,11 @@ impl WorkerSearch {
         }
     }
 
+    /// Returns whether its candidates serve a graph.
+    fn serves(&self, options: &GraphOptions) -> bool {
+        serves(self.options(), options)
+    }
+
     fn progress(&self) -> f64 {
         match self {
             Self::Tiled(search) => search.progress(),
@@ -130,7 +135,7 @@ fn serves(known: &GraphOptions, options: &GraphOptions) -> bool {
 }
 
 /// Returns whether the distances of clips are not kept in memory.
-fn is_streamed(set: &Arc<FrameSet>) -> bool {
+fn is_streamed(set: &FrameSet) -> bool {
     set.frames() > MAX_FRAMES
 }
 
@@ -145,8 +150,8 @@ impl CandidateFinder {
         self.by_workers = None;
     }
 
-    /// Asks workers for the candidates of a graph, if these are for workers and have not been asked
-    /// for. The set is that of all calls.
+    /// Asks workers for the candidates of a graph, where workers are to find them and have not been
+    /// asked. The set is that of all calls.
     ///
     /// # Errors
     /// [`GraphError`] with the reason why they cannot be found.
@@ -156,11 +161,8 @@ impl CandidateFinder {
         options: &GraphOptions,
         jobs: &mut JobBoard,
     ) -> Result<(), GraphError> {
-        let is_under_way = |search: &WorkerSearch| serves(search.options(), options);
-        if self.known(options).is_none()
-            && self.is_for_workers(set, jobs)
-            && !self.by_workers.as_ref().is_some_and(is_under_way)
-        {
+        let is_under_way = self.by_workers.as_ref().is_some_and(|search| search.serves(options));
+        if self.known(options).is_none() && self.is_for_workers(set, jobs) && !is_under_way {
             self.by_workers = Some(self.begin_by_workers(set, widened(options), jobs)?);
         }
         Ok(())
@@ -180,8 +182,7 @@ impl CandidateFinder {
             return Ok(Searched::Found(Arc::clone(found)));
         }
         self.begin(set, options, jobs)?;
-        let serves_this = |search: &WorkerSearch| serves(search.options(), options);
-        if let Some(search) = self.by_workers.take().filter(serves_this) {
+        if let Some(search) = self.by_workers.take().filter(|search| search.serves(options)) {
             return self.take_answer(search, set, jobs);
         }
         let found = self.advance_in_line(set, options)?;
@@ -189,7 +190,7 @@ impl CandidateFinder {
     }
 
     /// Returns the progress of the search for the candidates of a graph, 0 to 1.
-    pub(super) fn progress(&self, set: &Arc<FrameSet>, options: &GraphOptions) -> f64 {
+    pub(super) fn progress(&self, set: &FrameSet, options: &GraphOptions) -> f64 {
         /// The shares of the time that comparing, sweeping and searching take.
         const SHARES: [f64; 3] = [0.53, 0.33, 0.14];
         let share = |progress: Progress| progress.done as f64 / progress.total.max(1) as f64;
@@ -218,7 +219,7 @@ impl CandidateFinder {
     }
 
     /// Returns whether workers compute the distances.
-    fn is_for_workers(&self, set: &Arc<FrameSet>, jobs: &JobBoard) -> bool {
+    fn is_for_workers(&self, set: &FrameSet, jobs: &JobBoard) -> bool {
         let frames = set.frames();
         frames * (frames + 1) / 2 >= MIN_WORKER_PAIRS
             && jobs.has_workers()

@@ -11,6 +11,7 @@ use crate::labs::LabError;
 use crate::labs::pair::{FRAMES_PER_SLICE, FittedClip, Fitting, FittingOptions, retarget_options};
 use crate::params::{MAX_PANES, Params};
 use segue_motion::clip::Motion;
+use segue_motion::graph::GraphError;
 use segue_motion::retarget::RetargetOptions;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -170,9 +171,9 @@ impl GraphScheduler {
         }
         let fitting = self.fitting.as_ref().map_or(0.0, |fitting| f64::from(fitting.progress()));
         let fitted = (self.fitted.len() as f64 + fitting) / self.clips.len().max(1) as f64;
-        let found = self.graph_clips().map_or(0.0, |graph_clips| {
-            self.finder.progress(graph_clips.set(), &wanted.graph.options)
-        });
+        let set = self.graph_clips().map(|clips| clips.set());
+        let set = set.or(self.measuring_clips.as_ref().map(|clips| clips.set()));
+        let found = set.map_or(0.0, |set| self.finder.progress(set, &wanted.graph.options));
         Some(0.1 * fitted + 0.75 * found)
     }
 
@@ -233,11 +234,7 @@ impl GraphScheduler {
             }
             return Ok(Progressed::Worked);
         }
-        if let Some(measuring) = &self.measuring_clips {
-            // Workers compare the clips while they are measured here.
-            wanted.graph.options.check(measuring.set())?;
-            self.finder.begin(measuring.set(), &wanted.graph.options, jobs)?;
-        }
+        self.begin_comparing(wanted, jobs)?;
         let Some(graph_clips) = self.ready_graph_clips()? else {
             return Ok(Progressed::Worked);
         };
@@ -274,7 +271,23 @@ impl GraphScheduler {
         Ok(Progressed::Worked)
     }
 
-    /// Fits the clips to one skeleton, a part of one in each slice.
+    /// Has workers compare the clips while these are measured here. Options that do not fit them
+    /// are refused later: the clips are shown all the same.
+    fn begin_comparing(
+        &mut self,
+        wanted: &WalkRequest,
+        jobs: &mut JobBoard,
+    ) -> Result<(), GraphError> {
+        match (&self.measuring_clips, &wanted.graph.options) {
+            (Some(clips), options) if options.check(clips.set()).is_ok() => {
+                self.finder.begin(clips.set(), options, jobs)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Fits the clips to one skeleton and measures them, a slice in each call; `None` until they
+    /// are ready.
     fn ready_graph_clips(&mut self) -> Result<Option<Arc<GraphClips>>, LabError> {
         if let Some(graph_clips) = &self.graph_clips {
             return graph_clips.clone().map(Some);

@@ -61,6 +61,14 @@ fn change_is_computed_in_slices_from_cached_parts_and_can_be_stopped() {
 }
 
 #[test]
+fn clips_are_there_when_options_do_not_fit_them() {
+    let link = "lab=graph&clips=walk,walk_left&construction=segments&segment_size=10";
+    let session = opened(&format!("{link}&blend_window=30"));
+    assert!(session.panes()[0].problem.is_some());
+    assert_eq!(session.graph_clips().unwrap().motions().len(), 2);
+}
+
+#[test]
 fn every_setting_gives_its_own_walk_or_a_reason() {
     let mut session = opened(
         "lab=graph&clips=walk(make_seconds:2),walk(turn_rate:20,make_seconds:2)&walk_seconds=10",

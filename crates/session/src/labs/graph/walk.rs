@@ -57,7 +57,7 @@ pub struct Walk {
     pub built: Arc<BuiltGraph>,
     /// The probabilities of its choices.
     pub choices: Arc<Choices>,
-    /// The same for each transition of the whole graph ([`BuiltGraph::probabilities`]).
+    /// The probability of each transition of the whole graph ([`BuiltGraph::probabilities`]).
     pub probabilities: Arc<Vec<Option<f64>>>,
     /// The expected time between transitions in a long walk, seconds; `None` if a walk ends, or
     /// never leaves its clip.

@@ -265,7 +265,7 @@ impl WalkBuilder {
         guide: Option<&mut Plan>,
     ) -> Result<bool, LabError> {
         if self.probabilities.is_none() {
-            self.probabilities = Some(Arc::new(self.built.probabilities(Some(&self.choices))));
+            self.probabilities = Some(Arc::new(self.built.probabilities(&self.choices)));
             return Ok(false);
         }
         if let Some([leave, enter]) = self.wanted.jump {
