@@ -110,6 +110,7 @@ mod error;
 mod export;
 mod follow;
 mod frames;
+mod grouped;
 mod long_run;
 mod measure;
 mod overview;

@@ -275,8 +275,9 @@ impl Picker {
         }
     }
 
-    /// Offers the minima among the cells `within` of a row of the matrix. The places are the window
-    /// of the row and that of its first cell; `is_minimum` is asked with the index of a cell.
+    /// Offers the minima of a row of the matrix, among the cells `within`, that are below the
+    /// threshold or closer than all before. The places are the window of the row and that of its
+    /// first cell; `is_minimum` takes the index of a cell in the row.
     pub(super) fn offer_minima(
         &mut self,
         [a, b]: [Place; 2],
@@ -294,10 +295,10 @@ impl Picker {
         Ok(())
     }
 
-    /// Returns the first of some cells of a row that may be offered: its distance is below the
-    /// threshold, or smaller than all before, and it is no larger than its neighbours in the row.
-    /// Most cells are passed over here, a few instructions each. A separate function, because
-    /// browsers optimise a function between two of its calls.
+    /// Returns the first of some cells of a row that may be a candidate: its distance is below the
+    /// threshold, or no larger than the smallest before, and no larger than its neighbours in the
+    /// row. [`Self::offer`] decides; most cells are passed over here, a few instructions each. A
+    /// separate function, because browsers optimise a function between two of its calls.
     #[inline(never)]
     fn next_low(&self, row: &[f32], within: Range<usize>) -> Option<usize> {
         let most =

@@ -173,64 +173,68 @@ impl FrameDistances {
     #[must_use]
     pub fn picture(&self, rows: Range<usize>, columns: Range<usize>, factor: usize) -> Vec<f32> {
         let factor = factor.max(1);
-        let within =
-            |of: Range<usize>| of.start.min(self.set.frames())..of.end.min(self.set.frames());
+        let frames = self.set.frames();
+        let within = |of: Range<usize>| of.start.min(frames)..of.end.min(frames);
         let (rows, columns) = (within(rows), within(columns));
-        // Around the diagonal, the squares below it are those above it.
-        let is_mirrored = rows == columns;
         let (height, width) = (rows.len().div_ceil(factor), columns.len().div_ceil(factor));
-        let (down, across) = (self.samples(rows, factor), self.samples(columns, factor));
+        // Equal ranges give a symmetric picture: only squares on and above the diagonal are read.
+        let is_symmetric = rows == columns;
+        let row_samples = self.samples(rows, factor);
+        let column_samples = self.samples(columns, factor);
         // Each sum, with the number of its values.
         let mut sums = vec![(0.0_f32, 0); height * width];
-        let mut add = |down: usize, across: usize, found: Option<&f32>| {
-            if let (Some((sum, count)), Some(found)) = (sums.get_mut(down * width + across), found)
-            {
+        let mut add = |square_row: usize, square_column: usize, found: Option<&f32>| {
+            let sum = sums.get_mut(square_row * width + square_column);
+            if let (Some((sum, count)), Some(found)) = (sum, found) {
                 *sum += found;
                 *count += 1;
             }
         };
-        // Stored rows are read from their beginning to their end: from cell to cell of a column,
-        // each would have to be fetched from memory by itself.
-        for (a, rows) in down.iter().enumerate() {
-            for (b, columns) in across.iter().enumerate() {
+        // Read row by row, as stored: along a column, nearly every cell would be a cache miss.
+        for (a, rows) in row_samples.iter().enumerate() {
+            for (b, columns) in column_samples.iter().enumerate() {
                 let Some(block) = self.block(a.min(b), a.max(b)) else { continue };
-                for &(down, row) in rows.iter().filter(|_| a <= b) {
-                    let (first, cells) = block.row(row);
-                    for &(across, column) in columns {
-                        let at = column.checked_sub(first);
-                        add(down, across, at.and_then(|at| cells.get(at)));
+                if a <= b {
+                    for &(square_row, row) in rows {
+                        let (first, cells) = block.row(row);
+                        for &(square_column, column) in columns {
+                            let at = column.checked_sub(first);
+                            add(square_row, square_column, at.and_then(|at| cells.get(at)));
+                        }
                     }
                 }
-                for &(across, column) in columns.iter().filter(|_| a >= b) {
-                    let (first, cells) = block.row(column);
-                    // Of a clip with itself, what lies below the diagonal is left.
-                    for &(down, row) in rows.iter().filter(|(down, row)| {
-                        (a > b || *row > column) && (!is_mirrored || *down == across)
-                    }) {
-                        let at = row.checked_sub(first);
-                        add(down, across, at.and_then(|at| cells.get(at)));
+                if a >= b {
+                    for &(square_column, column) in columns {
+                        let (first, cells) = block.row(column);
+                        for &(square_row, row) in rows {
+                            // Of a clip with itself, what lies below the diagonal is left.
+                            let is_left = (a > b || row > column)
+                                && (!is_symmetric || square_row == square_column);
+                            let at = row.checked_sub(first).filter(|_| is_left);
+                            add(square_row, square_column, at.and_then(|at| cells.get(at)));
+                        }
                     }
                 }
             }
         }
-        if is_mirrored {
-            for (down, across) in (0..height).flat_map(|down| (0..down).map(move |b| (down, b))) {
-                sums[down * width + across] = sums[across * width + down];
+        if is_symmetric {
+            for row in 0..height {
+                for column in 0..row {
+                    sums[row * width + column] = sums[column * width + row];
+                }
             }
         }
         let scale = self.set.cm_per_m() as f32;
         sums.into_iter().map(|(sum, count)| sum / count as f32 * scale).collect()
     }
 
-    /// Returns the frames of each clip that a picture samples, at most 4 of `factor`, with the
-    /// squares that they belong to.
+    /// Returns what a picture samples of each clip: (square, frame of the clip), at most 4 frames
+    /// of a square, in their order.
     fn samples(&self, of: Range<usize>, factor: usize) -> Vec<Vec<(usize, usize)>> {
         let mut samples = vec![Vec::new(); self.set.clips().len()];
         for (square, first) in of.clone().step_by(factor).enumerate() {
-            let frames = first..(first + factor).min(of.end);
-            for place in
-                frames.step_by(factor.div_ceil(4)).filter_map(|frame| self.set.place(frame))
-            {
+            let frames = (first..(first + factor).min(of.end)).step_by(factor.div_ceil(4));
+            for place in frames.filter_map(|frame| self.set.place(frame)) {
                 samples[place.clip].push((square, place.frame));
             }
         }

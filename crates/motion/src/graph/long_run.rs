@@ -1,15 +1,16 @@
-//! The long run of a random walk: how often it visits each node.
+//! The limiting distribution of a random walk: how often it visits each node in the long run.
 
+use super::grouped::grouped;
 use petgraph::algo::kosaraju_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
 use std::ops::Range;
 
-/// The share of a sweep by which the visits move. Sweeps of whole steps would not converge where
-/// every cycle has several ways back to earlier nodes: the visits would go round.
-const STEP: f64 = 0.9;
-/// The relative change of one sweep below which the visits are known.
-const ENOUGH: f64 = 1e-12;
-/// The greatest number of sweeps over one part; a hundred are usual.
+/// The under-relaxation of a sweep. Full sweeps need not converge: where cycles have several ways
+/// back to earlier nodes, the visits can oscillate.
+const RELAXATION: f64 = 0.9;
+/// The relative change in one sweep below which the visits are known.
+const TOLERANCE: f64 = 1e-12;
+/// The greatest number of sweeps over one component; a hundred are usual.
 const MAX_SWEEPS: usize = 2_000;
 
 /// A way of a random walk.
@@ -24,41 +25,42 @@ pub(super) struct Step {
 /// The computation of the distribution over the nodes that a random walk has in the long run, if it
 /// begins at each node with the same probability.
 ///
-/// The nodes are taken part by part, a part being nodes of which each can be reached from every
-/// other. Of a part that walks leave for good, the expected number of visits is computed; it tells
-/// how many walks arrive in the following parts. In a part that no walk leaves, walks have the
-/// stationary distribution. Both are solved by sweeps of Gauss and Seidel in the order of the
-/// nodes (Stewart, Introduction to the Numerical Solution of Markov Chains, 1994, chapter 3): along
-/// a clip, in which one node follows the other, a single sweep carries the walks as far as they
-/// would go in as many steps as there are nodes.
+/// The nodes are taken by strongly connected components. Of a transient one, which walks leave for
+/// good, the expected number of visits is computed; it tells how many walks arrive in the following
+/// components. In a closed one, which no walk leaves, walks have the stationary distribution. Both
+/// are solved by sweeps of Gauss and Seidel in the order of the nodes (Stewart, Introduction to the
+/// Numerical Solution of Markov Chains, 1994, chapter 3): along a clip, in which one node follows
+/// the other, a single sweep carries the walks as far as they would go in as many steps as there
+/// are nodes.
 #[derive(Clone, Debug)]
 pub(super) struct LongRun {
-    /// How often each node is visited: in parts that are left for good, from its start until then.
+    /// How often each node is visited: in a transient component, from a walk's start until it
+    /// leaves.
     visits: Vec<f64>,
-    /// The nodes, part by part. Walks come from earlier parts, never from later ones.
+    /// The nodes, component by component. Walks come from earlier ones, never from later ones.
     order: Vec<usize>,
-    parts: Vec<Part>,
-    /// The ways from nodes of the same part, without those that stay at their node.
+    components: Vec<Component>,
+    /// The ways from nodes of the same component, without those that stay at their node.
     within: WaysInto,
-    /// The ways from nodes of earlier parts.
+    /// The ways from nodes of earlier components.
     between: WaysInto,
     /// The probability that the next step of a walk leaves a node.
     leaving: Vec<f64>,
-    /// How often walks begin at each node of the present part, or come from earlier parts.
+    /// How often walks begin at each node of the present component, or come from earlier ones.
     entering: Vec<f64>,
-    /// The visits of the nodes of the present part before the sweep.
+    /// The visits of the nodes of the present component before the sweep.
     before: Vec<f64>,
-    /// The present part, and its number of sweeps.
-    part: usize,
+    /// The present component, and its number of sweeps.
+    component: usize,
     sweeps: usize,
 }
 
 #[derive(Clone, Debug)]
-struct Part {
+struct Component {
     /// Its nodes, in the order of all.
     nodes: Range<usize>,
     /// Whether walks leave it for good.
-    is_left: bool,
+    is_transient: bool,
 }
 
 /// The ways into every node.
@@ -78,19 +80,20 @@ impl WaysInto {
         Self { ways: order.into_iter().map(|at| ways[at]).collect(), ends }
     }
 
+    /// Returns a node's part of the ways.
+    fn range(&self, node: usize) -> Range<usize> {
+        node.checked_sub(1).map_or(0, |before| self.ends[before])..self.ends[node]
+    }
+
     /// Returns how many walks arrive at a node.
     fn arriving(&self, node: usize, visits: &[f64]) -> f64 {
-        let from = node.checked_sub(1).map_or(0, |before| self.ends[before]);
-        let ways = &self.ways[from..self.ends[node]];
+        let ways = &self.ways[self.range(node)];
         ways.iter().map(|&(from, probability)| visits[from as usize] * probability).sum()
     }
 
     /// Returns the number of ways into some nodes.
     fn count(&self, nodes: &[usize]) -> usize {
-        let of_one = |&node: &usize| {
-            self.ends[node] - node.checked_sub(1).map_or(0, |before| self.ends[before])
-        };
-        nodes.iter().map(of_one).sum()
+        nodes.iter().map(|&node| self.range(node).len()).sum()
     }
 }
 
@@ -99,85 +102,75 @@ impl LongRun {
     /// sum to 1 at each node, or to 0 where walks end.
     pub(super) fn new(nodes: usize, steps: &[Step]) -> Self {
         let taken = steps.iter().copied().filter(|step| step.probability > 0.0);
-        let mut graph = DiGraph::<(), ()>::with_capacity(nodes, steps.len());
-        for _ in 0..nodes {
-            graph.add_node(());
-        }
+        let moving = taken.clone().filter(|step| step.from != step.to);
         let mut leaving = vec![0.0; nodes];
-        for Step { from, to, probability } in taken.clone().filter(|step| step.from != step.to) {
-            graph.add_edge(from, to, ());
-            leaving[from.index()] += probability;
+        for step in moving.clone() {
+            leaving[step.from.index()] += step.probability;
         }
-        let mut components = kosaraju_scc(&graph);
-        components.reverse();
-        let (mut order, mut parts, mut part_of) =
-            (Vec::with_capacity(nodes), Vec::new(), vec![0; nodes]);
-        for mut component in components {
-            component.sort_unstable();
-            let from = order.len();
-            for node in component {
-                part_of[node.index()] = parts.len();
-                order.push(node.index());
+        let (order, mut components) = components_in_order(nodes, moving.clone());
+        let mut component_of = vec![0; nodes];
+        for (index, component) in components.iter().enumerate() {
+            for &node in &order[component.nodes.clone()] {
+                component_of[node] = index;
             }
-            parts.push(Part { nodes: from..order.len(), is_left: false });
         }
-        let is_within = |step: &Step| part_of[step.from.index()] == part_of[step.to.index()];
-        for step in taken.clone().filter(|step| !is_within(step)) {
-            parts[part_of[step.from.index()]].is_left = true;
+        let of = |node: NodeIndex| component_of[node.index()];
+        let between = moving.clone().filter(|step| of(step.from) != of(step.to));
+        for step in between.clone() {
+            components[of(step.from)].is_transient = true;
         }
-        let within = taken.clone().filter(|step| is_within(step) && step.from != step.to);
         Self {
-            within: WaysInto::new(nodes, within),
-            between: WaysInto::new(nodes, taken.filter(|step| !is_within(step))),
+            within: WaysInto::new(nodes, moving.filter(|step| of(step.from) == of(step.to))),
+            between: WaysInto::new(nodes, between),
             visits: vec![0.0; nodes],
             order,
-            parts,
+            components,
             leaving,
             entering: Vec::new(),
             before: Vec::new(),
-            part: 0,
+            component: 0,
             sweeps: 0,
         }
     }
 
-    /// Follows up to `ways` more ways, at least those of one sweep; returns `true` when all is
+    /// Follows about `ways` more ways, at least those of one sweep; returns `true` when all is
     /// computed.
     pub(super) fn advance(&mut self, ways: usize) -> bool {
         let mut followed = 0;
         while followed < ways.max(1)
-            && let Some(part) = self.parts.get(self.part).cloned()
+            && let Some(component) = self.components.get(self.component).cloned()
         {
-            let nodes = &self.order[part.nodes.clone()];
+            let nodes = &self.order[component.nodes.clone()];
             followed += nodes.len() + self.within.count(nodes);
             if self.sweeps == 0 {
-                self.enter(&part);
+                self.enter(&component);
             }
-            let is_known = self.sweep(&part);
+            let is_known = self.sweep(&component);
             self.sweeps += 1;
             if is_known || self.sweeps >= MAX_SWEEPS {
-                self.finish(&part);
-                (self.part, self.sweeps) = (self.part + 1, 0);
+                self.finish(&component);
+                (self.component, self.sweeps) = (self.component + 1, 0);
             }
         }
-        self.part >= self.parts.len()
+        self.component >= self.components.len()
     }
 
     /// Returns the share of all walks that is at each node in the long run, after the last
-    /// [`advance`](Self::advance): 0 in parts that walks leave for good.
+    /// [`advance`](Self::advance): 0 in transient components.
     pub(super) fn shares(&self) -> impl Iterator<Item = f64> + '_ {
         let mut shares = self.visits.clone();
-        for part in self.parts.iter().filter(|part| part.is_left) {
-            for &node in &self.order[part.nodes.clone()] {
+        for component in self.components.iter().filter(|component| component.is_transient) {
+            for &node in &self.order[component.nodes.clone()] {
                 shares[node] = 0.0;
             }
         }
         shares.into_iter()
     }
 
-    /// Counts the walks that come into a part.
-    fn enter(&mut self, part: &Part) {
+    /// Counts the walks that come into a component.
+    fn enter(&mut self, component: &Component) {
         let start = (self.order.len() as f64).recip();
-        let nodes = &self.order[part.nodes.clone()];
+        let nodes = &self.order[component.nodes.clone()];
         self.entering.clear();
         let from_others =
             nodes.iter().map(|&node| start + self.between.arriving(node, &self.visits));
@@ -188,38 +181,39 @@ impl LongRun {
         }
     }
 
-    /// Computes the visits of a part once from each other; returns whether they have hardly
-    /// changed. A separate function, because browsers optimise a function between two of its calls.
+    /// Does one sweep over a component; returns whether it has converged. A separate function,
+    /// because browsers optimise a function between two of its calls.
     #[inline(never)]
-    fn sweep(&mut self, part: &Part) -> bool {
-        let nodes = &self.order[part.nodes.clone()];
+    fn sweep(&mut self, component: &Component) -> bool {
+        let nodes = &self.order[component.nodes.clone()];
         let visits = &mut self.visits;
         self.before.clear();
         for (&node, &entering) in nodes.iter().zip(&self.entering) {
             self.before.push(visits[node]);
-            // A walk that is alone at its node stays there.
+            // A node without a way to another one keeps its walks.
             if self.leaving[node] > 0.0 {
-                let entering = if part.is_left { entering } else { 0.0 };
+                let entering = if component.is_transient { entering } else { 0.0 };
                 let arriving = entering + self.within.arriving(node, visits);
                 visits[node] = arriving / self.leaving[node];
             }
         }
         let (mut change, mut all) = (0.0, 0.0);
         for (&node, before) in nodes.iter().zip(&self.before) {
-            let moved = STEP * (visits[node] - before);
+            let moved = RELAXATION * (visits[node] - before);
             visits[node] = before + moved;
             change += moved.abs();
             all += visits[node];
         }
-        change <= ENOUGH * all
+        change <= TOLERANCE * all
     }
 
-    /// Makes the visits of a part that no walk leaves the shares of the walks that have come there.
-    fn finish(&mut self, part: &Part) {
-        if part.is_left {
+    /// Scales the visits of a closed component: they sum to the probability that walks end up in
+    /// it.
+    fn finish(&mut self, component: &Component) {
+        if component.is_transient {
             return;
         }
-        let nodes = &self.order[part.nodes.clone()];
+        let nodes = &self.order[component.nodes.clone()];
         let all: f64 = nodes.iter().map(|&node| self.visits[node]).sum();
         let entered: f64 = self.entering.iter().sum();
         for &node in nodes {
@@ -228,27 +222,25 @@ impl LongRun {
     }
 }
 
-/// Groups items by `of`: returns the end of each group, and the indices of the items in that order,
-/// stable within a group. Three passes over flat arrays: with very many edges, lists of lists would
-/// take most of the time.
-pub(super) fn grouped(
-    groups: usize,
-    of: impl Iterator<Item = NodeIndex> + Clone,
-) -> (Vec<usize>, Vec<usize>) {
-    let mut next = vec![0; groups + 1];
-    let mut count = 0;
-    for group in of.clone() {
-        next[group.index() + 1] += 1;
-        count += 1;
+/// Returns the nodes by strongly connected components, those that others are reached from first,
+/// and these components, of which none counts as transient yet.
+fn components_in_order(
+    nodes: usize,
+    steps: impl Iterator<Item = Step>,
+) -> (Vec<usize>, Vec<Component>) {
+    let mut graph = DiGraph::<(), ()>::with_capacity(nodes, 0);
+    for _ in 0..nodes {
+        graph.add_node(());
     }
-    for group in 0..groups {
-        next[group + 1] += next[group];
+    for step in steps {
+        graph.add_edge(step.from, step.to, ());
     }
-    let mut order = vec![0; count];
-    for (thing, group) in of.enumerate() {
-        order[next[group.index()]] = thing;
-        next[group.index()] += 1;
+    let (mut order, mut components) = (Vec::with_capacity(nodes), Vec::new());
+    for mut component in kosaraju_scc(&graph).into_iter().rev() {
+        component.sort_unstable();
+        let first = order.len();
+        order.extend(component.into_iter().map(NodeIndex::index));
+        components.push(Component { nodes: first..order.len(), is_transient: false });
     }
-    next.pop();
-    (next, order)
+    (order, components)
 }

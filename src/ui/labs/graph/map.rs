@@ -36,8 +36,8 @@ pub(crate) fn map_panel_ui(session: &Session, state: &mut UiState, out: &mut Out
 /// The drawn parts of a graph, by the indices of the whole graph's transitions.
 pub(crate) struct MapDrawing {
     built: Arc<BuiltGraph>,
-    /// The probabilities of a walk.
-    walked: Option<Arc<Vec<Option<f64>>>>,
+    /// The probabilities of the walk with which it was drawn; `None` without one.
+    probabilities: Option<Arc<Vec<Option<f64>>>>,
     pub(super) ends: Vec<[Place; 2]>,
     marks: Vec<MatrixMark>,
     pub(super) arcs: Vec<kit::Arc>,
@@ -51,36 +51,33 @@ impl MapDrawing {
     pub(super) fn of(built: &Arc<BuiltGraph>, walk: Option<&Walk>, ui: &Ui) -> Arc<Self> {
         let id = Id::unique("graph drawn");
         let walk = walk.filter(|walk| Arc::ptr_eq(&walk.built, built));
-        let walked = walk.map(|walk| &walk.probabilities);
+        let probabilities = walk.map(|walk| &walk.probabilities);
         let known: Option<Arc<Self>> = ui.data(|data| data.get_temp(id));
         if let Some(known) = known {
-            let is_same = match (&known.walked, walked) {
-                (Some(known), Some(walked)) => Arc::ptr_eq(known, walked),
-                (known, walked) => known.is_none() && walked.is_none(),
+            let is_same = match (&known.probabilities, probabilities) {
+                (Some(known), Some(new)) => Arc::ptr_eq(known, new),
+                (known, new) => known.is_none() && new.is_none(),
             };
             if Arc::ptr_eq(&known.built, built) && is_same {
                 return known;
             }
         }
-        let drawn = Arc::new(Self::new(built, walked));
+        let drawn = Arc::new(Self::new(built, probabilities));
         ui.data_mut(|data| data.insert_temp(id, Arc::clone(&drawn)));
         drawn
     }
 
-    fn new(built: &Arc<BuiltGraph>, walked: Option<&Arc<Vec<Option<f64>>>>) -> Self {
+    fn new(built: &Arc<BuiltGraph>, probabilities: Option<&Arc<Vec<Option<f64>>>>) -> Self {
         let (whole, set) = (built.whole(), built.clips().set());
-        let probable = match walked {
-            Some(walked) => Arc::clone(walked),
-            None => Arc::new(built.probabilities(None)),
-        };
+        let of_jumps = probabilities.map_or_else(|| Arc::new(built.reachable()), Arc::clone);
         let number = |place: Place| set.number(place).unwrap_or(0);
         let ends: Vec<[Place; 2]> =
             whole.jumps().iter().map(|jump| [jump.leave, jump.enter]).collect();
-        let marks = ends.iter().zip(&*probable).map(|(ends, p)| MatrixMark {
+        let marks = ends.iter().zip(&*of_jumps).map(|(ends, p)| MatrixMark {
             at: ends.map(|end| number(end) as f32),
             faint: p.is_none(),
         });
-        let arcs = ends.iter().zip(&*probable).map(|(ends, p)| kit::Arc {
+        let arcs = ends.iter().zip(&*of_jumps).map(|(ends, p)| kit::Arc {
             ends: ends.map(number),
             weight: p.unwrap_or(0.0) as f32,
             faint: p.is_none(),
@@ -105,7 +102,7 @@ impl MapDrawing {
             stretches: stretches.collect(),
             ends,
             built: Arc::clone(built),
-            walked: walked.map(Arc::clone),
+            probabilities: probabilities.map(Arc::clone),
         }
     }
 

@@ -198,8 +198,50 @@ proptest! {
                     }
                 }
             }
+            prop_assert_eq!(places(&held), minima(&set, &distances, &options));
         }
     }
+}
+
+/// Returns the ends of the candidates in their order, found by trying every pair of windows.
+fn minima(
+    set: &FrameSet,
+    distances: &FrameDistances,
+    options: &GraphOptions,
+) -> Vec<(Place, Place)> {
+    let clips = set.clips().len();
+    let mut found = Vec::new();
+    for (a, b) in (0..clips).flat_map(|a| (a..clips).map(move |b| (a, b))) {
+        let block = distances.block(a, b).unwrap();
+        let (rows, columns) = block.size();
+        for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |at| (row, at))) {
+            let too_near = a == b && column < row + options.min_jump(set);
+            let here = block.get(row, column).unwrap();
+            if too_near || set.rounded_cm(here) > options.edge_threshold_cm {
+                continue;
+            }
+            let is_below = |r: usize, c: usize| {
+                let there = block.get(r, c);
+                there.is_none_or(|there| here < there || (here == there && (row, column) <= (r, c)))
+            };
+            let is_minimum = (row.saturating_sub(1)..=row + 1)
+                .all(|r| (column.saturating_sub(1)..=column + 1).all(|c| is_below(r, c)));
+            let is_calm = |place: Place| {
+                let jolts = set.jolts(place.clip).get(place.frame.saturating_sub(1)..=place.frame);
+                jolts.is_some_and(|jolts| jolts.iter().all(|&jolt| jolt <= 4.0))
+            };
+            let [a, b] = [(a, row), (b, column)].map(|(clip, frame)| Place { clip, frame });
+            for (leave, enter) in [(a, b), (b, a)] {
+                let fits = leave.frame >= 1
+                    && enter.frame + options.blend_window < set.frames_of(enter.clip);
+                if is_minimum && fits && is_calm(leave) && is_calm(enter) {
+                    found.push((leave, enter));
+                }
+            }
+        }
+    }
+    found.sort_unstable();
+    found
 }
 
 /// Computes all tiles in an order drawn by `seed`, shared out among several computers as if they
@@ -344,13 +386,23 @@ fn jolt_search_in_slices_equals_jolts_on_demand() {
 }
 
 #[test]
-fn histogram_and_picture_include_every_pair() {
+fn histogram_includes_every_pair() {
     let set = three([30, 22, 18]);
     let all = compared(&set);
     let distances = all.distances(5).unwrap();
     let windows = 26 + 18 + 14;
     let counts = distances.histogram(2.0, 10);
     assert_eq!(counts.iter().sum::<u32>() as usize, windows * (windows - 1) / 2);
+    let _: Planar = all
+        .alignment(Place { clip: 1, frame: 3 }, Place { clip: 0, frame: 4 }, 5)
+        .unwrap()
+        .transform;
+}
+
+#[test]
+fn picture_of_any_part_is_the_mean_of_its_samples() {
+    let set = three([30, 22, 18]);
+    let distances = compared(&set).distances(5).unwrap();
     let tiled = {
         let mut computer = TileComputer::new(Arc::clone(&set), 0).unwrap();
         let options = options(Construction::Minima, 5, 1.0);
@@ -389,8 +441,4 @@ fn histogram_and_picture_include_every_pair() {
         let bits = |picture: &[f32]| picture.iter().map(|cm| cm.to_bits()).collect::<Vec<_>>();
         assert_eq!(bits(&picture), bits(&tiled.picture(rows, columns, factor)));
     }
-    let _: Planar = all
-        .alignment(Place { clip: 1, frame: 3 }, Place { clip: 0, frame: 4 }, 5)
-        .unwrap()
-        .transform;
 }
