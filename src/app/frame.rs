@@ -28,8 +28,9 @@ impl Segue {
         }
         let mut more = self.work_for(max_ms);
         if !more {
-            let is_between = platform::WORKS_BETWEEN_FRAMES;
-            more = if is_between { self.curves.is_coarse() } else { self.refine_curves() };
+            // In a page they are refined between frames.
+            let is_later = platform::WORKS_BETWEEN_FRAMES;
+            more = if is_later { self.curves.is_coarse() } else { self.refine_curves() };
         }
         let ticked = self.tick();
         if ticked {
@@ -45,7 +46,7 @@ impl Segue {
         more && !self.autosave.is_waiting()
     }
 
-    /// Refines the curves under the timeline for a while, when nothing else is to do. Returns
+    /// Refines the curves under the timeline for [`WORK_MS`], when nothing else is to do. Returns
     /// whether there is more.
     pub(super) fn refine_curves(&mut self) -> bool {
         let until_ms = platform::now_ms() + WORK_MS;
@@ -135,7 +136,7 @@ impl Segue {
     fn is_quiet(&mut self, ctx: &egui::Context) -> bool {
         let shown = Shown {
             revision: self.session.revision(),
-            refined_curves: self.curves.refined(),
+            curve_refinements: self.curves.refinements(),
             stored: self.panels.stored,
             theme: self.window.theme,
             page: ctx.content_rect(),

@@ -171,27 +171,32 @@ pub(crate) fn timeline_panel_ui(
 
 /// Returns the curves of a plot in the colours of their owners.
 fn series_of<'a>(lines: &'a [Curve], palette: &Palette) -> Vec<Series<'a>> {
-    let series = |curve: &'a Curve| match &curve.of {
-        CurveOf::Source(part) => Series {
-            name: curve.of.name(),
-            color: part.fill(palette).0,
-            ink: part.ink(palette),
-            strong: false,
-            is_source: true,
-            points: &curve.points,
-            values: curve.values.as_ref().map(|values| values as _),
-        },
-        CurveOf::Pane(index, _) => Series {
-            name: curve.of.name(),
-            // The first result, which the rest of the page shows, has the accent; two more differ
-            // in lightness, the last has a colour that neither clip has.
-            color: [palette.accent, palette.text, palette.muted, palette.others[1]][index % 4],
-            ink: [palette.accent_ink, palette.text, palette.muted, palette.others[1]][index % 4],
-            strong: *index == 0,
-            is_source: false,
-            points: &curve.points,
-            values: curve.values.as_ref().map(|values| values as _),
-        },
+    let series = |curve: &'a Curve| {
+        let (points, name) = (&curve.points, curve.of.name());
+        let values = curve.values.as_ref().map(|values| values as &dyn kit::SeriesValues);
+        match &curve.of {
+            CurveOf::Source(part) => Series {
+                color: part.fill(palette).0,
+                ink: part.ink(palette),
+                strong: false,
+                is_source: true,
+                name,
+                points,
+                values,
+            },
+            CurveOf::Pane(index, _) => Series {
+                // The first result, which the rest of the page shows, has the accent; two more
+                // differ in lightness, the last has a colour that neither clip has.
+                color: [palette.accent, palette.text, palette.muted, palette.others[1]][index % 4],
+                ink: [palette.accent_ink, palette.text, palette.muted, palette.others[1]]
+                    [index % 4],
+                strong: *index == 0,
+                is_source: false,
+                name,
+                points,
+                values,
+            },
+        }
     };
     lines.iter().map(series).collect()
 }

@@ -31,17 +31,17 @@ pub(crate) struct Series<'a> {
     pub(crate) values: Option<&'a dyn SeriesValues>,
 }
 
-/// All values of a curve.
+/// All values of a curve; a trait, because the kit knows no motions.
 pub(crate) trait SeriesValues: fmt::Debug {
     /// Returns the value at a time, seconds; `None` outside the curve or in a gap.
-    fn at(&self, secs: f64) -> Option<f64>;
+    fn value_at(&self, secs: f64) -> Option<f64>;
 }
 
 impl Series<'_> {
     /// Returns the value at a time, seconds; `None` outside the curve or in a gap.
     fn value_at(&self, secs: f64) -> Option<f64> {
         match self.values {
-            Some(values) => values.at(secs),
+            Some(values) => values.value_at(secs),
             None => value_at(self.points, secs),
         }
     }

@@ -5,7 +5,7 @@ use segue_motion::clip::{CurveKind, Motion, joint_values};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The greatest number of points of a curve: no screen shows more.
+/// The greatest number of points of a curve, besides the ends of [`Extremes`]: no screen shows more.
 const MAX_POINTS: usize = 900;
 
 /// The values of a joint, frame by frame of a result.
@@ -17,8 +17,9 @@ pub(super) struct CurveValues {
     /// The frame rate of the result, and the time of the first frame, seconds.
     fps: f64,
     starts_at_secs: f64,
-    /// The frame of the motion in each frame, if they are not the same; `None` without one.
-    own: Option<Vec<Option<usize>>>,
+    /// For each frame of the result the frame of the motion that it shows, if any. Without this,
+    /// the frames are the same.
+    motion_frames: Option<Vec<Option<usize>>>,
     /// The frames that belong to the curve.
     frames: Range<usize>,
 }
@@ -36,34 +37,34 @@ impl CurveValues {
             kind,
             fps: motion.clip().fps(),
             starts_at_secs,
-            own: None,
+            motion_frames: None,
             frames: 0..motion.clip().frames(),
             motion: Arc::clone(motion),
         }
     }
 
-    /// Returns the values in these frames of the motion, one for each frame of a result at a frame
-    /// rate.
+    /// Returns the values in these frames of the motion: that of each frame of a result, if it
+    /// shows one, at the frame rate of the result.
     pub(super) fn of_frames(
         motion: &Arc<Motion>,
         joint: usize,
         kind: CurveKind,
         fps: f64,
-        own: Vec<Option<usize>>,
+        motion_frames: Vec<Option<usize>>,
     ) -> Self {
-        let frames = 0..own.len();
+        let frames = 0..motion_frames.len();
         Self {
             motion: Arc::clone(motion),
             joint,
             kind,
             fps,
             starts_at_secs: 0.0,
-            own: Some(own),
+            motion_frames: Some(motion_frames),
             frames,
         }
     }
 
-    /// Leaves out the frames outside of a range of times.
+    /// Keeps the frames from the first to the last whose time, seconds, is inside.
     pub(super) fn within(self, is_inside: impl Fn(f64) -> bool) -> Self {
         let mut inside = self.frames.clone().filter(|&frame| is_inside(self.secs(frame)));
         let frames = inside.next().map_or(0..0, |first| first..inside.last().unwrap_or(first) + 1);
@@ -77,15 +78,17 @@ impl CurveValues {
 
     /// Returns the points of those of these frames that have a value.
     fn points(&self, frames: impl Iterator<Item = usize>) -> Vec<[f64; 2]> {
-        let of_motion = |frame: usize| match &self.own {
-            Some(own) => own.get(frame).copied().flatten(),
-            None => Some(frame),
+        let clip = self.motion.clip();
+        let motion_frame = |frame: usize| {
+            let shown = match &self.motion_frames {
+                Some(motion_frames) => motion_frames.get(frame).copied().flatten(),
+                None => Some(frame),
+            };
+            shown.filter(|shown| *shown < clip.frames())
         };
-        let last = self.motion.clip().frames();
-        let (frames, own): (Vec<_>, Vec<_>) = frames
-            .filter_map(|frame| Some((frame, of_motion(frame).filter(|own| *own < last)?)))
-            .unzip();
-        let values = joint_values(self.motion.clip(), self.joint, self.kind, own);
+        let (frames, shown): (Vec<_>, Vec<_>) =
+            frames.filter_map(|frame| Some((frame, motion_frame(frame)?))).unzip();
+        let values = joint_values(clip, self.joint, self.kind, shown);
         let points = frames.into_iter().zip(values);
         points.map(|(frame, value)| [self.secs(frame), f64::from(value)]).collect()
     }
@@ -101,15 +104,15 @@ impl CurveValues {
         self.frames.len() > MAX_POINTS
     }
 
-    /// Returns the points of the least and the greatest value of each part of the curve, so that no
-    /// peak is missing. Nothing is computed yet: call [`Extremes::advance`].
+    /// Begins the computation of the least and the greatest value of each of many parts of the
+    /// curve, so that no peak is missing: call [`Extremes::advance`].
     pub(super) fn extremes(&self) -> Extremes {
-        Extremes { points: Vec::new(), next: self.frames.start }
+        Extremes { points: Vec::new(), last: None, next: self.frames.start }
     }
 }
 
 impl kit::SeriesValues for CurveValues {
-    fn at(&self, secs: f64) -> Option<f64> {
+    fn value_at(&self, secs: f64) -> Option<f64> {
         /// Rounding of times, frames.
         const NEAR: f64 = 1e-6;
         let at = (secs - self.starts_at_secs) * self.fps;
@@ -130,12 +133,14 @@ impl kit::SeriesValues for CurveValues {
 #[derive(Debug)]
 pub(super) struct Extremes {
     points: Vec<[f64; 2]>,
+    /// The last point of the curve so far.
+    last: Option<[f64; 2]>,
     /// The first frame of the next part.
     next: usize,
 }
 
 impl Extremes {
-    /// Computes parts of about `frames` more frames; returns the points after the last one.
+    /// Computes parts of about `frames` more frames; returns all points once the last part is done.
     pub(super) fn advance(&mut self, of: &CurveValues, frames: usize) -> Option<Vec<[f64; 2]>> {
         // Two points for each.
         let part = of.frames.len().div_ceil(MAX_POINTS / 2).max(1);
@@ -153,11 +158,12 @@ impl Extremes {
                 let in_time = if low[0] < high[0] { [low, high] } else { [high, low] };
                 // The line begins and ends where the curve does.
                 let first = points.first().copied().filter(|_| self.points.is_empty());
-                let last = points.last().copied().filter(|_| end == of.frames.end);
-                self.points.extend(first.into_iter().chain(in_time).chain(last));
+                self.points.extend(first.into_iter().chain(in_time));
             }
+            self.last = points.last().copied().or(self.last);
             self.next = end;
         }
+        self.points.extend(self.last);
         self.points.dedup_by(|a, b| a[0] == b[0]);
         Some(std::mem::take(&mut self.points))
     }
@@ -224,15 +230,18 @@ mod tests {
             let values = CurveValues::of_motion(&motion, 3, kind, 0.5);
             let all = joint_curve(clip, 3, kind);
             for (frame, value) in all.iter().enumerate() {
-                assert_eq!(values.at(0.5 + frame as f64 / fps), Some(f64::from(*value)));
+                assert_eq!(values.value_at(0.5 + frame as f64 / fps), Some(f64::from(*value)));
             }
-            let between = values.at(0.5 + 1_842.25 / fps).unwrap();
+            let between = values.value_at(0.5 + 1_842.25 / fps).unwrap();
             let expected = 0.75 * f64::from(all[1_842]) + 0.25 * f64::from(all[1_843]);
             assert!((between - expected).abs() < 1e-6, "{between} {expected}");
             let end = 0.5 + (all.len() - 1) as f64 / fps;
-            assert_eq!([values.at(0.4), values.at(end + 0.01)], [None, None]);
+            assert_eq!([values.value_at(0.4), values.value_at(end + 0.01)], [None, None]);
             let part = values.within(|secs| (1.0..2.0).contains(&secs));
-            assert_eq!((part.at(0.9), part.at(1.0).is_some(), part.at(2.0)), (None, true, None));
+            assert_eq!(
+                (part.value_at(0.9), part.value_at(1.0).is_some(), part.value_at(2.0)),
+                (None, true, None)
+            );
             assert!(!part.is_long() && part.sampled().len() == fps as usize);
         }
     }
@@ -245,7 +254,11 @@ mod tests {
         let height = |frame: usize| f64::from(motion.clip().root_translations()[frame].y);
         let points = [[0.1, height(1)], [0.2, height(3)], [0.4, height(5)]];
         assert_eq!(values.sampled(), points);
-        assert_eq!([values.at(0.0), values.at(0.25), values.at(0.3)], [None; 3]);
-        assert_eq!([values.at(0.1), values.at(0.4)], [Some(height(1)), Some(height(5))]);
+        assert_eq!(refined(&values, 1), points);
+        assert_eq!([values.value_at(0.0), values.value_at(0.25), values.value_at(0.3)], [None; 3]);
+        assert_eq!(
+            [values.value_at(0.1), values.value_at(0.4)],
+            [Some(height(1)), Some(height(5))]
+        );
     }
 }

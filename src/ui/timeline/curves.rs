@@ -24,8 +24,8 @@ pub(crate) struct CurveCache {
     what: Option<Plotted>,
     /// A plot for each quantity.
     pub(super) plots: Vec<Plot>,
-    /// The number of curves that were refined.
-    refined: u64,
+    /// The number of curves refined so far.
+    refinements: u64,
 }
 
 /// The choice of curves.
@@ -67,7 +67,8 @@ pub(super) enum CurveOf {
 const FRAMES_AT_ONCE: usize = 1_000;
 
 impl Curve {
-    /// Returns a curve of samples, if it is long; `None` where the motion lacks the joint.
+    /// Returns a curve; a long one consists of samples until [`CurveCache::work`] has refined it.
+    /// `values` are `None` where the motion lacks the joint: the curve then has no points.
     fn new(of: CurveOf, values: Option<CurveValues>) -> Self {
         let points = values.as_ref().map(CurveValues::sampled).unwrap_or_default();
         let values = values.filter(CurveValues::is_long);
@@ -123,8 +124,8 @@ impl CurveCache {
         self.plots.iter().flat_map(|plot| &plot.lines).any(|line| line.extremes.is_some())
     }
 
-    /// Computes a part of the long curves, so that no peak is missing. Returns whether there is
-    /// more to do.
+    /// Refines a part of the first coarse curve, so that no peak is missing; returns whether any is
+    /// left.
     pub(crate) fn work(&mut self) -> bool {
         let mut lines = self.plots.iter_mut().flat_map(|plot| &mut plot.lines);
         let Some(line) = lines.find(|line| line.extremes.is_some()) else { return false };
@@ -132,14 +133,14 @@ impl CurveCache {
             && let Some(points) = extremes.advance(values, FRAMES_AT_ONCE)
         {
             (line.points, line.extremes) = (points, None);
-            self.refined += 1;
+            self.refinements += 1;
         }
         self.is_coarse()
     }
 
-    /// Returns a number that changes when a curve does without a change of what is plotted.
-    pub(crate) fn refined(&self) -> u64 {
-        self.refined
+    /// Returns the number of curves refined so far: when it changes, curves have to be drawn again.
+    pub(crate) fn refinements(&self) -> u64 {
+        self.refinements
     }
 }
 
