@@ -353,12 +353,6 @@ impl Segue {
             || soon
     }
 
-    /// Polls, and returns whether storage is still being read and nothing can be shown yet.
-    pub(crate) fn is_waiting(&mut self) -> bool {
-        self.poll();
-        self.autosave.is_waiting()
-    }
-
     /// Receives what has come, and returns whether stored work may still come, even if the session
     /// has begun without it.
     pub(crate) fn is_restoring(&mut self) -> bool {

@@ -46,6 +46,16 @@ impl Segue {
         more && !self.autosave.is_waiting()
     }
 
+    /// Requests a frame after work between frames: the next one, or, where workers compute and only
+    /// their progress has changed, one in time to show that.
+    pub(super) fn request_frame(&self, is_changed: bool, ctx: &egui::Context) {
+        if !is_changed && self.pool.is_busy() {
+            ctx.request_repaint_after(SHOW_PROGRESS);
+        } else {
+            ctx.request_repaint();
+        }
+    }
+
     /// Refines the curves under the timeline for [`WORK_MS`], when nothing else is to do. Returns
     /// whether there is more.
     pub(super) fn refine_curves(&mut self) -> bool {

@@ -49,8 +49,9 @@ fn work_between_frames(segue: &Shared, is_working: &Rc<Cell<bool>>, ctx: &egui::
         };
         let before = segue.session.revision();
         let more = segue.poll() || segue.refine_curves();
-        if !more || segue.session.revision() != before {
-            ctx.request_repaint();
+        let is_changed = segue.session.revision() != before;
+        if !more || is_changed {
+            segue.request_frame(is_changed, &ctx);
         }
         is_working.set(more);
         more

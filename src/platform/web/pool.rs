@@ -29,8 +29,8 @@ pub(crate) fn set_computer_factory(make: Function) {
     NEW_COMPUTER.with(|slot| slot.replace(Some(make)));
 }
 
-/// Sets the function that is called when an answer has arrived, so that the app takes it even while
-/// no frames are drawn.
+/// Sets the function that is called when an answer has arrived, so that the app takes it between
+/// frames.
 pub(crate) fn set_answer_listener(listener: impl Fn() + 'static) {
     LISTENER.with(|slot| slot.replace(Some(Box::new(listener))));
 }
@@ -503,11 +503,9 @@ fn new_worker(state: &Rc<RefCell<State>>, at: usize) -> Result<Worker, JsValue> 
                 let message = message.and_then(|text| text.as_string()).unwrap_or_default();
                 state.borrow_mut().replace(at, &message);
             }
-            state.borrow().inbox.wake();
-            LISTENER.with(|listener| {
-                if let Some(listener) = &*listener.borrow() {
-                    listener();
-                }
+            LISTENER.with(|listener| match &*listener.borrow() {
+                Some(listener) => listener(),
+                None => state.borrow().inbox.wake(),
             });
         });
     }
