@@ -105,6 +105,7 @@ mod all_pairs;
 mod build;
 mod candidates;
 mod cells;
+mod components;
 mod distances;
 mod error;
 mod export;

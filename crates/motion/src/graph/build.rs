@@ -1,13 +1,14 @@
 //! The motion graph, and its construction.
 
+use super::components::components;
 use super::error::above;
 use super::{Candidates, FrameSet, GraphError, Place};
 use crate::math::Planar;
 use crate::math::sort::sort_by_key;
 use petgraph::Direction;
-use petgraph::algo::kosaraju_scc;
 use petgraph::graph::{DiGraph, EdgeIndex, NodeIndex};
 use petgraph::visit::EdgeRef;
+use std::cmp::Reverse;
 use std::sync::Arc;
 
 /// The construction of a graph.
@@ -412,21 +413,19 @@ impl MotionGraph {
     /// node): inside one, every node can be reached from every other.
     #[must_use]
     pub fn components(&self) -> Vec<Vec<NodeIndex>> {
-        let frames = |nodes: &[NodeIndex]| -> usize {
-            nodes
-                .iter()
-                .filter_map(|&node| self.graph.node_weight(node))
-                .map(|s| s.end - s.start)
-                .sum()
+        let frames = |nodes: &[usize]| -> usize {
+            let stretches =
+                nodes.iter().filter_map(|&node| self.graph.node_weight(NodeIndex::new(node)));
+            stretches.map(|stretch| stretch.end - stretch.start).sum()
         };
-        let mut components = kosaraju_scc(&self.graph);
-        for nodes in &mut components {
-            nodes.sort_unstable();
-        }
-        sort_by_key(&mut components, |nodes| {
-            (std::cmp::Reverse(frames(nodes)), nodes.first().copied())
-        });
-        components
+        let edges = self.graph.raw_edges().iter();
+        let edges = edges.map(|edge| (edge.source().index(), edge.target().index()));
+        let found = components(self.graph.node_count(), edges).into_iter();
+        let mut found: Vec<_> =
+            found.map(|nodes| ((Reverse(frames(&nodes)), nodes.first().copied()), nodes)).collect();
+        sort_by_key(&mut found, |(key, _)| *key);
+        let nodes = |nodes: Vec<usize>| nodes.into_iter().map(NodeIndex::new).collect();
+        found.into_iter().map(|(_, component)| nodes(component)).collect()
     }
 
     /// Returns the graph of the largest component alone: no walk in it comes to an end.

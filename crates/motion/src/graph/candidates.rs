@@ -1,5 +1,6 @@
 //! Candidates for transitions.
 
+use super::grouped::grouped;
 use super::{
     AllPairs, Construction, FrameDistances, FrameSet, GraphError, GraphOptions, Place,
     TileCandidates,
@@ -18,6 +19,10 @@ const CELLS_PER_FOUND: usize = 100;
 /// The greatest jolt ([`jolts`](crate::clip)) of a frame at which a clip is left or entered, as a
 /// multiple of the clip's 99th percentile.
 const MAX_JOLT: f32 = 4.0;
+
+/// The greatest number of groups of equal distances for each candidate: where they are few, sorting
+/// them is quicker.
+const GROUPS_PER_FOUND: usize = 4;
 
 /// A possible transition.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -437,9 +442,8 @@ impl Picker {
 
     pub(super) fn finish(mut self) -> Candidates {
         self.thin_out();
-        self.found.sort_unstable_by(closest_first);
         Candidates {
-            found: self.found,
+            found: sorted(self.found),
             nearest_cm: self.nearest_m.is_finite().then(|| self.set.rounded_cm(self.nearest_m)),
             left_out: self.left_out,
             threshold_cm: self.options.edge_threshold_cm,
@@ -447,7 +451,54 @@ impl Picker {
     }
 }
 
+/// Returns candidates in the order of [`closest_first`]. Their distances are multiples of 0.001 cm,
+/// so that they are grouped without comparisons: sorting hundreds of thousands would take longer
+/// than a frame of the screen.
+fn sorted(mut found: Vec<Candidate>) -> Vec<Candidate> {
+    let thousandths = |of: &Candidate| (of.distance_cm * 1_000.0).round_ties_even() as usize;
+    let most = found.iter().map(thousandths).max().unwrap_or(0);
+    if most > GROUPS_PER_FOUND * found.len() {
+        found.sort_unstable_by(closest_first);
+        return found;
+    }
+    let (ends, order) = grouped(most + 1, found.iter().map(thousandths));
+    let mut sorted: Vec<Candidate> = order.into_iter().map(|at| found[at]).collect();
+    let mut from = 0;
+    for end in ends {
+        sorted[from..end].sort_unstable_by_key(|of| (of.leave, of.enter));
+        from = end;
+    }
+    sorted
+}
+
 fn closest_first(a: &Candidate, b: &Candidate) -> std::cmp::Ordering {
     let places = |of: &Candidate| (of.leave, of.enter);
     a.distance_cm.total_cmp(&b.distance_cm).then(places(a).cmp(&places(b)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn sorted_candidates_are_in_their_order(
+            found in prop::collection::vec((0..90_000_u32, 0..3_usize, 0..9_usize, 0..9_usize), 0..300),
+            scale in prop::sample::select(vec![1_u32, 300, 30_000]),
+        ) {
+            let found: Vec<Candidate> = found
+                .into_iter()
+                .map(|(thousandths, clip, leave, enter)| Candidate {
+                    leave: Place { clip, frame: leave },
+                    enter: Place { clip, frame: enter },
+                    distance_cm: f64::from(thousandths / scale) / 1_000.0,
+                    alignment: Planar::IDENTITY,
+                })
+                .collect();
+            let mut expected = found.clone();
+            expected.sort_by(closest_first);
+            prop_assert_eq!(sorted(found), expected);
+        }
+    }
 }

@@ -1,8 +1,8 @@
 //! The limiting distribution of a random walk: how often it visits each node in the long run.
 
+use super::components::components;
 use super::grouped::grouped;
-use petgraph::algo::kosaraju_scc;
-use petgraph::graph::{DiGraph, NodeIndex};
+use petgraph::graph::NodeIndex;
 use std::ops::Range;
 
 /// The under-relaxation of a sweep. Full sweeps need not converge: where cycles have several ways
@@ -74,7 +74,7 @@ struct WaysInto {
 
 impl WaysInto {
     fn new(nodes: usize, steps: impl Iterator<Item = Step> + Clone) -> Self {
-        let (ends, order) = grouped(nodes, steps.clone().map(|step| step.to));
+        let (ends, order) = grouped(nodes, steps.clone().map(|step| step.to.index()));
         let ways: Vec<(u32, f64)> =
             steps.map(|step| (step.from.index() as u32, step.probability)).collect();
         Self { ways: order.into_iter().map(|at| ways[at]).collect(), ends }
@@ -226,21 +226,14 @@ impl LongRun {
 /// and these components, of which none counts as transient yet.
 fn components_in_order(
     nodes: usize,
-    steps: impl Iterator<Item = Step>,
+    steps: impl Iterator<Item = Step> + Clone,
 ) -> (Vec<usize>, Vec<Component>) {
-    let mut graph = DiGraph::<(), ()>::with_capacity(nodes, 0);
-    for _ in 0..nodes {
-        graph.add_node(());
-    }
-    for step in steps {
-        graph.add_edge(step.from, step.to, ());
-    }
-    let (mut order, mut components) = (Vec::with_capacity(nodes), Vec::new());
-    for mut component in kosaraju_scc(&graph).into_iter().rev() {
-        component.sort_unstable();
+    let edges = steps.map(|step| (step.from.index(), step.to.index()));
+    let (mut order, mut parts) = (Vec::with_capacity(nodes), Vec::new());
+    for component in components(nodes, edges).into_iter().rev() {
         let first = order.len();
-        order.extend(component.into_iter().map(NodeIndex::index));
-        components.push(Component { nodes: first..order.len(), is_transient: false });
+        order.extend(component);
+        parts.push(Component { nodes: first..order.len(), is_transient: false });
     }
-    (order, components)
+    (order, parts)
 }

@@ -92,7 +92,7 @@ impl Choices {
             setting("a width of the exponential law", sigma_cm, 1e-3, 1e6)?;
         }
         let edges = graph.graph.raw_edges();
-        let sources = edges.iter().map(petgraph::graph::Edge::source);
+        let sources = edges.iter().map(|edge| edge.source().index());
         let (ends, order) = grouped(graph.graph.node_count(), sources);
         let mut ways = Vec::with_capacity(edges.len());
         let (mut from, mut of_one) = (0, Vec::new());
