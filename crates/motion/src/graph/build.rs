@@ -2,7 +2,7 @@
 
 use super::components::components;
 use super::error::above;
-use super::{Candidates, FrameSet, GraphError, Place};
+use super::{Candidate, Candidates, FrameSet, GraphError, Place};
 use crate::math::Planar;
 use crate::math::sort::sort_by_key;
 use petgraph::Direction;
@@ -227,9 +227,9 @@ impl MotionGraph {
         options: &GraphOptions,
     ) -> Result<Self, GraphError> {
         options.check(set)?;
-        let near = |distance: f64| distance <= options.edge_threshold_cm;
-        let chosen: Vec<Jump> = (candidates.found.iter())
-            .take_while(|candidate| near(candidate.distance_cm))
+        let is_near = |of: &Candidate| of.distance_cm <= options.edge_threshold_cm;
+        let near = candidates.found.partition_point(is_near);
+        let chosen: Vec<Jump> = (candidates.found.iter().take(near))
             .map(|candidate| Jump {
                 leave: candidate.leave,
                 enter: candidate.enter,
@@ -252,8 +252,8 @@ impl MotionGraph {
         let mut made = Self {
             set: Arc::clone(set),
             options: *options,
-            graph: DiGraph::new(),
-            jumps: Vec::new(),
+            graph: DiGraph::with_capacity(0, near),
+            jumps: Vec::with_capacity(near),
             origins: Vec::new(),
             left_out: 0,
         };
