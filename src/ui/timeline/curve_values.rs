@@ -5,7 +5,8 @@ use segue_motion::clip::{CurveKind, Motion, joint_values};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The greatest number of points of a curve, besides the ends of [`Extremes`]: no screen shows more.
+/// The greatest number of points of a curve, besides the ends of [`Extremes`]: no screen shows
+/// more.
 const MAX_POINTS: usize = 900;
 
 /// The values of a joint, frame by frame of a result.

@@ -1,8 +1,8 @@
 //! Groups of items in flat arrays.
 
-/// Groups items by `of`, the number of the group of each: returns the end of each group, and the indices of the items in that order,
-/// stable within a group. Three passes over flat arrays: with very many edges, lists of lists would
-/// take most of the time.
+/// Groups items by `of`, the number of the group of each: returns the end of each group, and the
+/// indices of the items in that order, stable within a group. Three passes over flat arrays: with
+/// very many edges, lists of lists would take most of the time.
 pub(super) fn grouped(
     groups: usize,
     of: impl Iterator<Item = usize> + Clone,
