@@ -20,7 +20,7 @@ const CELLS_PER_FOUND: usize = 100;
 /// multiple of the clip's 99th percentile.
 const MAX_JOLT: f32 = 4.0;
 
-/// The greatest number of groups of equal distances for each candidate: where they are few, sorting
+/// The greatest number of distances and of places for each candidate: where these are few, sorting
 /// them is quicker.
 const GROUPS_PER_FOUND: usize = 4;
 
@@ -443,7 +443,9 @@ impl Picker {
     pub(super) fn finish(mut self) -> Candidates {
         self.thin_out();
         Candidates {
-            found: sorted(self.found),
+            found: sorted(self.found, self.set.frames(), |place| {
+                self.set.number(place).unwrap_or(0)
+            }),
             nearest_cm: self.nearest_m.is_finite().then(|| self.set.rounded_cm(self.nearest_m)),
             left_out: self.left_out,
             threshold_cm: self.options.edge_threshold_cm,
@@ -451,24 +453,33 @@ impl Picker {
     }
 }
 
-/// Returns candidates in the order of [`closest_first`]. Their distances are multiples of 0.001 cm,
-/// so that they are grouped without comparisons: sorting hundreds of thousands would take longer
-/// than a frame of the screen.
-fn sorted(mut found: Vec<Candidate>) -> Vec<Candidate> {
+/// Returns candidates in the order of [`closest_first`]; `number` is that of a place among `frames`
+/// of the set. Their distances are multiples of 0.001 cm, and their places are numbers, so that
+/// they are grouped without comparisons: sorting hundreds of thousands would take longer than a
+/// frame of the screen.
+fn sorted(
+    mut found: Vec<Candidate>,
+    frames: usize,
+    number: impl Fn(Place) -> usize,
+) -> Vec<Candidate> {
     let thousandths = |of: &Candidate| (of.distance_cm * 1_000.0).round_ties_even() as usize;
-    let most = found.iter().map(thousandths).max().unwrap_or(0);
-    if most > GROUPS_PER_FOUND * found.len() {
+    let distances = found.iter().map(thousandths).max().map_or(0, |most| most.saturating_add(1));
+    if distances.max(frames) > GROUPS_PER_FOUND * found.len() {
         found.sort_unstable_by(closest_first);
         return found;
     }
-    let (ends, order) = grouped(most + 1, found.iter().map(thousandths));
-    let mut sorted: Vec<Candidate> = order.into_iter().map(|at| found[at]).collect();
-    let mut from = 0;
-    for end in ends {
-        sorted[from..end].sort_unstable_by_key(|of| (of.leave, of.enter));
-        from = end;
+    let keys = |key: &dyn Fn(&Candidate) -> usize| found.iter().map(key).collect::<Vec<_>>();
+    let mut order: Vec<usize> = (0..found.len()).collect();
+    // Each grouping keeps the order of the one before within its groups.
+    for (groups, keys) in [
+        (frames, keys(&|of| number(of.enter))),
+        (frames, keys(&|of| number(of.leave))),
+        (distances, keys(&thousandths)),
+    ] {
+        let (_, by_key) = grouped(groups, order.iter().map(|&at| keys[at]));
+        order = by_key.into_iter().map(|at| order[at]).collect();
     }
-    sorted
+    order.into_iter().map(|at| found[at]).collect()
 }
 
 fn closest_first(a: &Candidate, b: &Candidate) -> std::cmp::Ordering {
@@ -498,7 +509,8 @@ mod tests {
                 .collect();
             let mut expected = found.clone();
             expected.sort_by(closest_first);
-            prop_assert_eq!(sorted(found), expected);
+            let number = |place: Place| 9 * place.clip + place.frame;
+            prop_assert_eq!(sorted(found, 27, number), expected);
         }
     }
 }
