@@ -2,9 +2,10 @@
 // kept and used in another lab.
 
 import assert from "node:assert/strict";
+import { Buffer } from "node:buffer";
 import { readFileSync } from "node:fs";
 import { onBothBackends, onOneBackend } from "./harness.mjs";
-import { apart, until } from "./help.mjs";
+import { apart, striding, until } from "./help.mjs";
 
 const DESK = { viewport: [1000, 700] };
 
@@ -215,4 +216,25 @@ onOneBackend("kept result can be used, linked and restored", async ({ open }) =>
   await page.reload();
   await ready();
   await until("it is in the library", async () => (await segue("clips")).some((clip) => clip.id === id));
+});
+
+// Fails when a long curve stays as it is first drawn, from every n-th frame.
+onOneBackend("spike of one frame is drawn in the curve of a long clip", async ({ open }) => {
+  const { segue, load, pixels } = await open("lab=view&play=off&theme=dark&curve=height&joint=hips", { viewport: [1440, 900], scale: 1 });
+  const lines = striding({ frames: 3000 }).toString().split("\n");
+  const spike = lines.findIndex((line) => line.startsWith("Frame Time")) + 1 + 1501;
+  lines[spike] = lines[spike].trim().split(/\s+/).map((number, channel) => (channel === 1 ? Number(number) + 60 : number)).join(" ");
+  const { clips: [clip] } = await load("spike.bvh", Buffer.from(lines.join("\n")));
+  await segue("set", { a: clip.id });
+  /** The number of rows of the plot in which the curve is drawn near a place. */
+  const height = (picture, x) => {
+    const isCurve = ([red, green, blue]) => green > 140 && green > red + 50 && blue > red;
+    const columns = Array.from({ length: 24 }, (_, at) => x - 12 + at);
+    return Array.from({ length: 90 }, (_, at) => 780 + at).filter((y) => columns.some((column) => isCurve(picture.at(column, y)))).length;
+  };
+  await until("the spike, in the middle, is higher than the steps beside it", async () => {
+    const picture = await pixels();
+    const [middle, beside] = [777, 677].map((x) => height(picture, x));
+    return beside > 0 && middle > beside + 15;
+  });
 });
