@@ -118,12 +118,10 @@ pub struct BuiltGraph {
     pub(super) key: GraphKey,
     whole: Arc<MotionGraph>,
     graph: Arc<MotionGraph>,
-    /// The component of each node of the whole graph, the largest first.
-    component: Vec<usize>,
     /// The share of all frames of each component that allows endless walks, the largest first.
     component_shares: Vec<f64>,
-    /// The components of these shares, in the same order.
-    share_components: Vec<usize>,
+    /// The index in these of the component of each node of the whole graph.
+    share_of: Vec<Option<usize>>,
     dead_ends: usize,
     is_truncated: bool,
     /// For each clip, whether walks can use any of it.
@@ -176,21 +174,20 @@ impl BuiltGraph {
     ) -> Result<Self, GraphError> {
         let graph =
             if key.pruned { Arc::new(whole.pruned_to(components)?) } else { Arc::clone(&whole) };
-        let mut component = vec![0; whole.graph().node_count()];
-        let (mut component_shares, mut share_components) = (Vec::new(), Vec::new());
+        let mut share_of = vec![None; whole.graph().node_count()];
+        let mut component_shares = Vec::new();
         let all = clips.set().frames().max(1) as f64;
-        for (index, nodes) in components.iter().enumerate() {
-            for node in nodes {
-                if let Some(slot) = component.get_mut(node.index()) {
-                    *slot = index;
-                }
-            }
+        for nodes in components {
             let inside = |node: &NodeIndex| {
                 let mut next = whole.graph().neighbors(*node);
                 next.any(|next| nodes.binary_search(&next).is_ok())
             };
             if nodes.iter().any(inside) {
-                share_components.push(index);
+                for node in nodes {
+                    if let Some(slot) = share_of.get_mut(node.index()) {
+                        *slot = Some(component_shares.len());
+                    }
+                }
                 let stretches = nodes.iter().filter_map(|&node| whole.graph().node_weight(node));
                 component_shares.push(
                     stretches.map(|stretch| stretch.end - stretch.start).sum::<usize>() as f64
@@ -210,9 +207,8 @@ impl BuiltGraph {
             dead_ends: whole.dead_ends().len(),
             whole,
             graph,
-            component,
             component_shares,
-            share_components,
+            share_of,
         })
     }
 
@@ -250,8 +246,7 @@ impl BuiltGraph {
     /// graph; `None` if it is in none of them.
     #[must_use]
     pub fn component_of(&self, node: usize) -> Option<usize> {
-        let component = self.component.get(node)?;
-        self.share_components.iter().position(|known| known == component)
+        self.share_of.get(node).copied().flatten()
     }
 
     /// Returns the shares of all frames of the components that allow endless walks, the largest
