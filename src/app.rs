@@ -53,9 +53,6 @@ use window::Window;
 
 /// The time limit for sliced work in one call, milliseconds.
 const WORK_MS: f64 = 5.0;
-/// The same in a frame while work goes on between frames: the panels are laid out in the same task
-/// of the page's thread.
-const WORK_IN_FRAME_MS: f64 = 1.0;
 /// The shortest and the longest time limit for sending clips to workers in one call, milliseconds.
 const MIN_SEND_MS: f64 = 1.0;
 const MAX_SEND_MS: f64 = 3.0;

@@ -1,7 +1,7 @@
 //! A frame of the window: the panels, their commands, the picture, and the time of the next frame.
 
 use super::window::Shown;
-use super::{Segue, WORK_IN_FRAME_MS, WORK_MS, picture};
+use super::{Segue, WORK_MS, picture};
 use crate::platform;
 use crate::ui::{self, Filming};
 use eframe::egui;
@@ -17,20 +17,19 @@ const SOFTWARE_FRAME_MS: f64 = 33.0;
 impl Segue {
     /// Advances the app before a frame, and now and then while the page is hidden. Draws nothing.
     /// Returns whether there is work left. `is_working` tells whether work goes on between frames:
-    /// then this frame does less.
+    /// this frame then does none, because the panels are laid out in the same task of the page's
+    /// thread.
     pub(super) fn logic(&mut self, ctx: &egui::Context, is_working: bool) -> bool {
         self.clock.frame_began = platform::now_ms();
         self.receive_all();
-        let mut max_ms = if is_working { WORK_IN_FRAME_MS } else { WORK_MS };
+        let mut max_ms = if is_working { 0.0 } else { WORK_MS };
         if platform::WORKS_BETWEEN_FRAMES {
             // Receiving counts towards the limit; what is left is done between frames.
             max_ms -= platform::now_ms() - self.clock.frame_began;
         }
         let mut more = self.work_for(max_ms);
-        if !more {
-            // In a page they are refined between frames.
-            let is_later = platform::WORKS_BETWEEN_FRAMES;
-            more = if is_later { self.curves.is_coarse() } else { self.refine_curves() };
+        if !more && !platform::WORKS_BETWEEN_FRAMES {
+            more = self.refine();
         }
         let ticked = self.tick();
         if ticked {
@@ -56,19 +55,27 @@ impl Segue {
         }
     }
 
-    /// Refines the curves under the timeline for [`WORK_MS`], when nothing else is to do. Returns
-    /// whether there is more.
-    pub(super) fn refine_curves(&mut self) -> bool {
-        let until_ms = platform::now_ms() + WORK_MS;
-        let mut more = self.curves.is_coarse();
-        while more && platform::now_ms() < until_ms {
-            more = self.curves.work();
-        }
-        more
+    /// Returns whether panels show less than there is to see: the curves under the timeline, or the
+    /// transitions of a graph.
+    fn is_coarse(&self) -> bool {
+        self.curves.is_coarse() || self.panels.labs.graph.drawing.is_begun()
     }
 
-    /// Shows the panels, carries out their commands and draws the picture.
-    pub(super) fn ui(&mut self, ui: &mut egui::Ui, frame: &eframe::Frame) {
+    /// Refines what the panels show for [`WORK_MS`], when nothing else is to do. Returns whether
+    /// there is more.
+    pub(super) fn refine(&mut self) -> bool {
+        let until_ms = platform::now_ms() + WORK_MS;
+        while self.is_coarse() && platform::now_ms() < until_ms {
+            if !self.panels.labs.graph.drawing.work() {
+                self.curves.work();
+            }
+        }
+        self.is_coarse()
+    }
+
+    /// Shows the panels, carries out their commands and draws the picture. Returns whether there
+    /// may be work to do before the next frame.
+    pub(super) fn ui(&mut self, ui: &mut egui::Ui, frame: &eframe::Frame) -> bool {
         let dropped = ui.input_mut(|input| std::mem::take(&mut input.raw.dropped_files));
         if !dropped.is_empty() || ui.input(|input| !input.raw.hovered_files.is_empty()) {
             self.warn_of_host();
@@ -77,7 +84,7 @@ impl Segue {
             platform::read_dropped(&dropped, &self.inbox);
         }
         if self.autosave.is_waiting() {
-            return;
+            return false;
         }
         self.note_frame_time(ui.ctx(), frame);
         self.apply_theme(ui.ctx());
@@ -102,7 +109,8 @@ impl Segue {
         let highlights = ui::highlights(&self.session, &self.panels);
         let is_taken = self.inbox.take_for_picture();
         self.picture.finish(slot, &self.session, (theme.palette(), look), highlights, is_taken, ui);
-        if self.session.revision() != before {
+        let has_work = self.session.revision() != before || self.is_coarse();
+        if has_work {
             ui.ctx().request_repaint();
         }
         if self.picture.is_moving() {
@@ -110,6 +118,7 @@ impl Segue {
         }
         self.frame_stats.begin();
         self.clock.frame_took = platform::now_ms() - self.clock.frame_began;
+        has_work
     }
 
     /// Hands the panels what they show and the session does not have.
@@ -146,7 +155,7 @@ impl Segue {
     fn is_quiet(&mut self, ctx: &egui::Context) -> bool {
         let shown = Shown {
             revision: self.session.revision(),
-            curve_refinements: self.curves.refinements(),
+            refinements: self.curves.refinements() + self.panels.labs.graph.drawing.count(),
             stored: self.panels.stored,
             theme: self.window.theme,
             page: ctx.content_rect(),

@@ -48,7 +48,7 @@ fn work_between_frames(segue: &Shared, is_working: &Rc<Cell<bool>>, ctx: &egui::
             return true;
         };
         let before = segue.session.revision();
-        let more = segue.poll() || segue.refine_curves();
+        let more = segue.poll() || segue.refine();
         let is_changed = segue.session.revision() != before;
         if !more || is_changed {
             segue.request_frame(is_changed, &ctx);
@@ -84,8 +84,9 @@ impl eframe::App for View {
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
-        if let Ok(mut segue) = self.segue.try_borrow_mut() {
-            segue.ui(ui, frame);
+        let Ok(mut segue) = self.segue.try_borrow_mut() else { return };
+        if segue.ui(ui, frame) && platform::WORKS_BETWEEN_FRAMES {
+            work_between_frames(&self.segue, &self.is_working, ui.ctx());
         }
     }
 

@@ -35,7 +35,7 @@ pub(super) struct Window {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Shown {
     pub(super) revision: u64,
-    pub(super) curve_refinements: u64,
+    pub(super) refinements: u64,
     pub(super) stored: Option<StorageState>,
     pub(super) theme: Option<Theme>,
     pub(super) page: egui::Rect,

@@ -130,6 +130,11 @@ fn stepped_harness(size: Vec2, theme: Theme, dt_secs: f32, page: Page) -> Harnes
             let Page { session, state, curves, .. } = page;
             let out =
                 ui.scope_builder(whole, |ui| show(session, state, curves, &mut paint, ui)).inner;
+            // As the app does between frames.
+            if state.labs.graph.drawing.is_begun() {
+                while state.labs.graph.drawing.work() {}
+                ui.ctx().request_repaint();
+            }
             for command in &out.commands {
                 if page.obeys {
                     page.session.apply(command.clone()).expect("a page as the tests need it");

@@ -2,12 +2,14 @@
 //! graph as bars and arcs, and the table of numbers.
 
 mod clips;
+mod drawing;
 mod jump;
 mod map;
 mod rows;
 mod strip;
 mod table;
 
+pub(crate) use drawing::DrawingCache;
 pub(crate) use map::{is_open, map_panel_ui, map_share, map_ui};
 pub(crate) use rows::{compare_windows, graph_ui, seed_detail};
 pub(crate) use strip::walk_panel_ui;

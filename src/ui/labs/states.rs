@@ -1,5 +1,6 @@
 //! The state of the labs between frames.
 
+use super::graph::DrawingCache;
 use super::path::hand::PathHand;
 use crate::ui::kit::Chosen;
 use eframe::egui::Vec2;
@@ -29,6 +30,8 @@ pub(crate) struct GraphState {
     pub(crate) walk_secs: f64,
     /// Whether the map has a panel of its own; otherwise it is among the parameters.
     pub(crate) has_map_panel: bool,
+    /// The drawn parts of the graph.
+    pub(crate) drawing: DrawingCache,
 }
 
 /// The state of the Match lab: the input of the stick, and the choices.

@@ -3,15 +3,15 @@
 use super::jump::{jump_words, named, open_jump, point_at};
 use super::{clips, table};
 use crate::ui::clip_drag::clip_dropped_on;
-use crate::ui::kit::{self, Fate, Matrix, MatrixMark, Stretch, TILE, Tile};
+use crate::ui::kit::{self, Matrix, TILE, Tile};
 use crate::ui::out::Out;
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{palette_of, space, theme_of};
-use eframe::egui::{Color32, ColorImage, Id, ScrollArea, TextureHandle, TextureOptions, Ui};
+use eframe::egui::{Color32, ColorImage, ScrollArea, TextureHandle, TextureOptions, Ui};
 use segue_motion::graph::{DistanceDetail, Place};
 use segue_session::LabId;
-use segue_session::{BuiltGraph, DistanceField, Distances, Session, Walk};
+use segue_session::{DistanceField, Distances, Session};
 use segue_text::Message;
 use std::sync::Arc;
 
@@ -33,103 +33,6 @@ pub(crate) fn map_panel_ui(session: &Session, state: &mut UiState, out: &mut Out
     });
 }
 
-/// The drawn parts of a graph, by the indices of the whole graph's transitions.
-pub(crate) struct MapDrawing {
-    built: Arc<BuiltGraph>,
-    /// The probabilities of the walk with which it was drawn; `None` without one.
-    probabilities: Option<Arc<Vec<Option<f64>>>>,
-    pub(super) ends: Vec<[Place; 2]>,
-    marks: Vec<MatrixMark>,
-    pub(super) arcs: Vec<kit::Arc>,
-    /// The indices of the arcs that are drawn.
-    pub(super) drawn_arcs: Vec<usize>,
-    pub(super) stretches: Vec<Stretch>,
-}
-
-impl MapDrawing {
-    /// Returns the parts, made anew when the graph or its probabilities have changed.
-    pub(super) fn of(built: &Arc<BuiltGraph>, walk: Option<&Walk>, ui: &Ui) -> Arc<Self> {
-        let id = Id::unique("graph drawn");
-        let walk = walk.filter(|walk| Arc::ptr_eq(&walk.built, built));
-        let probabilities = walk.map(|walk| &walk.probabilities);
-        let known: Option<Arc<Self>> = ui.data(|data| data.get_temp(id));
-        if let Some(known) = known {
-            let is_same = match (&known.probabilities, probabilities) {
-                (Some(known), Some(new)) => Arc::ptr_eq(known, new),
-                (known, new) => known.is_none() && new.is_none(),
-            };
-            if Arc::ptr_eq(&known.built, built) && is_same {
-                return known;
-            }
-        }
-        let drawn = Arc::new(Self::new(built, probabilities));
-        ui.data_mut(|data| data.insert_temp(id, Arc::clone(&drawn)));
-        drawn
-    }
-
-    fn new(built: &Arc<BuiltGraph>, probabilities: Option<&Arc<Vec<Option<f64>>>>) -> Self {
-        let (whole, set) = (built.whole(), built.clips().set());
-        let of_jumps = probabilities.map_or_else(|| Arc::new(built.reachable()), Arc::clone);
-        let number = |place: Place| set.number(place).unwrap_or(0);
-        let ends: Vec<[Place; 2]> =
-            whole.jumps().iter().map(|jump| [jump.leave, jump.enter]).collect();
-        let marks = ends.iter().zip(&*of_jumps).map(|(ends, p)| MatrixMark {
-            at: ends.map(|end| number(end) as f32),
-            faint: p.is_none(),
-        });
-        let arcs = ends.iter().zip(&*of_jumps).map(|(ends, p)| kit::Arc {
-            ends: ends.map(number),
-            weight: p.unwrap_or(0.0) as f32,
-            faint: p.is_none(),
-        });
-        let arcs: Vec<kit::Arc> = arcs.collect();
-        let dead = whole.dead_ends();
-        let stretches = whole.graph().node_indices().filter_map(|node| {
-            let stretch = whole.graph().node_weight(node)?;
-            let from = set.number(Place { clip: stretch.clip, frame: stretch.start })?;
-            let fate = match built.component_of(node.index()) {
-                Some(0) => Fate::Main,
-                Some(ring) => Fate::Apart(ring - 1),
-                None if dead.contains(&node) => Fate::End,
-                None => Fate::Astray,
-            };
-            Some(Stretch { from, to: from + stretch.end - stretch.start, fate })
-        });
-        Self {
-            marks: marks.collect(),
-            drawn_arcs: kit::drawn_arcs(&arcs),
-            arcs,
-            stretches: stretches.collect(),
-            ends,
-            built: Arc::clone(built),
-            probabilities: probabilities.map(Arc::clone),
-        }
-    }
-
-    /// Returns the transition under the pointer, else the one that plays.
-    pub(super) fn pointed_or_lit(
-        &self,
-        pointed: Option<[Place; 2]>,
-        walk: Option<&Walk>,
-        secs: f64,
-    ) -> Option<usize> {
-        let pointed = pointed.and_then(|ends| self.ends.iter().position(|known| *known == ends));
-        pointed.or_else(|| self.lit(walk, secs))
-    }
-
-    /// Returns the transition that plays now, or the one that is shown alone.
-    fn lit(&self, walk: Option<&Walk>, secs: f64) -> Option<usize> {
-        let walk = walk.filter(|walk| Arc::ptr_eq(&walk.built, &self.built))?;
-        let at = walk.at(secs)?;
-        let stay = if walk.is_jump { 1 } else { at.stay };
-        let seam = walk.passed.get(stay)?.seam?;
-        if !walk.is_jump && at.left.is_none() {
-            return None;
-        }
-        self.ends.iter().position(|ends| *ends == [seam.leave, seam.enter])
-    }
-}
-
 /// Draws the map, the legend, and the transition or the windows under the pointer in words.
 pub(crate) fn map_ui(
     session: &Session,
@@ -147,7 +50,7 @@ pub(crate) fn map_ui(
     let Some(field) = session.graph_field() else {
         return;
     };
-    let drawn = built.map(|built| MapDrawing::of(built, walk.map(|walk| &**walk), ui));
+    let drawn = state.labs.graph.drawing.of(session);
     let set = graph_clips.set();
     let parts: Vec<(usize, Message)> = (graph_clips.names().iter().enumerate())
         .filter_map(|(clip, name)| {

@@ -1,7 +1,6 @@
 //! The bottom panel: the walk in time, and the graph as bars and arcs.
 
 use super::jump::{jump_words, named, no_way, open_jump, point_at};
-use super::map::MapDrawing;
 use super::rows;
 use crate::ui::kit::{self, Moment, Strip, Timeline, TimelineEvent};
 use crate::ui::out::Out;
@@ -86,7 +85,7 @@ fn strip_ui(session: &Session, walk: &Arc<Walk>, state: &mut UiState, out: &mut 
     let Some(built) = session.graph_built() else {
         return;
     };
-    let drawn = MapDrawing::of(built, Some(walk), ui);
+    let drawn = state.labs.graph.drawing.of(session);
     let (clips, set) = (built.clips(), built.clips().set());
     let bars: Vec<(Message, usize)> = clips
         .names()
@@ -104,19 +103,22 @@ fn strip_ui(session: &Session, walk: &Arc<Walk>, state: &mut UiState, out: &mut 
     let strip = Strip {
         label: text::GRAPH_STRIP,
         bars: &bars,
-        stretches: &drawn.stretches,
-        arcs: &drawn.arcs,
-        drawn: &drawn.drawn_arcs,
+        stretches: drawn.as_ref().map_or(&[], |drawn| &drawn.stretches),
+        arcs: drawn.as_ref().map_or(&[], |drawn| &drawn.arcs),
+        drawn: drawn.as_ref().map_or(&[], |drawn| &drawn.drawn_arcs),
         now: at.and_then(|at| set.number(at.place)),
         lit_stretch,
-        lit_arc: drawn.pointed_or_lit(state.labs.graph.last_jump, Some(walk), session.now_secs()),
+        lit_arc: drawn.as_ref().and_then(|drawn| {
+            drawn.pointed_or_lit(state.labs.graph.last_jump, Some(walk), session.now_secs())
+        }),
     };
     let height = (ui.available_height() - space::XS).max(40.0);
     let response = kit::strip_ui(&strip, height, ui);
-    if let Some(&ends) = response.hovered_arc.and_then(|arc| drawn.ends.get(arc)) {
+    let ends = |arc: usize| drawn.as_ref()?.ends.get(arc).copied();
+    if let Some(ends) = response.hovered_arc.and_then(ends) {
         point_at(ends, Some(walk), state);
     }
-    if let Some(&ends) = response.clicked_arc.and_then(|arc| drawn.ends.get(arc)) {
+    if let Some(ends) = response.clicked_arc.and_then(ends) {
         open_jump(ends, session, state, out);
     }
     if let Some(clip) = response.clicked_bar {
