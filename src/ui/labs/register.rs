@@ -451,9 +451,6 @@ struct Picture {
     high_cm: f64,
 }
 
-/// The greatest number of texels along a side: a map has no more points.
-const MAX_TEXELS: usize = 512;
-
 /// One cell in so many is sampled for the upper end of the colours.
 const SAMPLED_CELLS: usize = 13;
 
@@ -469,9 +466,7 @@ fn picture_of(map: &Arc<DistanceMap>, ui: &Ui) -> Option<Picture> {
     {
         return Some(known);
     }
-    let matrix = map.matrix();
-    let factor = matrix.rows().max(matrix.columns()).div_ceil(MAX_TEXELS).max(1);
-    let pooled = matrix.pooled(factor);
+    let pooled = map.picture();
     let (rows, columns) = (pooled.rows(), pooled.columns());
     if rows == 0 || columns == 0 {
         return None;

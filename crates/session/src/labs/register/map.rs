@@ -4,7 +4,10 @@ use crate::labs::pair::Pair;
 use segue_motion::clip::Motion;
 use segue_motion::math::Planar;
 use segue_motion::registration::{DistanceMatrix, align, limb_weights};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
+
+/// The greatest number of cells along a side of a picture: a map on screen has no more points.
+const PICTURE_CELLS: usize = 512;
 
 /// The distances between the frames of two clips, with the clips.
 ///
@@ -13,6 +16,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct DistanceMap {
     matrix: DistanceMatrix,
+    picture: OnceLock<DistanceMatrix>,
     motions: [Arc<Motion>; 2],
     weights: Vec<f64>,
     cm_scale: f64,
@@ -29,6 +33,7 @@ impl DistanceMap {
         let height = motions[0].roles().body_height(skeleton);
         Self {
             matrix,
+            picture: OnceLock::new(),
             weights: limb_weights(skeleton),
             cm_scale: DistanceMatrix::cm_scale(height.into()),
             motions,
@@ -39,6 +44,23 @@ impl DistanceMap {
     #[must_use]
     pub fn matrix(&self) -> &DistanceMatrix {
         &self.matrix
+    }
+
+    /// Returns the distances in at most 512 cells along a side, each the mean of a square. The
+    /// first call takes about as long as reading all of them.
+    #[must_use]
+    pub fn picture(&self) -> &DistanceMatrix {
+        self.picture.get_or_init(|| self.pooled())
+    }
+
+    /// Makes the picture; returns `false` if it was made before.
+    pub(super) fn make_picture(&self) -> bool {
+        self.picture.get().is_none() && self.picture.set(self.pooled()).is_ok()
+    }
+
+    fn pooled(&self) -> DistanceMatrix {
+        let longest = self.matrix.rows().max(self.matrix.columns());
+        self.matrix.pooled(longest.div_ceil(PICTURE_CELLS))
     }
 
     /// Returns A, and B on the skeleton and at the rate of A.

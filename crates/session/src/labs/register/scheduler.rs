@@ -109,7 +109,11 @@ impl Sliced for RegistrationSchedulers {
     fn work(&mut self, jobs: &mut JobBoard) -> bool {
         // Each offers its jobs, before any of them waits for an answer.
         let worked = self.all_mut().map(|one| one.ask_workers(jobs)).fold(false, |a, b| a | b);
-        worked || self.all_mut().any(|one| one.work(jobs))
+        if worked || self.all_mut().any(|one| one.work(jobs)) {
+            return true;
+        }
+        // A slice of its own: the frame that shows the map would take too long.
+        self.last_map().is_some_and(|map| map.make_picture())
     }
 
     fn is_ready(&self) -> bool {
