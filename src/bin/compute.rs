@@ -3,18 +3,31 @@
 
 #[cfg(target_arch = "wasm32")]
 mod worker {
-    use js_sys::{Array, Float32Array, Uint8Array};
-    use segue_session::jobs::{Parcel, Worker};
-    use wasm_bindgen::JsValue;
+    use js_sys::{Array, ArrayBuffer, Float32Array, Uint8Array};
+    use segue_session::jobs::{ANSWER_PIECE_FLOATS, Parcel, Worker};
     use wasm_bindgen::prelude::wasm_bindgen;
+    use wasm_bindgen::{JsCast as _, JsValue};
 
-    /// The number of floats of an answer in one message: the page copies them in about 2 ms. A
-    /// multiple of 4, so that no rotation is divided.
-    const ANSWER_PIECE_FLOATS: usize = 1 << 19;
+    /// The least number of floats that are copied into a buffer that the page returns.
+    const IN_BUFFER_FLOATS: usize = ANSWER_PIECE_FLOATS / 8;
 
-    /// Copies an array into JavaScript arrays of at most [`ANSWER_PIECE_FLOATS`].
-    fn pieces_of(array: &[f32]) -> Array {
-        array.chunks(ANSWER_PIECE_FLOATS).map(Float32Array::from).collect()
+    /// Copies an array into JavaScript arrays of at most [`ANSWER_PIECE_FLOATS`]. They lie in
+    /// `spares`, as long as there are any: the system takes as long to provide new memory as the
+    /// copy takes.
+    fn pieces_of(array: &[f32], spares: &Array) -> Array {
+        let piece = |floats: &[f32]| {
+            if floats.len() < IN_BUFFER_FLOATS {
+                return Float32Array::from(floats);
+            }
+            let bytes = size_of::<f32>() * ANSWER_PIECE_FLOATS;
+            let spare = spares.pop().dyn_into();
+            let buffer = spare.unwrap_or_else(|_| ArrayBuffer::new(bytes as u32));
+            let length = floats.len() as u32;
+            let piece = Float32Array::new_with_byte_offset_and_length(&buffer, 0, length);
+            piece.copy_from(floats);
+            piece
+        };
+        array.chunks(ANSWER_PIECE_FLOATS).map(piece).collect()
     }
 
     /// A worker with its clips and its memory.
@@ -51,10 +64,12 @@ mod worker {
 
         /// Runs a job and returns its answer: head, bytes, and the long arrays, each as a list of
         /// pieces in their order: first that of the floats, then one for each clip's rotations.
-        pub fn run(&mut self, message: &str) -> Result<Array, JsValue> {
+        /// Buffers of earlier answers are taken from `spares`.
+        pub fn run(&mut self, message: &str, spares: &Array) -> Result<Array, JsValue> {
             let answer = self.0.run_message(message).map_err(|error| error.to_string())?;
             let rotations = answer.rotations.iter().map(|all| bytemuck::cast_slice(all));
-            let arrays = std::iter::once(&answer.floats[..]).chain(rotations).map(pieces_of);
+            let arrays = std::iter::once(&answer.floats[..]).chain(rotations);
+            let arrays = arrays.map(|array| pieces_of(array, spares));
             Ok(Array::of3(
                 &JsValue::from(answer.head),
                 &Uint8Array::from(&answer.bytes[..]),

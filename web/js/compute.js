@@ -4,16 +4,19 @@
 // The page posts { module, maxBytes }, the compiled WebAssembly, or { failed }, to which the worker
 // answers with { ready } or { unusable: reason }. Before and after that come clips, each as { clip,
 // head, bytes, length }, the number of its floats, and these in pieces in their order, { clip, at,
-// piece }; clips to drop, { drop }; and jobs, { job, message }. To each job the worker answers with
-// its long arrays in pieces in their order, { job, array, length, piece }, the first array its
-// floats, the others rotations; then with { job, secs, head, bytes }; or with { job, failed: reason,
-// trapped }. After a trap it is not used any more.
+// piece }; clips to drop, { drop }; and jobs, { job, message, spares }, with buffers of earlier
+// answers. To each job the worker answers with its long arrays in pieces in their order, { job,
+// array, length, piece }, the first array its floats, the others rotations; then with { job, secs,
+// head, bytes }; or with { job, failed: reason, trapped }. After a trap it is not used any more.
 
 import init, { Computer } from "./compute/compute.js";
 
 let begin;
 /** The worker's program. Whatever comes before the WebAssembly waits for it. */
 const computer = new Promise((resolve) => { begin = resolve; });
+
+/** Buffers for answers. */
+const spares = [];
 
 /** The clips of which only a part has come, by their numbers. */
 const begun = new Map();
@@ -49,7 +52,8 @@ self.onmessage = async ({ data }) => {
     if (drop !== undefined) worker.dropClip(drop);
     if (job === undefined) return;
     const start = performance.now();
-    const [head, bytes, arrays] = worker.run(data.message);
+    spares.push(...data.spares);
+    const [head, bytes, arrays] = worker.run(data.message, spares);
     const secs = (performance.now() - start) / 1e3;
     for (const [array, pieces] of arrays.entries()) {
       const length = pieces.reduce((sum, piece) => sum + piece.length, 0);

@@ -6,9 +6,9 @@ use super::page::{is_hidden, listen, now_ms, requested_pool, window};
 use crate::platform::Inbox;
 use crate::platform::pool_size::{PoolSize, PoolStats, pool_size};
 use glam::Quat;
-use js_sys::{Array, Float32Array, Function, Object, Reflect, Uint8Array};
+use js_sys::{Array, ArrayBuffer, Float32Array, Function, Object, Reflect, Uint8Array};
 use segue_session::Session;
-use segue_session::jobs::{Answer, Job, Parcel};
+use segue_session::jobs::{ANSWER_PIECE_FLOATS, Answer, Job, Parcel};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::fmt;
@@ -37,6 +37,8 @@ pub(crate) fn set_answer_listener(listener: impl Fn() + 'static) {
 
 /// The number of jobs that a worker has at once: the next one does not wait for the page.
 const JOBS_AT_ONCE: usize = 2;
+/// The greatest number of buffers of answers that are kept for a worker, 2 MB each.
+const MAX_SPARES: usize = 4;
 /// The number of floats of a clip that are sent at once: about a millisecond.
 const PIECE_FLOATS: usize = 1 << 18;
 /// The time after which a job counts as lost with its worker, milliseconds: one that the browser
@@ -87,6 +89,8 @@ struct Slot {
     jobs: VecDeque<Posted>,
     /// A job whose clips are still to be sent, or one of a worker that has ended.
     next: VecDeque<(Job, u8)>,
+    /// Buffers of its answers, which it gets again with its next job.
+    spares: Vec<ArrayBuffer>,
 }
 
 /// A job that a worker has.
@@ -263,7 +267,11 @@ impl Pool {
         }
         let message = job.message().map_err(|error| error.to_string())?;
         let number = JsValue::from(job.number as f64);
-        post(&worker, &[("job", number), ("message", message.into())], None)?;
+        let spares: Array = slot.spares.drain(..).collect();
+        let properties =
+            [("job", number), ("message", message.into()), ("spares", spares.clone().into())];
+        let message = message_of(&properties)?;
+        worker.post_message_with_transfer(&message, &spares)?;
         if let Some((job, tries)) = slot.next.pop_front() {
             slot.jobs.push_back(Posted {
                 job,
@@ -290,6 +298,7 @@ impl Slot {
         self.is_ready = false;
         self.clips.clear();
         self.begun.clear();
+        self.spares.clear();
     }
 }
 
@@ -382,6 +391,11 @@ impl State {
         if let (Some(posted), Ok(piece)) = (slot.jobs.get_mut(place), part("piece").dyn_into()) {
             let number = |name: &str| part(name).as_f64().unwrap_or(0.0) as usize;
             append_piece(&mut posted.arrived, number("array"), number("length"), &piece);
+            let buffer = piece.buffer();
+            let is_reused = buffer.byte_length() as usize == size_of::<f32>() * ANSWER_PIECE_FLOATS;
+            if is_reused && slot.spares.len() < MAX_SPARES {
+                slot.spares.push(buffer);
+            }
             return false;
         }
         let Some(mut posted) = slot.jobs.remove(place) else { return false };
