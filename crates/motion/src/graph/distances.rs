@@ -1,6 +1,6 @@
 //! Distances between all windows of a set of clips.
 
-use super::cells::{count_cells, row_start};
+use super::cells::{Histogram, row_start};
 use super::{DistanceTile, FrameSet, Place};
 use crate::registration::{DistanceMatrix, ROWS_PER_SUM, SymmetricDistances};
 use std::ops::Range;
@@ -253,6 +253,7 @@ impl FrameDistances {
     /// Adds about `cells` more pairs of windows, at least one row, from position `at` on, to the
     /// counts of [`Self::histogram`]; returns `true` after the last.
     pub fn count(&self, at: &mut CountedTo, cells: usize, bin_cm: f64, counts: &mut [u32]) -> bool {
+        let mut histogram = Histogram::new(self.set.cm_per_m(), bin_cm, counts.len());
         let mut left = cells.max(1);
         while left > 0 && at.block < self.blocks.len() {
             let Some(block) = self.blocks.get(at.block) else {
@@ -260,7 +261,7 @@ impl FrameDistances {
             };
             let (rows, columns) = block.size();
             let end = (at.row + left.div_ceil(columns.max(1))).min(rows);
-            self.count_rows(block, at.row..end, bin_cm, counts);
+            count_rows(block, at.row..end, &mut histogram);
             left = left.saturating_sub((end - at.row) * columns);
             *at = if end < rows {
                 CountedTo { row: end, ..*at }
@@ -268,22 +269,17 @@ impl FrameDistances {
                 CountedTo { block: at.block + 1, row: 0 }
             };
         }
+        histogram.add_to(counts);
         at.block >= self.blocks.len()
     }
+}
 
-    fn count_rows(
-        &self,
-        block: &BlockDistances,
-        rows: Range<usize>,
-        bin_cm: f64,
-        counts: &mut [u32],
-    ) {
-        for row in rows {
-            let (_, distances) = block.row(row);
-            let itself = usize::from(block.is_itself());
-            let cells = distances.get(itself..).unwrap_or_default();
-            count_cells(cells, self.set.cm_per_m(), bin_cm, counts);
-        }
+/// Counts the distances of some rows of a block.
+fn count_rows(block: &BlockDistances, rows: Range<usize>, histogram: &mut Histogram) {
+    for row in rows {
+        let (_, distances) = block.row(row);
+        let itself = usize::from(block.is_itself());
+        histogram.count(distances.get(itself..).unwrap_or_default());
     }
 }
 

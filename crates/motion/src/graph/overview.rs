@@ -1,5 +1,6 @@
 //! Coarse pictures of all distances.
 
+use super::cells::{Histogram, smallest};
 use super::parts::{Part, Parts};
 use super::{FrameSet, GraphError, Place, StreamRow};
 use crate::blend::align_onto;
@@ -48,10 +49,12 @@ impl DistanceOverview {
         }
     }
 
-    /// Includes the distances of the windows of two parts a ≤ b.
+    /// Includes the distances of the windows of two parts a ≤ b. A separate function, because
+    /// browsers optimise a function between two of its calls.
+    #[inline(never)]
     pub(super) fn take(&mut self, a: &Part, b: &Part, distances: &DistanceMatrix) {
-        let bins_per_m = (self.set().cm_per_m() / Self::BIN_CM) as f32;
-        let last = self.counts.len().saturating_sub(1);
+        let cm_per_m = self.set().cm_per_m();
+        let mut histogram = Histogram::new(cm_per_m, Self::BIN_CM, self.counts.len());
         for (row, i) in a.numbers().zip(a.starts.start - a.from..) {
             // Distances within one part are symmetric: only those above the diagonal are counted.
             let first = b.number.max(row);
@@ -60,23 +63,19 @@ impl DistanceOverview {
                 .get(first - b.number + (b.starts.start - b.from)..)
                 .unwrap_or_default();
             let mut cells = cells.get(..b.numbers().end - first).unwrap_or(cells);
-            for &cell in cells.get(usize::from(first == row)..).unwrap_or_default() {
-                if let Some(count) = self.counts.get_mut(((cell * bins_per_m) as usize).min(last)) {
-                    *count = count.saturating_add(1);
-                }
-            }
+            histogram.count(cells.get(usize::from(first == row)..).unwrap_or_default());
             let mut column = first;
             while !cells.is_empty() {
                 let (here, rest) =
                     cells.split_at((self.block - column % self.block).min(cells.len()));
-                let nearest = here.iter().copied().fold(f32::INFINITY, f32::min);
                 let at = self.at(row / self.block, column / self.block);
                 if let Some(known) = self.nearest_m.get_mut(at) {
-                    *known = known.min(nearest);
+                    *known = known.min(smallest(here));
                 }
                 (column, cells) = (column + here.len(), rest);
             }
         }
+        histogram.add_to(&mut self.counts);
     }
 
     /// Returns the blocks of the rows of one part, and the histogram, of an overview in which
@@ -175,8 +174,11 @@ impl DistanceOverview {
                 for row in rows.clone() {
                     for column in columns.clone() {
                         let at = self.at(row.min(column), row.max(column));
-                        nearest =
-                            nearest.min(self.nearest_m.get(at).copied().unwrap_or(f32::INFINITY));
+                        let here = self.nearest_m.get(at).copied().unwrap_or(f32::INFINITY);
+                        // `f32::min` handles NaN, which takes several times as long.
+                        if here < nearest {
+                            nearest = here;
+                        }
                     }
                 }
                 picture.push(if nearest.is_finite() { nearest * scale } else { f32::NAN });

@@ -2,7 +2,7 @@
 
 use super::all_pairs::level_m;
 use super::candidates::{Picker, is_minimum};
-use super::cells::{count_cells, row_start};
+use super::cells::{Histogram, row_start};
 use super::{Candidate, Construction, DistanceOverview, FrameSet, GraphError, GraphOptions, Place};
 use crate::registration::{PointClouds, ROWS_PER_SUM, RowTerms};
 use serde::{Deserialize, Serialize};
@@ -145,13 +145,16 @@ impl TileComputer {
         let mut rms_m = view.rms_m;
         let end = row_start(view.is_itself, width, view.first, rows.end);
         rms_m.truncate(end);
-        let mut counts = vec![0; DistanceOverview::BINS];
+        let bins = DistanceOverview::BINS;
+        let mut histogram = Histogram::new(self.set.cm_per_m(), DistanceOverview::BIN_CM, bins);
         for row in rows {
             let own = row_start(view.is_itself, width, view.first, row);
             let next = row_start(view.is_itself, width, view.first, row + 1);
             let cells = rms_m.get(own + usize::from(view.is_itself)..next).unwrap_or_default();
-            count_cells(cells, self.set.cm_per_m(), DistanceOverview::BIN_CM, &mut counts);
+            histogram.count(cells);
         }
+        let mut counts = vec![0; bins];
+        histogram.add_to(&mut counts);
         Ok(TileDistances { rms_m, counts, candidates: picker.into_tile() })
     }
 
