@@ -53,6 +53,16 @@ pub(super) struct LongRun {
     /// The present component, and its number of sweeps.
     component: usize,
     sweeps: usize,
+    unprepared: Option<Unprepared>,
+}
+
+/// The input of a computation that is not prepared yet.
+#[derive(Clone, Debug)]
+struct Unprepared {
+    /// The ways.
+    steps: Vec<Step>,
+    /// The component of each node, once it is known.
+    component_of: Option<Vec<usize>>,
 }
 
 #[derive(Clone, Debug)]
@@ -64,7 +74,7 @@ struct Component {
 }
 
 /// The ways into every node.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 struct WaysInto {
     /// Where each way comes from and its probability there, node by node.
     ways: Vec<(u32, f64)>,
@@ -73,11 +83,10 @@ struct WaysInto {
 }
 
 impl WaysInto {
-    fn new(nodes: usize, steps: impl Iterator<Item = Step> + Clone) -> Self {
-        let (ends, order) = grouped(nodes, steps.clone().map(|step| step.to.index()));
-        let ways: Vec<(u32, f64)> =
-            steps.map(|step| (step.from.index() as u32, step.probability)).collect();
-        Self { ways: order.into_iter().map(|at| ways[at]).collect(), ends }
+    fn new(nodes: usize, steps: &[Step]) -> Self {
+        let (ends, order) = grouped(nodes, steps.iter().map(|step| step.to.index()));
+        let way = |at: usize| (steps[at].from.index() as u32, steps[at].probability);
+        Self { ways: order.into_iter().map(way).collect(), ends }
     }
 
     /// Returns a node's part of the ways.
@@ -100,42 +109,58 @@ impl WaysInto {
 impl LongRun {
     /// Begins the computation for a number of nodes and the ways between them, whose probabilities
     /// sum to 1 at each node, or to 0 where walks end.
-    pub(super) fn new(nodes: usize, steps: &[Step]) -> Self {
-        let taken = steps.iter().copied().filter(|step| step.probability > 0.0);
-        let moving = taken.clone().filter(|step| step.from != step.to);
-        let mut leaving = vec![0.0; nodes];
-        for step in moving.clone() {
-            leaving[step.from.index()] += step.probability;
-        }
-        let (order, mut components) = components_in_order(nodes, moving.clone());
-        let mut component_of = vec![0; nodes];
-        for (index, component) in components.iter().enumerate() {
-            for &node in &order[component.nodes.clone()] {
-                component_of[node] = index;
-            }
-        }
-        let of = |node: NodeIndex| component_of[node.index()];
-        let between = moving.clone().filter(|step| of(step.from) != of(step.to));
-        for step in between.clone() {
-            components[of(step.from)].is_transient = true;
-        }
+    pub(super) fn new(nodes: usize, steps: Vec<Step>) -> Self {
         Self {
-            within: WaysInto::new(nodes, moving.filter(|step| of(step.from) == of(step.to))),
-            between: WaysInto::new(nodes, between),
             visits: vec![0.0; nodes],
-            order,
-            components,
-            leaving,
+            order: Vec::new(),
+            components: Vec::new(),
+            within: WaysInto::default(),
+            between: WaysInto::default(),
+            leaving: vec![0.0; nodes],
             entering: Vec::new(),
             before: Vec::new(),
             component: 0,
             sweeps: 0,
+            unprepared: Some(Unprepared { steps, component_of: None }),
         }
+    }
+
+    /// Does a part of what precedes the sweeps: with hundreds of thousands of ways, all of it would
+    /// take longer than a frame of the screen.
+    fn prepare(&mut self, Unprepared { mut steps, component_of }: Unprepared) {
+        let nodes = self.visits.len();
+        let Some(component_of) = component_of else {
+            steps.retain(|step| step.probability > 0.0 && step.from != step.to);
+            for step in &steps {
+                self.leaving[step.from.index()] += step.probability;
+            }
+            (self.order, self.components) = components_in_order(nodes, steps.iter().copied());
+            let mut component_of = vec![0; nodes];
+            for (index, component) in self.components.iter().enumerate() {
+                for &node in &self.order[component.nodes.clone()] {
+                    component_of[node] = index;
+                }
+            }
+            self.unprepared = Some(Unprepared { steps, component_of: Some(component_of) });
+            return;
+        };
+        let of = |node: NodeIndex| component_of[node.index()];
+        let (within, between): (Vec<Step>, Vec<Step>) =
+            steps.into_iter().partition(|step| of(step.from) == of(step.to));
+        for step in &between {
+            self.components[of(step.from)].is_transient = true;
+        }
+        self.within = WaysInto::new(nodes, &within);
+        self.between = WaysInto::new(nodes, &between);
     }
 
     /// Follows about `ways` more ways, at least those of one sweep; returns `true` when all is
     /// computed.
     pub(super) fn advance(&mut self, ways: usize) -> bool {
+        if let Some(unprepared) = self.unprepared.take() {
+            self.prepare(unprepared);
+            return false;
+        }
         let mut followed = 0;
         while followed < ways.max(1)
             && let Some(component) = self.components.get(self.component).cloned()

@@ -162,12 +162,14 @@ impl RunLength {
     #[must_use]
     pub fn new(graph: &MotionGraph, choices: &Choices) -> Self {
         let edges = graph.graph.raw_edges();
-        let ways = graph.graph.node_indices().flat_map(|node| choices.ways(node));
-        let steps = ways.map(|&(edge, share)| {
-            let edge = &edges[edge.index()];
-            Step { from: edge.source(), to: edge.target(), probability: share_of(share) }
-        });
-        Self(LongRun::new(graph.graph.node_count(), &steps.collect::<Vec<_>>()))
+        let mut steps = Vec::with_capacity(edges.len());
+        for node in graph.graph.node_indices() {
+            steps.extend(choices.ways(node).iter().map(|&(edge, share)| {
+                let edge = &edges[edge.index()];
+                Step { from: edge.source(), to: edge.target(), probability: share_of(share) }
+            }));
+        }
+        Self(LongRun::new(graph.graph.node_count(), steps))
     }
 
     /// Does at least one more sweep, until about `edges` edges were followed, each counted at every

@@ -9,7 +9,7 @@ fn step(from: usize, to: usize, probability: f64) -> Step {
 }
 
 fn shares(nodes: usize, steps: &[Step]) -> Vec<f64> {
-    let mut run = LongRun::new(nodes, steps);
+    let mut run = LongRun::new(nodes, steps.to_vec());
     while !run.advance(1) {}
     run.shares().collect()
 }
