@@ -229,15 +229,7 @@ impl MotionGraph {
         options.check(set)?;
         let is_near = |of: &Candidate| of.distance_cm <= options.edge_threshold_cm;
         let near = candidates.found.partition_point(is_near);
-        let chosen: Vec<Jump> = (candidates.found.iter().take(near))
-            .map(|candidate| Jump {
-                leave: candidate.leave,
-                enter: candidate.enter,
-                window: options.blend_window,
-                distance_cm: candidate.distance_cm,
-                alignment: candidate.alignment,
-            })
-            .collect();
+        let chosen = candidates.found.get(..near).unwrap_or_default();
         if chosen.is_empty() {
             return Err(match candidates.nearest_cm {
                 Some(nearest_cm) if above(nearest_cm) > GraphOptions::MAX_THRESHOLD_CM => {
@@ -252,20 +244,21 @@ impl MotionGraph {
         let mut made = Self {
             set: Arc::clone(set),
             options: *options,
-            graph: DiGraph::with_capacity(0, near),
+            // A stretch has one way to continue.
+            graph: DiGraph::with_capacity(0, near + set.cuts().min(2 * near)),
             jumps: Vec::with_capacity(near),
             origins: Vec::new(),
             left_out: 0,
         };
-        made.add_stretches(&chosen);
+        made.add_stretches(chosen);
         let (starting, ending) =
             (made.nodes_at(|stretch| stretch.start), made.nodes_at(|stretch| stretch.end));
         let node_at =
             |nodes: &[Option<NodeIndex>], place| nodes.get(set.cut(place)?).copied().flatten();
         let mut ways_out = vec![0; made.graph.node_count()];
-        for jump in chosen {
-            let arrives = Place { frame: jump.enter.frame + made.arrival(), ..jump.enter };
-            let leaves = Place { frame: jump.leave.frame + made.departure(), ..jump.leave };
+        for &Candidate { leave, enter, distance_cm, alignment } in chosen {
+            let arrives = Place { frame: enter.frame + made.arrival(), ..enter };
+            let leaves = Place { frame: leave.frame + made.departure(), ..leave };
             if let (Some(from), Some(to)) = (node_at(&ending, leaves), node_at(&starting, arrives))
             {
                 if ways_out[from.index()] >= options.most_ways_out {
@@ -274,7 +267,8 @@ impl MotionGraph {
                 }
                 ways_out[from.index()] += 1;
                 made.graph.add_edge(from, to, Way::Jump(made.jumps.len()));
-                made.jumps.push(jump);
+                let window = options.blend_window;
+                made.jumps.push(Jump { leave, enter, window, distance_cm, alignment });
             }
         }
         made.origins = (0..made.jumps.len()).collect();
@@ -294,7 +288,7 @@ impl MotionGraph {
         self.options.blend_window - self.arrival()
     }
 
-    fn add_stretches(&mut self, chosen: &[Jump]) {
+    fn add_stretches(&mut self, chosen: &[Candidate]) {
         let mut is_cut = vec![false; self.set.cuts()];
         for jump in chosen {
             let arrival =
