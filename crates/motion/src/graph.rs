@@ -103,6 +103,7 @@
 
 mod all_pairs;
 mod build;
+mod candidate_sort;
 mod candidates;
 mod cells;
 mod components;
@@ -124,6 +125,7 @@ mod weights;
 
 pub use all_pairs::{AllPairs, AllSweep, PausedAllSweep};
 pub use build::{Construction, GraphOptions, Jump, MotionGraph, Stretch, Way};
+pub use candidate_sort::CandidateSort;
 pub use candidates::{Candidate, CandidateSearch, Candidates};
 pub use distances::{CountedTo, FrameDistances};
 pub use error::GraphError;

@@ -1,6 +1,7 @@
 //! Candidates for transitions.
 
-use super::grouped::grouped;
+use super::candidate_sort::{CandidateSort, keep_closest};
+use super::cells::smallest;
 use super::{
     AllPairs, Construction, FrameDistances, FrameSet, GraphError, GraphOptions, Place,
     TileCandidates,
@@ -10,8 +11,10 @@ use crate::registration::Progress;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The greatest number of candidates in memory; the closest are kept.
+/// The greatest number of candidates; the closest are kept.
 const MAX_CANDIDATES: usize = 400_000;
+/// The number of candidates in memory from which on the farthest are dropped.
+const MAX_IN_MEMORY: usize = MAX_CANDIDATES + MAX_CANDIDATES / 4;
 
 /// The cost of aligning one candidate, in cells scanned (for progress).
 const CELLS_PER_FOUND: usize = 100;
@@ -19,10 +22,6 @@ const CELLS_PER_FOUND: usize = 100;
 /// The greatest jolt ([`jolts`](crate::clip)) of a frame at which a clip is left or entered, as a
 /// multiple of the clip's 99th percentile.
 const MAX_JOLT: f32 = 4.0;
-
-/// The greatest number of distances and of places for each candidate: where these are few, sorting
-/// them is quicker.
-const GROUPS_PER_FOUND: usize = 4;
 
 /// A possible transition.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,21 +66,7 @@ impl Candidates {
     ) -> Result<Self, GraphError> {
         let mut search = CandidateSearch::new(distances, options)?;
         while !search.advance(all, distances, usize::MAX)?.is_complete() {}
-        Ok(search.finish())
-    }
-
-    /// Returns the candidates of all tiles of a set's matrix together, which may come in any order.
-    #[must_use]
-    pub fn of_tiles(
-        set: &Arc<FrameSet>,
-        options: &GraphOptions,
-        tiles: impl IntoIterator<Item = TileCandidates>,
-    ) -> Self {
-        let mut picker = Picker::new(Arc::clone(set), *options);
-        for tile in tiles {
-            picker.absorb(tile);
-        }
-        picker.finish()
+        Ok(search.sort().finish())
     }
 
     /// Returns the candidates, closest first.
@@ -218,10 +203,10 @@ impl CandidateSearch {
         Progress { done: self.done.min(self.total), total: self.total }
     }
 
-    /// Returns the candidates found so far.
+    /// Returns the candidates found so far, which are yet to be sorted.
     #[must_use]
-    pub fn finish(self) -> Candidates {
-        self.picker.finish()
+    pub fn sort(self) -> CandidateSort {
+        self.picker.sort()
     }
 }
 
@@ -306,6 +291,7 @@ impl Picker {
     /// separate function, because browsers optimise a function between two of its calls.
     #[inline(never)]
     fn next_low(&self, row: &[f32], within: Range<usize>) -> Option<usize> {
+        const GROUP: usize = 16;
         let most =
             if self.nearest_m > self.threshold_m { self.nearest_m } else { self.threshold_m };
         let is_low = |at: usize| {
@@ -314,7 +300,22 @@ impl Picker {
                 && !(at > 0 && row[at - 1] <= here)
                 && !row.get(at + 1).is_some_and(|&next| next < here)
         };
-        within.take_while(|&at| at < row.len()).find(|&at| is_low(at))
+        let end = within.end.min(row.len());
+        let mut at = within.start;
+        while at < end {
+            // Most groups have no low distance at all.
+            let group = row.get(at..end).and_then(<[f32]>::first_chunk::<GROUP>);
+            if group.is_some_and(|group| smallest(group) > most) {
+                at += GROUP;
+                continue;
+            }
+            let next = end.min(at + GROUP);
+            if let Some(found) = (at..next).find(|&at| is_low(at)) {
+                return Some(found);
+            }
+            at = next;
+        }
+        None
     }
 
     /// Returns whether a distance is relevant: below the threshold, or smaller than all before it.
@@ -381,8 +382,8 @@ impl Picker {
             alignment: alignment.inverse(),
             ..candidate
         }));
-        if self.found.len() > 2 * MAX_CANDIDATES {
-            self.thin_out();
+        if self.found.len() > MAX_IN_MEMORY {
+            self.left_out += keep_closest(&mut self.found, MAX_CANDIDATES);
         }
         Ok(())
     }
@@ -411,18 +412,8 @@ impl Picker {
         jolts.is_some_and(|jolts| jolts.iter().all(|&jolt| jolt <= MAX_JOLT))
     }
 
-    fn thin_out(&mut self) {
-        if self.found.len() > MAX_CANDIDATES {
-            // They are sorted at the end.
-            self.found.select_nth_unstable_by(MAX_CANDIDATES, closest_first);
-            self.left_out += self.found.len() - MAX_CANDIDATES;
-            self.found.truncate(MAX_CANDIDATES);
-        }
-    }
-
     /// Returns the candidates of a part of the matrix.
-    pub(super) fn into_tile(mut self) -> TileCandidates {
-        self.thin_out();
+    pub(super) fn into_tile(self) -> TileCandidates {
         TileCandidates {
             nearest_m: self.nearest_m.is_finite().then_some(self.nearest_m),
             found: self.found,
@@ -434,83 +425,26 @@ impl Picker {
     pub(super) fn absorb(&mut self, tile: TileCandidates) {
         self.nearest_m = tile.nearest_m.map_or(self.nearest_m, |near| near.min(self.nearest_m));
         self.left_out += tile.left_out;
-        self.found.extend(tile.found);
-        if self.found.len() > 2 * MAX_CANDIDATES {
-            self.thin_out();
+        let more = tile.found.len();
+        if self.found.len() + more > MAX_IN_MEMORY {
+            self.left_out += keep_closest(&mut self.found, MAX_CANDIDATES);
         }
+        let known = self.found.len();
+        if known + more > MAX_CANDIDATES / 8 {
+            // Grown step by step, the memory of very many would be copied again and again.
+            self.found.reserve_exact(more.max(MAX_IN_MEMORY.saturating_sub(known)));
+        }
+        self.found.extend(tile.found);
     }
 
-    pub(super) fn finish(mut self) -> Candidates {
-        self.thin_out();
-        Candidates {
-            found: sorted(self.found, self.set.frames(), |place| {
-                self.set.number(place).unwrap_or(0)
-            }),
+    /// Returns the candidates, which are yet to be sorted.
+    pub(super) fn sort(self) -> CandidateSort {
+        let candidates = Candidates {
+            found: self.found,
             nearest_cm: self.nearest_m.is_finite().then(|| self.set.rounded_cm(self.nearest_m)),
             left_out: self.left_out,
             threshold_cm: self.options.edge_threshold_cm,
-        }
-    }
-}
-
-/// Returns candidates in the order of [`closest_first`]; `number` is that of a place among `frames`
-/// of the set. Their distances are multiples of 0.001 cm, and their places are numbers, so that
-/// they are grouped without comparisons: sorting hundreds of thousands would take longer than a
-/// frame of the screen.
-fn sorted(
-    mut found: Vec<Candidate>,
-    frames: usize,
-    number: impl Fn(Place) -> usize,
-) -> Vec<Candidate> {
-    let thousandths = |of: &Candidate| (of.distance_cm * 1_000.0).round_ties_even() as usize;
-    let distances = found.iter().map(thousandths).max().map_or(0, |most| most.saturating_add(1));
-    if distances.max(frames) > GROUPS_PER_FOUND * found.len() {
-        found.sort_unstable_by(closest_first);
-        return found;
-    }
-    let keys = |key: &dyn Fn(&Candidate) -> usize| found.iter().map(key).collect::<Vec<_>>();
-    let mut order: Vec<usize> = (0..found.len()).collect();
-    // Each grouping keeps the order of the one before within its groups.
-    for (groups, keys) in [
-        (frames, keys(&|of| number(of.enter))),
-        (frames, keys(&|of| number(of.leave))),
-        (distances, keys(&thousandths)),
-    ] {
-        let (_, by_key) = grouped(groups, order.iter().map(|&at| keys[at]));
-        order = by_key.into_iter().map(|at| order[at]).collect();
-    }
-    order.into_iter().map(|at| found[at]).collect()
-}
-
-fn closest_first(a: &Candidate, b: &Candidate) -> std::cmp::Ordering {
-    let places = |of: &Candidate| (of.leave, of.enter);
-    a.distance_cm.total_cmp(&b.distance_cm).then(places(a).cmp(&places(b)))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    proptest! {
-        #[test]
-        fn sorted_candidates_are_in_their_order(
-            found in prop::collection::vec((0..90_000_u32, 0..3_usize, 0..9_usize, 0..9_usize), 0..300),
-            scale in prop::sample::select(vec![1_u32, 300, 30_000]),
-        ) {
-            let found: Vec<Candidate> = found
-                .into_iter()
-                .map(|(thousandths, clip, leave, enter)| Candidate {
-                    leave: Place { clip, frame: leave },
-                    enter: Place { clip, frame: enter },
-                    distance_cm: f64::from(thousandths / scale) / 1_000.0,
-                    alignment: Planar::IDENTITY,
-                })
-                .collect();
-            let mut expected = found.clone();
-            expected.sort_by(closest_first);
-            let number = |place: Place| 9 * place.clip + place.frame;
-            prop_assert_eq!(sorted(found, 27, number), expected);
-        }
+        };
+        CandidateSort::new(self.set, candidates, MAX_CANDIDATES)
     }
 }

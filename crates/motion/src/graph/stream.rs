@@ -3,8 +3,8 @@
 use super::candidates::{Picker, is_minimum};
 use super::parts::Parts;
 use super::{
-    Candidates, Construction, DistanceOverview, FrameSet, GraphError, GraphOptions, Place,
-    TileCandidates,
+    CandidateSort, Candidates, Construction, DistanceOverview, FrameSet, GraphError, GraphOptions,
+    Place, TileCandidates,
 };
 use crate::registration::Progress;
 use std::sync::Arc;
@@ -113,13 +113,23 @@ impl CandidateStream {
     ///
     /// # Errors
     /// The same as for [`advance`](Self::advance).
-    pub fn finish(mut self) -> Result<(Candidates, DistanceOverview), GraphError> {
+    pub fn finish(self) -> Result<(Candidates, DistanceOverview), GraphError> {
+        let (sort, overview) = self.sort()?;
+        Ok((sort.finish(), overview))
+    }
+
+    /// Processes the remaining steps and returns the candidates, which are yet to be sorted, and
+    /// the overview.
+    ///
+    /// # Errors
+    /// The same as for [`advance`](Self::advance).
+    pub fn sort(mut self) -> Result<(CandidateSort, DistanceOverview), GraphError> {
         self.advance(usize::MAX)?;
         let overview = match self.work {
             Work::Tiles { overview, .. } => *overview,
             Work::Parts(parts) => DistanceOverview::new(parts),
         };
-        Ok((self.picker.finish(), overview))
+        Ok((self.picker.sort(), overview))
     }
 
     fn step(&mut self) -> Result<(), GraphError> {
@@ -196,7 +206,9 @@ impl StreamComputer {
 }
 
 /// Compares two parts a ≤ b: offers their windows to the picker, and includes their distances in
-/// the overview.
+/// the overview. A separate function, because browsers optimise a function between two of its
+/// calls.
+#[inline(never)]
 fn compare_parts(
     options: &GraphOptions,
     picker: &mut Picker,

@@ -19,7 +19,7 @@ fn set_of(walks: &[Walk]) -> Arc<FrameSet> {
 }
 
 /// Returns a walk, a faster one that turns, and one with another position and facing.
-fn three(frames: [usize; 3]) -> Arc<FrameSet> {
+pub(super) fn three(frames: [usize; 3]) -> Arc<FrameSet> {
     let walk = Walk::default();
     set_of(&[
         Walk { frames: frames[0], ..walk },

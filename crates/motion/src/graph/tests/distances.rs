@@ -277,7 +277,7 @@ fn tiled(
         result = Some((
             FrameDistances::of_tiles(set, options.blend_window, distances),
             counts,
-            Candidates::of_tiles(set, options, candidates),
+            CandidateSort::of_tiles(set, options, candidates).finish(),
         ));
     }
     result.unwrap()

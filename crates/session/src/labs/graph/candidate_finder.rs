@@ -6,8 +6,8 @@ use super::tiled_search::{TiledSearch, TiledStep};
 use crate::jobs::JobBoard;
 use crate::params::MAX_PANES;
 use segue_motion::graph::{
-    AllPairs, CandidateSearch, CandidateStream, Candidates, CountedTo, FrameSet, GraphError,
-    GraphOptions, PausedAllSweep,
+    AllPairs, CandidateSearch, CandidateSort, CandidateStream, Candidates, CountedTo, FrameSet,
+    GraphError, GraphOptions, PausedAllSweep,
 };
 use segue_motion::registration::Progress;
 use std::sync::Arc;
@@ -40,6 +40,8 @@ pub(super) struct CandidateFinder {
     search: Option<(GraphOptions, Search)>,
     /// The search in progress by workers.
     by_workers: Option<WorkerSearch>,
+    /// The candidates of a search that are being sorted, with its options.
+    sorting: Option<(GraphOptions, CandidateSort)>,
     /// Whether workers gave no answer, so that everything is computed in slices.
     in_line: bool,
     /// The last candidates, with their options.
@@ -98,16 +100,17 @@ impl WorkerSearch {
         }
     }
 
-    /// Returns the distances, if they were asked for, and the candidates. All jobs have ended.
-    fn finish(
+    /// Returns the distances, if they were asked for, and the candidates, which are yet to be
+    /// sorted. All jobs have ended.
+    fn sort(
         self,
         set: &Arc<FrameSet>,
-    ) -> Result<(Option<DistanceField>, Candidates), GraphError> {
+    ) -> Result<(Option<DistanceField>, CandidateSort), GraphError> {
         match self {
-            Self::Tiled(search) => Ok(search.finish(set)),
+            Self::Tiled(search) => Ok(search.sort(set)),
             Self::Streamed(search) => {
-                let (found, overview) = search.finish()?;
-                Ok((Some(DistanceField::overview(overview)), found))
+                let (sort, overview) = search.sort()?;
+                Ok((Some(DistanceField::overview(overview)), sort))
             }
         }
     }
@@ -161,7 +164,8 @@ impl CandidateFinder {
         options: &GraphOptions,
         jobs: &mut JobBoard,
     ) -> Result<(), GraphError> {
-        let is_under_way = self.by_workers.as_ref().is_some_and(|search| search.serves(options));
+        let is_under_way = self.is_sorting(options)
+            || self.by_workers.as_ref().is_some_and(|search| search.serves(options));
         if self.known(options).is_none() && self.is_for_workers(set, jobs) && !is_under_way {
             self.by_workers = Some(self.begin_by_workers(set, widened(options), jobs)?);
         }
@@ -181,12 +185,21 @@ impl CandidateFinder {
         if let Some(found) = self.known(options) {
             return Ok(Searched::Found(Arc::clone(found)));
         }
+        if self.is_sorting(options)
+            && let Some((known, mut sort)) = self.sorting.take()
+        {
+            if sort.advance() {
+                return Ok(Searched::Found(self.keep_found(known, sort.finish())));
+            }
+            self.sorting = Some((known, sort));
+            return Ok(Searched::Worked { worker_secs: 0.0 });
+        }
         self.begin(set, options, jobs)?;
         if let Some(search) = self.by_workers.take().filter(|search| search.serves(options)) {
             return self.take_answer(search, set, jobs);
         }
-        let found = self.advance_in_line(set, options)?;
-        Ok(found.map_or(Searched::Worked { worker_secs: 0.0 }, Searched::Found))
+        self.advance_in_line(set, options)?;
+        Ok(Searched::Worked { worker_secs: 0.0 })
     }
 
     /// Returns the progress of the search for the candidates of a graph, 0 to 1.
@@ -194,7 +207,7 @@ impl CandidateFinder {
         /// The shares of the time that comparing, sweeping and searching take.
         const SHARES: [f64; 3] = [0.53, 0.33, 0.14];
         let share = |progress: Progress| progress.done as f64 / progress.total.max(1) as f64;
-        if self.known(options).is_some() {
+        if self.known(options).is_some() || self.is_sorting(options) {
             return 1.0;
         }
         if let Some(search) = &self.by_workers {
@@ -216,6 +229,11 @@ impl CandidateFinder {
             _ => 0.0,
         };
         SHARES[0] * pairs + SHARES[1] * swept + SHARES[2] * searched
+    }
+
+    /// Returns whether candidates that serve a graph are being sorted.
+    fn is_sorting(&self, options: &GraphOptions) -> bool {
+        self.sorting.as_ref().is_some_and(|(known, _)| serves(known, options))
     }
 
     /// Returns whether workers compute the distances.
@@ -246,9 +264,10 @@ impl CandidateFinder {
             }
             TiledStep::Complete => {
                 let options = *search.options();
-                let (field, found) = search.finish(set)?;
+                let (field, sort) = search.sort(set)?;
                 self.keep_field(field);
-                Ok(Searched::Found(self.keep_found(options, found)))
+                self.sorting = Some((options, sort));
+                Ok(Searched::Worked { worker_secs: 0.0 })
             }
             TiledStep::Failed => {
                 self.in_line = true;
@@ -278,7 +297,7 @@ impl CandidateFinder {
         &mut self,
         set: &Arc<FrameSet>,
         options: &GraphOptions,
-    ) -> Result<Option<Arc<Candidates>>, GraphError> {
+    ) -> Result<(), GraphError> {
         if is_streamed(set) {
             let (widened, mut stream) = match self.search.take() {
                 Some((known, Search::Streamed(stream))) if serves(&known, options) => {
@@ -290,20 +309,21 @@ impl CandidateFinder {
                 }
             };
             if stream.advance(1)?.is_complete() {
-                let (found, overview) = stream.finish()?;
+                let (sort, overview) = stream.sort()?;
                 self.keep_field(Some(DistanceField::overview(overview)));
-                return Ok(Some(self.keep_found(widened, found)));
+                self.sorting = Some((widened, sort));
+                return Ok(());
             }
             self.search = Some((widened, Search::Streamed(stream)));
-            return Ok(None);
+            return Ok(());
         }
         let Some(all) = &mut self.all else {
             self.all = Some(AllPairs::new(Arc::clone(set))?);
-            return Ok(None);
+            return Ok(());
         };
         if !all.progress().is_complete() {
             all.advance(PAIRS)?;
-            return Ok(None);
+            return Ok(());
         }
         let window = options.blend_window;
         let of_window = self.fields.iter().filter(|field| field.window() == window);
@@ -316,7 +336,7 @@ impl CandidateFinder {
                 } else {
                     self.counting = Some((field, at));
                 }
-                return Ok(None);
+                return Ok(());
             }
             let mut sweep = match self.sweep.take().filter(|sweep| sweep.window() == window) {
                 Some(sweep) => sweep.resume(all),
@@ -327,7 +347,7 @@ impl CandidateFinder {
             } else {
                 self.sweep = Some(sweep.pause());
             }
-            return Ok(None);
+            return Ok(());
         };
         let (widened, mut search) = match self.search.take() {
             Some((known, Search::Held(search))) if serves(&known, options) => (known, search),
@@ -336,13 +356,13 @@ impl CandidateFinder {
                 (options, Box::new(CandidateSearch::new(distances, &options)?))
             }
         };
-        // Sorting the candidates takes a slice of its own.
         if search.progress().is_complete() {
-            return Ok(Some(self.keep_found(widened, search.finish())));
+            self.sorting = Some((widened, search.sort()));
+            return Ok(());
         }
         search.advance(all, distances, CELLS)?;
         self.search = Some((widened, Search::Held(search)));
-        Ok(None)
+        Ok(())
     }
 
     /// Returns known candidates that serve a graph, if the distances that are shown with it are

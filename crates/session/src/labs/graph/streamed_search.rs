@@ -3,7 +3,7 @@
 use super::tiled_search::TiledStep;
 use crate::jobs::{JobBoard, StreamTask, Taken, Ticket};
 use segue_motion::graph::{
-    CandidateStream, Candidates, DistanceOverview, FrameSet, GraphError, GraphOptions,
+    CandidateSort, CandidateStream, DistanceOverview, FrameSet, GraphError, GraphOptions,
 };
 use std::sync::Arc;
 
@@ -77,8 +77,9 @@ impl StreamedSearch {
         Ok(TiledStep::Waits)
     }
 
-    /// Returns the candidates and the overview of the distances. All jobs have ended.
-    pub(super) fn finish(self) -> Result<(Candidates, DistanceOverview), GraphError> {
-        self.stream.finish()
+    /// Returns the candidates, which are yet to be sorted, and the overview of the distances. All
+    /// jobs have ended.
+    pub(super) fn sort(self) -> Result<(CandidateSort, DistanceOverview), GraphError> {
+        self.stream.sort()
     }
 }

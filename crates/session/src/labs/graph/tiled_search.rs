@@ -3,7 +3,7 @@
 use super::DistanceField;
 use crate::jobs::{DistanceTask, JobBoard, Taken, Ticket};
 use segue_motion::graph::{
-    Candidates, DistanceOverview, DistanceTile, FrameDistances, FrameSet, GraphOptions,
+    CandidateSort, DistanceOverview, DistanceTile, FrameDistances, FrameSet, GraphOptions,
     TileCandidates, TileDistances,
 };
 use std::sync::Arc;
@@ -116,13 +116,14 @@ impl TiledSearch {
         TiledStep::Waits
     }
 
-    /// Returns the distances, if they were asked for, and the candidates. All jobs have ended.
-    pub(super) fn finish(self, set: &Arc<FrameSet>) -> (Option<DistanceField>, Candidates) {
+    /// Returns the distances, if they were asked for, and the candidates, which are yet to be
+    /// sorted. All jobs have ended.
+    pub(super) fn sort(self, set: &Arc<FrameSet>) -> (Option<DistanceField>, CandidateSort) {
         let field = self.wants_field.then(|| {
             let window = self.options.blend_window;
             let distances = FrameDistances::of_tiles(set, window, self.distances);
             DistanceField::counted(distances, self.counts)
         });
-        (field, Candidates::of_tiles(set, &self.options, self.candidates))
+        (field, CandidateSort::of_tiles(set, &self.options, self.candidates))
     }
 }
