@@ -28,8 +28,9 @@ impl Segue {
             max_ms -= platform::now_ms() - self.clock.frame_began;
         }
         let mut more = self.work_for(max_ms);
-        if !more && !platform::WORKS_BETWEEN_FRAMES {
-            more = self.refine();
+        // A page refines between frames, from `View::ui` on.
+        if !platform::WORKS_BETWEEN_FRAMES {
+            more = self.refine(more) || more;
         }
         let ticked = self.tick();
         if ticked {
@@ -58,19 +59,29 @@ impl Segue {
     /// Returns whether panels show less than there is to see: the curves under the timeline, or the
     /// transitions of a graph.
     fn is_coarse(&self) -> bool {
-        self.curves.is_coarse() || self.panels.labs.graph.drawing.is_begun()
+        self.curves.is_coarse() || self.panels.labs.graph.drawing.is_incomplete()
     }
 
-    /// Refines what the panels show for [`WORK_MS`], when nothing else is to do. Returns whether
+    /// Refines what the panels show: for [`WORK_MS`], or, while there is other work to do, by one
+    /// slice of the drawing of a graph, which would otherwise wait for the walk. Returns whether
     /// there is more.
-    pub(super) fn refine(&mut self) -> bool {
+    pub(super) fn refine(&mut self, has_work: bool) -> bool {
         let until_ms = platform::now_ms() + WORK_MS;
         while self.is_coarse() && platform::now_ms() < until_ms {
-            if !self.panels.labs.graph.drawing.work() {
+            let is_left = self.panels.labs.graph.drawing.work();
+            if has_work {
+                break;
+            }
+            if !is_left {
                 self.curves.work();
             }
         }
         self.is_coarse()
+    }
+
+    /// Returns the number of refinements so far: when it changes, panels have to be drawn again.
+    pub(super) fn refinements(&self) -> u64 {
+        self.curves.refinements() + self.panels.labs.graph.drawing.drawings_made()
     }
 
     /// Shows the panels, carries out their commands and draws the picture. Returns whether there
@@ -109,8 +120,9 @@ impl Segue {
         let highlights = ui::highlights(&self.session, &self.panels);
         let is_taken = self.inbox.take_for_picture();
         self.picture.finish(slot, &self.session, (theme.palette(), look), highlights, is_taken, ui);
-        let has_work = self.session.revision() != before || self.is_coarse();
-        if has_work {
+        let is_changed = self.session.revision() != before;
+        // Work between frames requests a frame itself.
+        if is_changed || (self.is_coarse() && !platform::WORKS_BETWEEN_FRAMES) {
             ui.ctx().request_repaint();
         }
         if self.picture.is_moving() {
@@ -118,7 +130,7 @@ impl Segue {
         }
         self.frame_stats.begin();
         self.clock.frame_took = platform::now_ms() - self.clock.frame_began;
-        has_work
+        is_changed || self.is_coarse()
     }
 
     /// Hands the panels what they show and the session does not have.
@@ -155,7 +167,7 @@ impl Segue {
     fn is_quiet(&mut self, ctx: &egui::Context) -> bool {
         let shown = Shown {
             revision: self.session.revision(),
-            refinements: self.curves.refinements() + self.panels.labs.graph.drawing.count(),
+            refinements: self.refinements(),
             stored: self.panels.stored,
             theme: self.window.theme,
             page: ctx.content_rect(),

@@ -38,7 +38,7 @@ impl View {
 /// Continues the work that a frame left over, where the platform can run it between frames. Frames
 /// that are drawn in software are far apart, and the processor would be idle.
 fn work_between_frames(segue: &Shared, is_working: &Rc<Cell<bool>>, ctx: &egui::Context) {
-    if is_working.replace(true) {
+    if !platform::WORKS_BETWEEN_FRAMES || is_working.replace(true) {
         return;
     }
     let (segue, is_working, ctx) = (Rc::clone(segue), Rc::clone(is_working), ctx.clone());
@@ -47,9 +47,10 @@ fn work_between_frames(segue: &Shared, is_working: &Rc<Cell<bool>>, ctx: &egui::
         let Ok(mut segue) = segue.try_borrow_mut() else {
             return true;
         };
-        let before = segue.session.revision();
-        let more = segue.poll() || segue.refine();
-        let is_changed = segue.session.revision() != before;
+        let before = (segue.session.revision(), segue.refinements());
+        let has_work = segue.poll();
+        let more = segue.refine(has_work) || has_work;
+        let is_changed = (segue.session.revision(), segue.refinements()) != before;
         if !more || is_changed {
             segue.request_frame(is_changed, &ctx);
         }
@@ -73,8 +74,7 @@ impl eframe::App for View {
             ctx.request_repaint();
             return;
         };
-        let is_working = platform::WORKS_BETWEEN_FRAMES && self.is_working.get();
-        if segue.logic(ctx, is_working) {
+        if segue.logic(ctx, self.is_working.get()) {
             work_between_frames(&self.segue, &self.is_working, ctx);
         }
         segue.schedule(ctx);
@@ -85,7 +85,7 @@ impl eframe::App for View {
 
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
         let Ok(mut segue) = self.segue.try_borrow_mut() else { return };
-        if segue.ui(ui, frame) && platform::WORKS_BETWEEN_FRAMES {
+        if segue.ui(ui, frame) {
             work_between_frames(&self.segue, &self.is_working, ui.ctx());
         }
     }

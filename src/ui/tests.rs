@@ -131,7 +131,7 @@ fn stepped_harness(size: Vec2, theme: Theme, dt_secs: f32, page: Page) -> Harnes
             let out =
                 ui.scope_builder(whole, |ui| show(session, state, curves, &mut paint, ui)).inner;
             // As the app does between frames.
-            if state.labs.graph.drawing.is_begun() {
+            if state.labs.graph.drawing.is_incomplete() {
                 while state.labs.graph.drawing.work() {}
                 ui.ctx().request_repaint();
             }

@@ -30,7 +30,7 @@ pub(crate) struct GraphState {
     pub(crate) walk_secs: f64,
     /// Whether the map has a panel of its own; otherwise it is among the parameters.
     pub(crate) has_map_panel: bool,
-    /// The drawn parts of the graph.
+    /// The cache of the drawn parts of the graph.
     pub(crate) drawing: DrawingCache,
 }
 

@@ -25,7 +25,7 @@ pub(crate) struct GraphDrawing {
     pub(super) stretches: Vec<Stretch>,
 }
 
-/// What is drawn.
+/// The graph and the probabilities of a drawing. Equal if they are the same objects.
 #[derive(Clone, Debug)]
 struct DrawnGraph {
     built: Arc<BuiltGraph>,
@@ -47,14 +47,15 @@ impl PartialEq for DrawnGraph {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct DrawingCache {
     made: Option<Arc<GraphDrawing>>,
-    begun: Option<Begun>,
+    builder: Option<DrawingBuilder>,
     /// The number of drawings made so far.
-    count: u64,
+    drawings_made: u64,
 }
 
 impl DrawingCache {
-    /// Returns the drawing of the graph that is shown. While that is made, it is the drawing of the
-    /// graph before, if that has the same clips; else `None`.
+    /// Returns the drawing of the graph that is shown, and begins a new one when the graph or its
+    /// probabilities have changed. Until that is made, returns the one before if it has the same
+    /// clips, else `None`.
     pub(super) fn of(&mut self, session: &Session) -> Option<Arc<GraphDrawing>> {
         let built = session.graph_built()?;
         let walk = session.graph_walk().filter(|walk| Arc::ptr_eq(&walk.built, built));
@@ -63,9 +64,9 @@ impl DrawingCache {
             probabilities: walk.map(|walk| Arc::clone(&walk.probabilities)),
         };
         if self.made.as_ref().is_some_and(|made| made.of == of) {
-            self.begun = None;
-        } else if self.begun.as_ref().is_none_or(|begun| begun.drawing.of != of) {
-            self.begun = Some(Begun::new(of));
+            self.builder = None;
+        } else if self.builder.as_ref().is_none_or(|builder| builder.drawing.of != of) {
+            self.builder = Some(DrawingBuilder::new(of));
         }
         let has_same_clips =
             |made: &&Arc<GraphDrawing>| Arc::ptr_eq(made.of.built.clips(), built.clips());
@@ -73,43 +74,43 @@ impl DrawingCache {
     }
 
     /// Returns whether a drawing is still to be made.
-    pub(crate) fn is_begun(&self) -> bool {
-        self.begun.is_some()
+    pub(crate) fn is_incomplete(&self) -> bool {
+        self.builder.is_some()
     }
 
     /// Makes a part of the drawing; returns whether any is left.
     pub(crate) fn work(&mut self) -> bool {
-        let Some(mut begun) = self.begun.take() else { return false };
-        if begun.advance() {
-            self.made = Some(Arc::new(begun.drawing));
-            self.count += 1;
+        let Some(mut builder) = self.builder.take() else { return false };
+        if builder.advance() {
+            self.made = Some(Arc::new(builder.drawing));
+            self.drawings_made += 1;
         } else {
-            self.begun = Some(begun);
+            self.builder = Some(builder);
         }
-        self.is_begun()
+        self.is_incomplete()
     }
 
     /// Returns the number of drawings made so far: when it changes, the graph has to be drawn
     /// again.
-    pub(crate) fn count(&self) -> u64 {
-        self.count
+    pub(crate) fn drawings_made(&self) -> u64 {
+        self.drawings_made
     }
 }
 
-/// A drawing in the making.
+/// The construction of a [`GraphDrawing`] in slices.
 #[derive(Clone, Debug)]
-struct Begun {
+struct DrawingBuilder {
     drawing: GraphDrawing,
-    /// The probability of each transition; `None` where walks cannot take it.
-    of_jumps: Arc<Vec<Option<f64>>>,
+    /// The probability of each transition; `None` where walks cannot take it. Without a walk, it is
+    /// yet to be made.
+    probabilities: Option<Arc<Vec<Option<f64>>>>,
     has_stretches: bool,
 }
 
-impl Begun {
+impl DrawingBuilder {
     fn new(of: DrawnGraph) -> Self {
         let count = of.built.whole().jumps().len();
-        let of_jumps =
-            (of.probabilities.as_ref()).map_or_else(|| Arc::new(of.built.reachable()), Arc::clone);
+        let probabilities = of.probabilities.clone();
         let drawing = GraphDrawing {
             of,
             ends: Vec::with_capacity(count),
@@ -118,18 +119,22 @@ impl Begun {
             drawn_arcs: Vec::new(),
             stretches: Vec::new(),
         };
-        Self { drawing, of_jumps, has_stretches: false }
+        Self { drawing, probabilities, has_stretches: false }
     }
 
     /// Makes a part; returns whether the drawing is complete.
     fn advance(&mut self) -> bool {
         let drawing = &mut self.drawing;
+        let Some(probabilities) = &self.probabilities else {
+            self.probabilities = Some(Arc::new(drawing.of.built.reachable()));
+            return false;
+        };
         let whole = drawing.of.built.whole();
         let (done, jumps) = (drawing.ends.len(), whole.jumps());
         if let Some(rest) = jumps.get(done..).filter(|rest| !rest.is_empty()) {
             let set = drawing.of.built.clips().set();
             for (index, jump) in rest.iter().enumerate().take(JUMPS_AT_ONCE) {
-                let probability = self.of_jumps.get(done + index).copied().flatten();
+                let probability = probabilities.get(done + index).copied().flatten();
                 let ends = [jump.leave, jump.enter];
                 let numbers = ends.map(|place| set.number(place).unwrap_or(0));
                 let faint = probability.is_none();
@@ -161,7 +166,7 @@ fn stretches(built: &BuiltGraph) -> Vec<Stretch> {
         let from = set.number(Place { clip: of.clip, frame: of.start })?;
         let fate = match built.component_of(node) {
             Some(0) => Fate::Main,
-            Some(ring) => Fate::Apart(ring - 1),
+            Some(component) => Fate::Apart(component - 1),
             None if is_dead[node] => Fate::End,
             None => Fate::Astray,
         };
@@ -172,6 +177,13 @@ fn stretches(built: &BuiltGraph) -> Vec<Stretch> {
 }
 
 impl GraphDrawing {
+    /// Returns the ends of a transition that a graph has: the drawing may be that of the graph
+    /// before.
+    pub(super) fn ends_in(&self, built: &BuiltGraph, jump: usize) -> Option<[Place; 2]> {
+        let [leave, enter] = *self.ends.get(jump)?;
+        built.jump_of(leave, enter).map(|_| [leave, enter])
+    }
+
     /// Returns the transition under the pointer, else the one that plays.
     pub(super) fn pointed_or_lit(
         &self,
@@ -211,26 +223,26 @@ mod tests {
         let mut session = Session::new();
         apply(Command::OpenLink("lab=graph&clips=walk,walk_left".into()), &mut session);
         let mut cache = DrawingCache::default();
-        assert!(cache.of(&session).is_none() && cache.is_begun());
+        assert!(cache.of(&session).is_none() && cache.is_incomplete());
         while cache.work() {}
         let first = cache.of(&session).unwrap();
         let jumps = session.graph_built().unwrap().whole().jumps();
         let ends: Vec<[Place; 2]> = jumps.iter().map(|jump| [jump.leave, jump.enter]).collect();
-        assert!(!ends.is_empty() && first.ends == ends && !cache.is_begun());
+        assert!(!ends.is_empty() && first.ends == ends && !cache.is_incomplete());
         assert_eq!(
-            (first.marks.len(), first.arcs.len(), cache.count()),
+            (first.marks.len(), first.arcs.len(), cache.drawings_made()),
             (ends.len(), ends.len(), 1)
         );
 
         let threshold = (Key::EdgeThreshold, Value::Number(1.0));
         apply(Command::Set(vec![threshold]), &mut session);
         assert!(cache.of(&session).is_some_and(|shown| Arc::ptr_eq(&shown, &first)));
-        assert!(cache.is_begun());
+        assert!(cache.is_incomplete());
         while cache.work() {}
         let second = cache.of(&session).unwrap();
-        assert!(second.ends.len() < ends.len() && !cache.is_begun());
+        assert!(second.ends.len() < ends.len() && !cache.is_incomplete());
 
         apply(Command::OpenLink("lab=graph&clips=walk,walk_right".into()), &mut session);
-        assert!(cache.of(&session).is_none() && cache.is_begun());
+        assert!(cache.of(&session).is_none() && cache.is_incomplete());
     }
 }

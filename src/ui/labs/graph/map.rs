@@ -46,11 +46,13 @@ pub(crate) fn map_ui(
         kit::note_ui(text::EMPTY_PANE, palette.muted, ui);
         return;
     };
-    let (walk, built) = (session.graph_walk(), session.graph_built());
+    // A pane keeps its last graph while the next one is built, which may be that of other clips.
+    let built = session.graph_built().filter(|built| Arc::ptr_eq(built.clips(), graph_clips));
+    let walk = session.graph_walk().filter(|_| built.is_some());
     let Some(field) = session.graph_field() else {
         return;
     };
-    let drawn = state.labs.graph.drawing.of(session);
+    let drawn = built.and_then(|_| state.labs.graph.drawing.of(session));
     let set = graph_clips.set();
     let parts: Vec<(usize, Message)> = (graph_clips.names().iter().enumerate())
         .filter_map(|(clip, name)| {
@@ -89,9 +91,9 @@ pub(crate) fn map_ui(
     tiles.keep(ui);
     kit::heat_legend_ui(&text::heat_ends(high_cm), ui);
     let mut words = Message::from(text::MATRIX_HELP);
-    if let (Some(drawn), Some(built)) = (&drawn, built) {
-        let ends = response.hovered.and_then(|mark| drawn.ends.get(mark));
-        if let Some(&ends) = ends {
+    if let Some(built) = built {
+        let ends = |mark| drawn.as_ref()?.ends_in(built, mark);
+        if let Some(ends) = response.hovered.and_then(ends) {
             point_at(ends, walk.map(|walk| &**walk), state);
             words = jump_words(built, walk.map(|walk| &**walk), ends, session).unwrap_or_default();
         } else if let Some([row, column]) = response.at {
@@ -103,7 +105,7 @@ pub(crate) fn map_ui(
                 );
             }
         }
-        if let Some(&ends) = response.clicked.and_then(|mark| drawn.ends.get(mark)) {
+        if let Some(ends) = response.clicked.and_then(ends) {
             open_jump(ends, session, state, out);
         }
     }

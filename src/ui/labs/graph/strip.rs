@@ -114,7 +114,7 @@ fn strip_ui(session: &Session, walk: &Arc<Walk>, state: &mut UiState, out: &mut 
     };
     let height = (ui.available_height() - space::XS).max(40.0);
     let response = kit::strip_ui(&strip, height, ui);
-    let ends = |arc: usize| drawn.as_ref()?.ends.get(arc).copied();
+    let ends = |arc| drawn.as_ref()?.ends_in(built, arc);
     if let Some(ends) = response.hovered_arc.and_then(ends) {
         point_at(ends, Some(walk), state);
     }
