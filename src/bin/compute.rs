@@ -4,24 +4,24 @@
 #[cfg(target_arch = "wasm32")]
 mod worker {
     use js_sys::{Array, ArrayBuffer, Float32Array, Uint8Array};
-    use segue_session::jobs::{ANSWER_PIECE_FLOATS, Parcel, Worker};
+    use segue_session::jobs::{ANSWER_PIECE_BYTES, ANSWER_PIECE_FLOATS, Parcel, Worker};
     use wasm_bindgen::prelude::wasm_bindgen;
     use wasm_bindgen::{JsCast as _, JsValue};
 
-    /// The least number of floats that are copied into a buffer that the page returns.
-    const IN_BUFFER_FLOATS: usize = ANSWER_PIECE_FLOATS / 8;
+    /// The least number of floats that are copied into a buffer of full size, which the page gives
+    /// back. A shorter array gets memory of its own length.
+    const MIN_BUFFER_FLOATS: usize = ANSWER_PIECE_FLOATS / 8;
 
-    /// Copies an array into JavaScript arrays of at most [`ANSWER_PIECE_FLOATS`]. They lie in
-    /// `spares`, as long as there are any: the system takes as long to provide new memory as the
-    /// copy takes.
+    /// Copies an array into JavaScript arrays of at most [`ANSWER_PIECE_FLOATS`], in buffers taken
+    /// from `spares` as long as there are any: providing new memory takes the system as long as the
+    /// copy.
     fn pieces_of(array: &[f32], spares: &Array) -> Array {
         let piece = |floats: &[f32]| {
-            if floats.len() < IN_BUFFER_FLOATS {
+            if floats.len() < MIN_BUFFER_FLOATS {
                 return Float32Array::from(floats);
             }
-            let bytes = size_of::<f32>() * ANSWER_PIECE_FLOATS;
             let spare = spares.pop().dyn_into();
-            let buffer = spare.unwrap_or_else(|_| ArrayBuffer::new(bytes as u32));
+            let buffer = spare.unwrap_or_else(|_| ArrayBuffer::new(ANSWER_PIECE_BYTES as u32));
             let length = floats.len() as u32;
             let piece = Float32Array::new_with_byte_offset_and_length(&buffer, 0, length);
             piece.copy_from(floats);

@@ -15,7 +15,7 @@ let begin;
 /** The worker's program. Whatever comes before the WebAssembly waits for it. */
 const computer = new Promise((resolve) => { begin = resolve; });
 
-/** Buffers for answers. */
+/** Buffers of earlier answers, which the page has given back. */
 const spares = [];
 
 /** The clips of which only a part has come, by their numbers. */

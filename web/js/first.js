@@ -39,7 +39,8 @@ window.segueDownload = (({ js, wasm, rest, webgpuJs, webgpuWasm, webgpuRest }) =
     if (!webgpuWasm || !navigator.gpu || keptModule === "webgl2" || ["webgl2", "fallback"].includes(asked)) return withWebgl2();
     const module = withWebgpu();
     if (asked === "webgpu") return module;
-    // First, because the page stands still here while the browser starts its graphics process.
+    // Begun before the request, during which the page may stand still while the browser starts its
+    // graphics process: that time counts as well.
     const late = new Promise((resolve) => setTimeout(resolve, MAX_ADAPTER_MS));
     const adapter = navigator.gpu.requestAdapter().catch(() => null);
     if (await (keptModule ? adapter : Promise.race([adapter, late]))) return module;

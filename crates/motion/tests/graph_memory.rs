@@ -22,10 +22,10 @@ const MAX_BYTES: usize = 300_000_000;
 /// first one on. Only the candidates grow, up to [`max_candidate_bytes`], which is added.
 const STEPS: usize = if cfg!(debug_assertions) { 500 } else { usize::MAX };
 
-/// Returns the greatest memory of the 800,000 candidates that are kept at a time. A growing vector
+/// Returns the greatest memory of the 500,000 candidates that are kept at a time. A growing vector
 /// has twice the capacity of its content, plus the old half while it moves.
 fn max_candidate_bytes() -> usize {
-    800_000 * size_of::<Candidate>() * 3
+    500_000 * size_of::<Candidate>() * 3
 }
 
 /// Returns strides whose cadence varies, differently in every clip.

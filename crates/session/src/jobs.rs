@@ -48,7 +48,7 @@ pub(crate) use faults::FaultTask;
 pub(crate) use mend::{MendAnswer, MendTask, with_slide};
 pub(crate) use motion_parcel::{pack_without_floats, unpack as unpack_motion};
 pub(crate) use parcel::take;
-pub use parcel::{ANSWER_PIECE_FLOATS, Parcel, ParcelError};
+pub use parcel::{ANSWER_PIECE_BYTES, ANSWER_PIECE_FLOATS, Parcel, ParcelError};
 pub(crate) use registration::{RegistrationAnswer, RegistrationTask};
 pub(crate) use result::ResultTask;
 pub(crate) use stream::StreamTask;

@@ -8,7 +8,7 @@ use crate::platform::pool_size::{PoolSize, PoolStats, pool_size};
 use glam::Quat;
 use js_sys::{Array, ArrayBuffer, Float32Array, Function, Object, Reflect, Uint8Array};
 use segue_session::Session;
-use segue_session::jobs::{ANSWER_PIECE_FLOATS, Answer, Job, Parcel};
+use segue_session::jobs::{ANSWER_PIECE_BYTES, Answer, Job, Parcel};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::fmt;
@@ -267,11 +267,8 @@ impl Pool {
         }
         let message = job.message().map_err(|error| error.to_string())?;
         let number = JsValue::from(job.number as f64);
-        let spares: Array = slot.spares.drain(..).collect();
-        let properties =
-            [("job", number), ("message", message.into()), ("spares", spares.clone().into())];
-        let message = message_of(&properties)?;
-        worker.post_message_with_transfer(&message, &spares)?;
+        let properties = [("job", number), ("message", message.into())];
+        post_job(&worker, &properties, slot.spares.drain(..).collect())?;
         if let Some((job, tries)) = slot.next.pop_front() {
             slot.jobs.push_back(Posted {
                 job,
@@ -392,7 +389,7 @@ impl State {
             let number = |name: &str| part(name).as_f64().unwrap_or(0.0) as usize;
             append_piece(&mut posted.arrived, number("array"), number("length"), &piece);
             let buffer = piece.buffer();
-            let is_reused = buffer.byte_length() as usize == size_of::<f32>() * ANSWER_PIECE_FLOATS;
+            let is_reused = buffer.byte_length() as usize == ANSWER_PIECE_BYTES;
             if is_reused && slot.spares.len() < MAX_SPARES {
                 slot.spares.push(buffer);
             }
@@ -476,6 +473,13 @@ fn post_piece(
     let piece = Float32Array::from(piece);
     Reflect::set(&message, &JsValue::from("piece"), &piece)?;
     worker.post_message_with_transfer(&message, &Array::of1(&piece.buffer()))
+}
+
+/// Posts a job with these properties, and buffers of earlier answers, which are moved.
+fn post_job(worker: &Worker, properties: &[(&str, JsValue)], spares: Array) -> Result<(), JsValue> {
+    let message = message_of(properties)?;
+    Reflect::set(&message, &JsValue::from("spares"), &spares)?;
+    worker.post_message_with_transfer(&message, &spares)
 }
 
 fn message_of(properties: &[(&str, JsValue)]) -> Result<Object, JsValue> {

@@ -244,7 +244,8 @@ impl MotionGraph {
         let mut made = Self {
             set: Arc::clone(set),
             options: *options,
-            // A stretch has one way to continue.
+            // One edge for each jump, and one for each cut, where the clip continues; a jump cuts
+            // at two places at most.
             graph: DiGraph::with_capacity(0, near + set.cuts().min(2 * near)),
             jumps: Vec::with_capacity(near),
             origins: Vec::new(),
@@ -290,10 +291,14 @@ impl MotionGraph {
 
     fn add_stretches(&mut self, chosen: &[Candidate]) {
         let mut is_cut = vec![false; self.set.cuts()];
-        for jump in chosen {
-            let arrival =
-                Place { frame: jump.enter.frame + self.options.blend_window, ..jump.enter };
-            for cut in [jump.leave, arrival].into_iter().filter_map(|place| self.set.cut(place)) {
+        for candidate in chosen {
+            let arrival = Place {
+                frame: candidate.enter.frame + self.options.blend_window,
+                ..candidate.enter
+            };
+            for cut in
+                [candidate.leave, arrival].into_iter().filter_map(|place| self.set.cut(place))
+            {
                 is_cut[cut] = true;
             }
         }

@@ -6,16 +6,16 @@ use super::{Candidate, Candidates, FrameSet, GraphOptions, Place, TileCandidates
 use std::cmp::Ordering;
 use std::sync::Arc;
 
-/// The greatest number of distances and of places for each candidate: where these are few, sorting
-/// them is quicker.
+/// The greatest number of groups for each candidate, by distance or by place. With more, comparing
+/// the candidates is quicker than grouping them.
 const GROUPS_PER_FOUND: usize = 4;
 
-/// The candidates of a search, which are to be put in their order, closest first. Hundreds of
-/// thousands take longer than a frame of the screen; a step of [`advance`](Self::advance) takes
-/// some milliseconds.
+/// The sort of the candidates of a search in slices: closest first; of equal distances, by the
+/// places at which clips are left and then entered. Hundreds of thousands take longer than a frame
+/// of the screen; a step of [`advance`](Self::advance) takes some milliseconds.
 ///
-/// Their distances are multiples of 0.001 cm, and their places are numbers, so that they are
-/// grouped without comparisons.
+/// Distances are multiples of 0.001 cm and places have numbers, so that very many candidates are
+/// grouped by them, without comparisons.
 #[derive(Clone, Debug)]
 pub struct CandidateSort {
     set: Arc<FrameSet>,
@@ -29,13 +29,14 @@ pub struct CandidateSort {
 /// A step of the sort.
 #[derive(Clone, Copy, Debug)]
 enum Step {
-    /// All but so many are dropped.
+    /// Drops all but this number of the closest.
     KeepClosest(usize),
-    /// They are grouped; each grouping keeps the order of the one before within its groups.
+    // The least significant key first: a grouping keeps the order of the one before within its
+    // groups.
     GroupByEntry,
     GroupByExit,
     GroupByDistance,
-    /// They are moved to their places.
+    /// Moves the candidates to their places.
     Move,
 }
 
@@ -64,7 +65,7 @@ impl CandidateSort {
         for tile in tiles {
             picker.absorb(tile);
         }
-        picker.sort()
+        picker.into_sort()
     }
 
     /// Does the next step; returns `true` when nothing is left to do.
@@ -75,7 +76,7 @@ impl CandidateSort {
         match steps.pop() {
             Some(Step::KeepClosest(most)) => {
                 candidates.left_out += keep_closest(found, most);
-                if distances(found).max(set.frames()) > GROUPS_PER_FOUND * found.len() {
+                if distance_groups(found).max(set.frames()) > GROUPS_PER_FOUND * found.len() {
                     found.sort_unstable_by(closest_first);
                     steps.clear();
                 } else {
@@ -89,7 +90,7 @@ impl CandidateSort {
                 *order = regrouped(order, set.frames(), found, |of| number(of.leave));
             }
             Some(Step::GroupByDistance) => {
-                *order = regrouped(order, distances(found), found, thousandths);
+                *order = regrouped(order, distance_groups(found), found, thousandths);
             }
             Some(Step::Move) => *found = order.iter().map(|&at| found[at]).collect(),
             None => {}
@@ -113,7 +114,7 @@ fn regrouped(
     found: &[Candidate],
     key: impl Fn(&Candidate) -> usize,
 ) -> Vec<usize> {
-    // In the order in which they lie in memory.
+    // Read in the order of memory: in that of the groups, each read would wait for memory.
     let keys: Vec<usize> = found.iter().map(key).collect();
     let (_, by_key) = grouped(groups, order.iter().map(|&at| keys[at]));
     by_key.into_iter().map(|at| order[at]).collect()
@@ -124,8 +125,9 @@ fn thousandths(of: &Candidate) -> usize {
     (of.distance_cm * 1_000.0).round_ties_even() as usize
 }
 
-/// Returns one more than the greatest distance, in units of 0.001 cm.
-fn distances(found: &[Candidate]) -> usize {
+/// Returns the number of groups by distance: one more than the greatest distance in units of
+/// 0.001 cm.
+fn distance_groups(found: &[Candidate]) -> usize {
     found.iter().map(thousandths).max().map_or(0, |most| most.saturating_add(1))
 }
 
@@ -136,13 +138,13 @@ pub(super) fn keep_closest(found: &mut Vec<Candidate>, most: usize) -> usize {
     if extra == 0 {
         return 0;
     }
-    let distances = distances(found);
-    if distances > GROUPS_PER_FOUND * found.len() {
+    let groups = distance_groups(found);
+    if groups > GROUPS_PER_FOUND * found.len() {
         found.select_nth_unstable_by(most, closest_first);
         found.truncate(most);
         return extra;
     }
-    let mut counts = vec![0; distances];
+    let mut counts = vec![0; groups];
     for of in found.iter() {
         counts[thousandths(of)] += 1;
     }
@@ -152,7 +154,7 @@ pub(super) fn keep_closest(found: &mut Vec<Candidate>, most: usize) -> usize {
         within += count;
         within > most
     });
-    let limit = limit.unwrap_or(distances);
+    let limit = limit.unwrap_or(groups);
     let mut farthest: Vec<Candidate> =
         found.iter().copied().filter(|of| thousandths(of) == limit).collect();
     found.retain(|of| thousandths(of) < limit);

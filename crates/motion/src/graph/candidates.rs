@@ -11,9 +11,10 @@ use crate::registration::Progress;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The greatest number of candidates; the closest are kept.
+/// The greatest number of candidates that a search returns; the closest are kept.
 const MAX_CANDIDATES: usize = 400_000;
-/// The number of candidates in memory from which on the farthest are dropped.
+/// The number of candidates in memory above which the farthest are dropped, down to
+/// [`MAX_CANDIDATES`].
 const MAX_IN_MEMORY: usize = MAX_CANDIDATES + MAX_CANDIDATES / 4;
 
 /// The cost of aligning one candidate, in cells scanned (for progress).
@@ -66,7 +67,7 @@ impl Candidates {
     ) -> Result<Self, GraphError> {
         let mut search = CandidateSearch::new(distances, options)?;
         while !search.advance(all, distances, usize::MAX)?.is_complete() {}
-        Ok(search.sort().finish())
+        Ok(search.into_sort().finish())
     }
 
     /// Returns the candidates, closest first.
@@ -203,10 +204,10 @@ impl CandidateSearch {
         Progress { done: self.done.min(self.total), total: self.total }
     }
 
-    /// Returns the candidates found so far, which are yet to be sorted.
+    /// Returns the sort of the candidates found so far.
     #[must_use]
-    pub fn sort(self) -> CandidateSort {
-        self.picker.sort()
+    pub fn into_sort(self) -> CandidateSort {
+        self.picker.into_sort()
     }
 }
 
@@ -437,8 +438,8 @@ impl Picker {
         self.found.extend(tile.found);
     }
 
-    /// Returns the candidates, which are yet to be sorted.
-    pub(super) fn sort(self) -> CandidateSort {
+    /// Returns the sort of the candidates.
+    pub(super) fn into_sort(self) -> CandidateSort {
         let candidates = Candidates {
             found: self.found,
             nearest_cm: self.nearest_m.is_finite().then(|| self.set.rounded_cm(self.nearest_m)),

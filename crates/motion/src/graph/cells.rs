@@ -16,7 +16,8 @@ pub(super) fn row_start(is_itself: bool, width: usize, first: usize, row: usize)
 const LANES: usize = 4;
 
 /// A histogram of distances whose last range is open. Neighbours are often in the same range, and
-/// one count would wait for the other: each of four has counts of its own.
+/// one count would have to wait for the one before, so that each of four neighbours has its own
+/// counts.
 #[derive(Clone, Debug)]
 pub(super) struct Histogram {
     /// Ranges per metre.
@@ -26,7 +27,8 @@ pub(super) struct Histogram {
 
 impl Histogram {
     /// Returns an empty histogram of `bins` ranges of `bin_cm` centimetres on the reference body,
-    /// `cm_per_m` of which are a metre of the distances. A lane counts up to 4 billion.
+    /// `cm_per_m` of which are a metre of the distances. Each of the four counts is limited to
+    /// 2³² - 1.
     pub(super) fn new(cm_per_m: f64, bin_cm: f64, bins: usize) -> Self {
         let scale = if bin_cm > 0.0 { (cm_per_m / bin_cm) as f32 } else { f32::MAX };
         Self { scale, counts: vec![[0; LANES]; bins] }
@@ -65,19 +67,24 @@ impl Histogram {
     }
 }
 
+/// Returns the smaller of two distances. `f32::min` also handles NaN, which takes several times as
+/// long.
+#[inline]
+pub(super) fn smaller(a: f32, b: f32) -> f32 {
+    if b < a { b } else { a }
+}
+
 /// Returns the smallest of some distances; infinity without any.
 #[inline]
 pub(super) fn smallest(cells: &[f32]) -> f32 {
-    // `f32::min` handles NaN, which takes several times as long.
-    let less = |a: f32, b: f32| if b < a { b } else { a };
     let (fours, rest) = cells.as_chunks::<LANES>();
     let mut lanes = [f32::INFINITY; LANES];
     for four in fours {
         for (known, &cell) in lanes.iter_mut().zip(four) {
-            *known = less(*known, cell);
+            *known = smaller(*known, cell);
         }
     }
-    lanes.into_iter().chain(rest.iter().copied()).fold(f32::INFINITY, less)
+    lanes.into_iter().chain(rest.iter().copied()).fold(f32::INFINITY, smaller)
 }
 
 #[cfg(test)]
@@ -104,7 +111,7 @@ mod tests {
         }
 
         #[test]
-        fn smallest_is_the_least(cells in prop::collection::vec(0.0_f32..9.0, 0..40)) {
+        fn smallest_of_any_number_equals_that_of_f32_min(cells in prop::collection::vec(0.0_f32..9.0, 0..40)) {
             let expected = cells.iter().copied().fold(f32::INFINITY, f32::min);
             prop_assert_eq!(smallest(&cells), expected);
         }

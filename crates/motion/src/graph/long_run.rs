@@ -53,6 +53,7 @@ pub(super) struct LongRun {
     /// The present component, and its number of sweeps.
     component: usize,
     sweeps: usize,
+    /// The ways that are not in `within` and `between` yet; `None` when all is prepared.
     unprepared: Option<Unprepared>,
 }
 
@@ -125,8 +126,9 @@ impl LongRun {
         }
     }
 
-    /// Does a part of what precedes the sweeps: with hundreds of thousands of ways, all of it would
-    /// take longer than a frame of the screen.
+    /// Does the next of two parts of the preparation: the components, then the ways into each node.
+    /// With hundreds of thousands of ways, both together would take longer than a frame of the
+    /// screen.
     fn prepare(&mut self, Unprepared { mut steps, component_of }: Unprepared) {
         let nodes = self.visits.len();
         let Some(component_of) = component_of else {
@@ -154,8 +156,8 @@ impl LongRun {
         self.between = WaysInto::new(nodes, &between);
     }
 
-    /// Follows about `ways` more ways, at least those of one sweep; returns `true` when all is
-    /// computed.
+    /// Prepares the ways in the first two calls; then follows about `ways` more of them, at least
+    /// those of one sweep. Returns `true` when all is computed.
     pub(super) fn advance(&mut self, ways: usize) -> bool {
         if let Some(unprepared) = self.unprepared.take() {
             self.prepare(unprepared);

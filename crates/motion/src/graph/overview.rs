@@ -1,6 +1,6 @@
 //! Coarse pictures of all distances.
 
-use super::cells::{Histogram, smallest};
+use super::cells::{Histogram, smaller, smallest};
 use super::parts::{Part, Parts};
 use super::{FrameSet, GraphError, Place, StreamRow};
 use crate::blend::align_onto;
@@ -70,7 +70,7 @@ impl DistanceOverview {
                     cells.split_at((self.block - column % self.block).min(cells.len()));
                 let at = self.at(row / self.block, column / self.block);
                 if let Some(known) = self.nearest_m.get_mut(at) {
-                    *known = known.min(smallest(here));
+                    *known = smaller(*known, smallest(here));
                 }
                 (column, cells) = (column + here.len(), rest);
             }
@@ -174,11 +174,8 @@ impl DistanceOverview {
                 for row in rows.clone() {
                     for column in columns.clone() {
                         let at = self.at(row.min(column), row.max(column));
-                        let here = self.nearest_m.get(at).copied().unwrap_or(f32::INFINITY);
-                        // `f32::min` handles NaN, which takes several times as long.
-                        if here < nearest {
-                            nearest = here;
-                        }
+                        let here = self.nearest_m.get(at).copied();
+                        nearest = smaller(nearest, here.unwrap_or(f32::INFINITY));
                     }
                 }
                 picture.push(if nearest.is_finite() { nearest * scale } else { f32::NAN });

@@ -114,22 +114,21 @@ impl CandidateStream {
     /// # Errors
     /// The same as for [`advance`](Self::advance).
     pub fn finish(self) -> Result<(Candidates, DistanceOverview), GraphError> {
-        let (sort, overview) = self.sort()?;
+        let (sort, overview) = self.into_sort()?;
         Ok((sort.finish(), overview))
     }
 
-    /// Processes the remaining steps and returns the candidates, which are yet to be sorted, and
-    /// the overview.
+    /// Processes the remaining steps and returns the sort of the candidates, and the overview.
     ///
     /// # Errors
     /// The same as for [`advance`](Self::advance).
-    pub fn sort(mut self) -> Result<(CandidateSort, DistanceOverview), GraphError> {
+    pub fn into_sort(mut self) -> Result<(CandidateSort, DistanceOverview), GraphError> {
         self.advance(usize::MAX)?;
         let overview = match self.work {
             Work::Tiles { overview, .. } => *overview,
             Work::Parts(parts) => DistanceOverview::new(parts),
         };
-        Ok((self.picker.sort(), overview))
+        Ok((self.picker.into_sort(), overview))
     }
 
     fn step(&mut self) -> Result<(), GraphError> {

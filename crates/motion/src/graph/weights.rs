@@ -172,8 +172,9 @@ impl RunLength {
         Self(LongRun::new(graph.graph.node_count(), steps))
     }
 
-    /// Does at least one more sweep, until about `edges` edges were followed, each counted at every
-    /// sweep; returns `true` after the last one.
+    /// Does a part of the preparation, in the first two calls; then at least one more sweep, until
+    /// about `edges` edges were followed, each counted at every sweep. Returns `true` after the
+    /// last one.
     pub fn advance(&mut self, edges: usize) -> bool {
         self.0.advance(edges)
     }

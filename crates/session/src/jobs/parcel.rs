@@ -8,6 +8,10 @@ use std::vec;
 /// 2 ms. A multiple of 4, so that no rotation is divided.
 pub const ANSWER_PIECE_FLOATS: usize = 1 << 19;
 
+/// The size of a buffer that holds a full piece of an answer, bytes. The page gives buffers of this
+/// size back.
+pub const ANSWER_PIECE_BYTES: usize = size_of::<f32>() * ANSWER_PIECE_FLOATS;
+
 /// A message between a page and its workers: a JSON header, and long arrays. The arrays have the
 /// byte order of the machine, on which both sides run.
 #[derive(Clone, Debug, Default, PartialEq)]

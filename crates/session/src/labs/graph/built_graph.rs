@@ -120,7 +120,8 @@ pub struct BuiltGraph {
     graph: Arc<MotionGraph>,
     /// The share of all frames of each component that allows endless walks, the largest first.
     component_shares: Vec<f64>,
-    /// The index in these of the component of each node of the whole graph.
+    /// For each node of the whole graph, the index of its component in `component_shares`; `None`
+    /// if that allows no endless walk.
     share_of: Vec<Option<usize>>,
     dead_ends: usize,
     is_truncated: bool,

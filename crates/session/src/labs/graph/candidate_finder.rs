@@ -100,16 +100,16 @@ impl WorkerSearch {
         }
     }
 
-    /// Returns the distances, if they were asked for, and the candidates, which are yet to be
-    /// sorted. All jobs have ended.
-    fn sort(
+    /// Returns the distances, if they were asked for, and the sort of the candidates. All jobs have
+    /// ended.
+    fn into_sort(
         self,
         set: &Arc<FrameSet>,
     ) -> Result<(Option<DistanceField>, CandidateSort), GraphError> {
         match self {
-            Self::Tiled(search) => Ok(search.sort(set)),
+            Self::Tiled(search) => Ok(search.into_sort(set)),
             Self::Streamed(search) => {
-                let (sort, overview) = search.sort()?;
+                let (sort, overview) = search.into_sort()?;
                 Ok((Some(DistanceField::overview(overview)), sort))
             }
         }
@@ -185,8 +185,8 @@ impl CandidateFinder {
         if let Some(found) = self.known(options) {
             return Ok(Searched::Found(Arc::clone(found)));
         }
-        if self.is_sorting(options)
-            && let Some((known, mut sort)) = self.sorting.take()
+        if let Some((known, mut sort)) =
+            self.sorting.take().filter(|(known, _)| serves(known, options))
         {
             if sort.advance() {
                 return Ok(Searched::Found(self.keep_found(known, sort.finish())));
@@ -264,7 +264,7 @@ impl CandidateFinder {
             }
             TiledStep::Complete => {
                 let options = *search.options();
-                let (field, sort) = search.sort(set)?;
+                let (field, sort) = search.into_sort(set)?;
                 self.keep_field(field);
                 self.sorting = Some((options, sort));
                 Ok(Searched::Worked { worker_secs: 0.0 })
@@ -309,7 +309,7 @@ impl CandidateFinder {
                 }
             };
             if stream.advance(1)?.is_complete() {
-                let (sort, overview) = stream.sort()?;
+                let (sort, overview) = stream.into_sort()?;
                 self.keep_field(Some(DistanceField::overview(overview)));
                 self.sorting = Some((widened, sort));
                 return Ok(());
@@ -357,7 +357,7 @@ impl CandidateFinder {
             }
         };
         if search.progress().is_complete() {
-            self.sorting = Some((widened, search.sort()));
+            self.sorting = Some((widened, search.into_sort()));
             return Ok(());
         }
         search.advance(all, distances, CELLS)?;

@@ -77,9 +77,8 @@ impl StreamedSearch {
         Ok(TiledStep::Waits)
     }
 
-    /// Returns the candidates, which are yet to be sorted, and the overview of the distances. All
-    /// jobs have ended.
-    pub(super) fn sort(self) -> Result<(CandidateSort, DistanceOverview), GraphError> {
-        self.stream.sort()
+    /// Returns the sort of the candidates, and the overview of the distances. All jobs have ended.
+    pub(super) fn into_sort(self) -> Result<(CandidateSort, DistanceOverview), GraphError> {
+        self.stream.into_sort()
     }
 }

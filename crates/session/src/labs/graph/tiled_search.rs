@@ -116,9 +116,9 @@ impl TiledSearch {
         TiledStep::Waits
     }
 
-    /// Returns the distances, if they were asked for, and the candidates, which are yet to be
-    /// sorted. All jobs have ended.
-    pub(super) fn sort(self, set: &Arc<FrameSet>) -> (Option<DistanceField>, CandidateSort) {
+    /// Returns the distances, if they were asked for, and the sort of the candidates. All jobs have
+    /// ended.
+    pub(super) fn into_sort(self, set: &Arc<FrameSet>) -> (Option<DistanceField>, CandidateSort) {
         let field = self.wants_field.then(|| {
             let window = self.options.blend_window;
             let distances = FrameDistances::of_tiles(set, window, self.distances);

@@ -46,8 +46,8 @@ impl DistanceMap {
         &self.matrix
     }
 
-    /// Returns the distances in at most 512 cells along a side, each the mean of a square. The
-    /// first call takes about as long as reading all of them.
+    /// Returns the distances, metres, in at most 512 cells along a side, each the mean of a square
+    /// of cells. If the picture is not made yet, this takes about as long as reading all distances.
     #[must_use]
     pub fn picture(&self) -> &DistanceMatrix {
         self.picture.get_or_init(|| self.pooled())
@@ -55,7 +55,9 @@ impl DistanceMap {
 
     /// Makes the picture; returns `false` if it was made before.
     pub(super) fn make_picture(&self) -> bool {
-        self.picture.get().is_none() && self.picture.set(self.pooled()).is_ok()
+        let is_new = self.picture.get().is_none();
+        self.picture.get_or_init(|| self.pooled());
+        is_new
     }
 
     fn pooled(&self) -> DistanceMatrix {
