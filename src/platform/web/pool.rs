@@ -268,7 +268,7 @@ impl Pool {
         let message = job.message().map_err(|error| error.to_string())?;
         let number = JsValue::from(job.number as f64);
         let properties = [("job", number), ("message", message.into())];
-        post_job(&worker, &properties, slot.spares.drain(..).collect())?;
+        post_job(&worker, &properties, &slot.spares.drain(..).collect())?;
         if let Some((job, tries)) = slot.next.pop_front() {
             slot.jobs.push_back(Posted {
                 job,
@@ -476,10 +476,14 @@ fn post_piece(
 }
 
 /// Posts a job with these properties, and buffers of earlier answers, which are moved.
-fn post_job(worker: &Worker, properties: &[(&str, JsValue)], spares: Array) -> Result<(), JsValue> {
+fn post_job(
+    worker: &Worker,
+    properties: &[(&str, JsValue)],
+    spares: &Array,
+) -> Result<(), JsValue> {
     let message = message_of(properties)?;
-    Reflect::set(&message, &JsValue::from("spares"), &spares)?;
-    worker.post_message_with_transfer(&message, &spares)
+    Reflect::set(&message, &JsValue::from("spares"), spares)?;
+    worker.post_message_with_transfer(&message, spares)
 }
 
 fn message_of(properties: &[(&str, JsValue)]) -> Result<Object, JsValue> {
