@@ -46,6 +46,33 @@ onOneBackend("results of workers are those of a page without them", async ({ ope
   assert.ok((await workers(shared)).jobs > before - 1);
 });
 
+// Fails when workers do not get the buffers of their answers again, and when a distance is one of an
+// earlier answer: clips of different lengths have tiles of different sizes.
+onOneBackend("buffers of answers are used again, and answers stay those of a page without workers", async ({ open }) => {
+  const countReturned = (page) => page.addInitScript(() => {
+    window.returnedBuffers = 0;
+    const { postMessage } = Worker.prototype;
+    Worker.prototype.postMessage = function (message, ...more) {
+      window.returnedBuffers += message?.spares?.length ?? 0;
+      return postMessage.call(this, message, ...more);
+    };
+  });
+  const link = "lab=view&play=off&walk_seconds=10";
+  const [alone, shared] = [await open(`${link}&pool=off`, SMALL), await open(`${link}&pool=2`, { ...SMALL, prepare: countReturned })];
+  for (const { segue, load } of [alone, shared]) {
+    const clips = [];
+    for (const [index, frames] of [1100, 420, 700].entries()) clips.push((await load(`${index}.bvh`, striding({ frames, hertz: 0.8 + 0.1 * index, swing: 25 + 3 * index }))).clips[0].id);
+    await segue("set", { lab: "graph", clips: clips.join(",") });
+  }
+  assert.deepEqual(await result(shared), await result(alone));
+  for (const blend_window of [24, 19, 35]) {
+    for (const page of [alone, shared]) await page.segue("set", { blend_window });
+    assert.deepEqual(await result(shared), await result(alone), `a window of ${blend_window}`);
+  }
+  const returned = await shared.page.evaluate(() => window.returnedBuffers);
+  assert.ok(returned >= 6, `${returned} buffers`);
+});
+
 // Fails when no clip of a database goes to a worker, and when its measurement differs in a bit.
 onOneBackend("database of workers is that of a page without them", async ({ open }) => {
   const link = "lab=match&scenario=spin&play=off";

@@ -22,7 +22,7 @@ pub struct CandidateSort {
     candidates: Candidates,
     /// The candidates in the order of the groupings so far, by their indices.
     order: Vec<usize>,
-    /// What is left to do, the next one last.
+    /// The steps that are left, in reverse order: the next one is taken from the end.
     steps: Vec<Step>,
 }
 
