@@ -28,7 +28,7 @@ impl Segue {
             max_ms -= platform::now_ms() - self.clock.frame_began;
         }
         let mut more = self.work_for(max_ms);
-        // A page refines between frames, from `View::ui` on.
+        // In a page, `work_between_frames` refines.
         if !platform::WORKS_BETWEEN_FRAMES {
             more = self.refine(more) || more;
         }
@@ -121,7 +121,7 @@ impl Segue {
         let is_taken = self.inbox.take_for_picture();
         self.picture.finish(slot, &self.session, (theme.palette(), look), highlights, is_taken, ui);
         let is_changed = self.session.revision() != before;
-        // Work between frames requests a frame itself.
+        // In a page, `work_between_frames` requests the frame that shows what it has refined.
         if is_changed || (self.is_coarse() && !platform::WORKS_BETWEEN_FRAMES) {
             ui.ctx().request_repaint();
         }

@@ -89,7 +89,8 @@ struct Slot {
     jobs: VecDeque<Posted>,
     /// A job whose clips are still to be sent, or one of a worker that has ended.
     next: VecDeque<(Job, u8)>,
-    /// Buffers of its answers, which it gets again with its next job.
+    /// Buffers of the worker's past answers. They are sent back with its next job, so that it need
+    /// not allocate new ones.
     spares: Vec<ArrayBuffer>,
 }
 

@@ -114,7 +114,8 @@ fn regrouped(
     found: &[Candidate],
     key: impl Fn(&Candidate) -> usize,
 ) -> Vec<usize> {
-    // Read in the order of memory: in that of the groups, each read would wait for memory.
+    // Computed in memory order: in the order of the groups, nearly every read of a candidate would
+    // be a cache miss.
     let keys: Vec<usize> = found.iter().map(key).collect();
     let (_, by_key) = grouped(groups, order.iter().map(|&at| keys[at]));
     by_key.into_iter().map(|at| order[at]).collect()
@@ -148,7 +149,7 @@ pub(super) fn keep_closest(found: &mut Vec<Candidate>, most: usize) -> usize {
     for of in found.iter() {
         counts[thousandths(of)] += 1;
     }
-    // The distance of which only a part is kept.
+    // The distance at which only some of the candidates are kept.
     let mut within = 0;
     let limit = counts.iter().position(|count| {
         within += count;

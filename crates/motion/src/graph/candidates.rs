@@ -432,7 +432,7 @@ impl Picker {
         }
         let known = self.found.len();
         if known + more > MAX_CANDIDATES / 8 {
-            // Grown step by step, the memory of very many would be copied again and again.
+            // A vector that doubles would copy hundreds of thousands of candidates several times.
             self.found.reserve_exact(more.max(MAX_IN_MEMORY.saturating_sub(known)));
         }
         self.found.extend(tile.found);

@@ -15,9 +15,9 @@ pub(super) fn row_start(is_itself: bool, width: usize, first: usize, row: usize)
 /// The number of distances that are handled together.
 const LANES: usize = 4;
 
-/// A histogram of distances whose last range is open. Neighbours are often in the same range, and
-/// one count would have to wait for the one before, so that each of four neighbours has its own
-/// counts.
+/// A histogram of distances whose last range is open. Neighbouring distances are often in the same
+/// range, and a processor waits when it increments a counter that it has just written. Four
+/// neighbours therefore have separate counters, which are added at the end.
 #[derive(Clone, Debug)]
 pub(super) struct Histogram {
     /// Ranges per metre.
@@ -42,7 +42,8 @@ impl Histogram {
             return;
         };
         let (scale, last) = (self.scale, last as i32);
-        // Signed, for which processors have an instruction.
+        // Processors convert a float to a signed integer with one instruction, to an unsigned one
+        // with several.
         let bin = |distance: f32| {
             let bin = (distance * scale) as i32;
             if bin < last { bin as usize } else { last as usize }

@@ -15,9 +15,9 @@ pub(crate) struct GraphDrawing {
     of: DrawnGraph,
     /// The ends of each transition.
     pub(super) ends: Vec<[Place; 2]>,
-    /// Its mark on the map of distances.
+    /// The mark of each transition on the map of distances.
     pub(super) marks: Vec<MatrixMark>,
-    /// Its arc.
+    /// The arc of each transition in the strip below the stage.
     pub(super) arcs: Vec<kit::Arc>,
     /// The indices of the arcs that are drawn.
     pub(super) drawn_arcs: Vec<usize>,
