@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// of 256 × 256 windows is compared, searched, and dropped. A [`DistanceOverview`] remains.
 ///
 /// 30,000 frames of 31 joints are 7,000 tiles of 1.5 ms each. They take 1 MB at a time in addition
-/// to the points (12 bytes per joint and frame), the overview (8 MB) and the candidates. A new
+/// to the points (16 bytes per joint and frame), the overview (8 MB) and the candidates. A new
 /// window or threshold needs a new search.
 #[derive(Clone, Debug)]
 pub struct CandidateStream {

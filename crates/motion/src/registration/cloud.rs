@@ -9,12 +9,20 @@ use std::ops::Range;
 /// Number of samples in one SIMD register.
 pub(super) const LANES: usize = 4;
 
-/// Four samples of one joint: x, z and height.
-pub(super) type Lanes = [Vec4; 3];
+/// Numbers of a joint by which pairs are multiplied: x, z, x + z and the height. In the left factor
+/// the third is x - z.
+const PLANES: usize = 4;
 
-/// Four samples of one joint, each broadcast to a whole register and weighted: the left factor of
-/// the products with [`Lanes`].
-pub(super) type Spread = [[Vec4; 3]; LANES];
+/// Number of the target's groups that are multiplied with a group of the source at once.
+pub(super) const COLUMN_GROUPS: usize = 2;
+
+/// Four samples of a joint, each broadcast to a whole register and weighted: the left factor of the
+/// products.
+pub(super) type Spread = [Vec4; LANES];
+
+/// The sums of products of [`LANES`] samples of the source with [`LANES`] of the target, by the
+/// source's sample.
+pub(super) type Sums = [Vec4; LANES];
 
 /// The joints with a weight above 0, with their weights as shares of 1.
 #[derive(Clone, Debug)]
@@ -59,8 +67,8 @@ pub(super) struct Cloud {
     /// Σw(x² + z²) + Σwy² of every sample, relative to its centre: rounded exactly as the products
     /// of a pair are, so that the distance of equal poses is 0.
     pub(super) square: Vec<f64>,
-    /// Samples in groups of [`LANES`], each `shares.len()` long.
-    points: Vec<Lanes>,
+    /// Samples in groups of [`LANES`], each of [`PLANES`] times `joints`, plane by plane.
+    points: Vec<Vec4>,
     joints: usize,
 }
 
@@ -90,7 +98,7 @@ impl Cloud {
             x: Vec::with_capacity(samples),
             z: Vec::with_capacity(samples),
             square: Vec::with_capacity(samples),
-            points: Vec::with_capacity(samples.div_ceil(LANES) * shares.len()),
+            points: Vec::with_capacity(samples.div_ceil(LANES) * PLANES * shares.len()),
             joints: shares.len(),
         }
     }
@@ -111,9 +119,10 @@ impl Cloud {
         samples: usize,
     ) -> Result<(), RegistrationError> {
         let (mut world, mut spread) = (WorldPose::default(), Vec::new());
+        let mut products = [Products::default()];
         let end = self.done().saturating_add(samples).min(self.samples).div_ceil(LANES);
         for group in self.done().div_ceil(LANES)..end {
-            self.points.resize((group + 1) * self.joints, [Vec4::ZERO; 3]);
+            self.points.resize((group + 1) * PLANES * self.joints, Vec4::ZERO);
             let samples = group * LANES..((group + 1) * LANES).min(self.samples);
             for sample in samples.clone() {
                 clip.world_pose_into(self.start + sample * stride, &mut world);
@@ -124,7 +133,8 @@ impl Cloud {
             }
             spread.clear();
             self.spread(group, shares, &mut spread);
-            let [flat, _, height] = tile(&spread, self.group(group));
+            multiply(&spread, [self.group(group); COLUMN_GROUPS], &mut products);
+            let [flat, _, height] = products[0].terms(0);
             let own =
                 (0..LANES).map(|lane| f64::from(flat[lane][lane]) + f64::from(height[lane][lane]));
             self.square.extend(own.take(samples.len()));
@@ -146,11 +156,12 @@ impl Cloud {
         self.x.push(centre.x - self.origin.x);
         self.z.push(centre.z - self.origin.y);
         let (group, lane) = (sample / LANES, sample % LANES);
-        for (lanes, &(joint, _)) in self.points[group * self.joints..].iter_mut().zip(&shares.0) {
+        let first = group * PLANES * self.joints;
+        for (index, &(joint, _)) in shares.0.iter().enumerate() {
             let p = at(joint);
-            let of = [p.x - centre.x, p.z - centre.z, p.y - level];
-            for (lanes, of) in lanes.iter_mut().zip(of) {
-                lanes[lane] = of as f32;
+            let [x, z, height] = [p.x - centre.x, p.z - centre.z, p.y - level].map(|of| of as f32);
+            for (plane, of) in [x, z, x + z, height].into_iter().enumerate() {
+                self.points[first + plane * self.joints + index][lane] = of;
             }
         }
     }
@@ -161,16 +172,25 @@ impl Cloud {
         self.samples.div_ceil(LANES)
     }
 
-    pub(super) fn group(&self, group: usize) -> &[Lanes] {
-        &self.points[group * self.joints..(group + 1) * self.joints]
+    /// Returns the points of a group, plane by plane.
+    pub(super) fn group(&self, group: usize) -> &[Vec4] {
+        let length = PLANES * self.joints;
+        &self.points[group * length..(group + 1) * length]
     }
 
-    /// Appends a group to `out` in the form of the left factor.
+    /// Appends a group to `out` in the form of the left factor, plane by plane.
     pub(super) fn spread(&self, group: usize, shares: &Shares, out: &mut Vec<Spread>) {
-        let spread = self.group(group).iter().zip(&shares.0);
-        out.extend(spread.map(|(lanes, &(_, w))| {
-            std::array::from_fn(|lane| lanes.map(|of| Vec4::splat(of[lane] * w)))
-        }));
+        let points = self.group(group);
+        let (x, rest) = points.split_at(self.joints);
+        let (z, rest) = rest.split_at(self.joints);
+        let (_, height) = rest.split_at(self.joints);
+        let difference = x.iter().zip(z).map(|(&x, &z)| x - z);
+        let planes = x.iter().chain(z).copied().chain(difference).chain(height.iter().copied());
+        out.extend(
+            planes
+                .zip(shares.0.iter().cycle())
+                .map(|(of, &(_, w))| std::array::from_fn(|lane| Vec4::splat(of[lane] * w))),
+        );
     }
 
     /// Returns the centre of a sample.
@@ -193,22 +213,70 @@ impl Cloud {
     }
 }
 
-/// Returns the products of 4 × 4 pairs of samples, summed over the joints: Σw(x x' + z z'), Σw(x z'
-/// - z x') and Σw y y', each by row.
+/// The products of a group of source samples with [`COLUMN_GROUPS`] of target samples, summed over
+/// the joints.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Products([[Sums; COLUMN_GROUPS]; PLANES]);
+
+impl Default for Products {
+    fn default() -> Self {
+        Self([[[Vec4::ZERO; LANES]; COLUMN_GROUPS]; PLANES])
+    }
+}
+
+impl Products {
+    /// Returns Σw(x x' + z z'), Σw(x z' - z x') and Σw y y' of the source's group with a group of
+    /// the target.
+    ///
+    /// The first two are the parts of a product of complex numbers. They need three products of
+    /// real numbers in place of four, since Σw(x - z)(x' + z') = Σw(x z' - z x') + Σw x x' -
+    /// Σw z z' (Higham, "Stability of a Method for Multiplying Complex Matrices with Three Real
+    /// Matrix Multiplications", 1992). That of equal poses, Σw(x z' - z x'), is not exactly 0 then:
+    /// the distance changes by the square of this error, and stays 0.
+    pub(super) fn terms(&self, group: usize) -> [Sums; 3] {
+        let [x, z, mixed, height] = self.0.each_ref().map(|plane| &plane[group]);
+        [
+            std::array::from_fn(|row| x[row] + z[row]),
+            std::array::from_fn(|row| mixed[row] - x[row] + z[row]),
+            *height,
+        ]
+    }
+}
+
+/// Multiplies groups of source samples (from [`Cloud::spread`]) with groups of target samples: one
+/// entry of `products` for each of the source.
 ///
-/// Twelve sums stay in registers during the loop over joints. The order of all operations is fixed,
-/// and none is fused, so that every machine gets the same bits.
-pub(super) fn tile(rows: &[Spread], columns: &[Lanes]) -> [[Vec4; LANES]; 3] {
-    let mut dot = [Vec4::ZERO; LANES];
-    let mut cross = [Vec4::ZERO; LANES];
-    let mut height = [Vec4::ZERO; LANES];
-    for (rows, &[x, z, y]) in rows.iter().zip(columns) {
-        for lane in 0..LANES {
-            let [sx, sz, sy] = rows[lane];
-            dot[lane] += sx * x + sz * z;
-            cross[lane] += sx * z - sz * x;
-            height[lane] += sy * y;
+/// The sums stay in registers during the loop over joints. The order of all operations is fixed,
+/// and none is fused, so that every machine gets the same bits. A separate function, because
+/// browsers optimise a function between two of its calls, and because the sums would not all stay
+/// in registers if the terms were computed in the same one.
+#[inline(never)]
+pub(super) fn multiply(
+    rows: &[Spread],
+    columns: [&[Vec4]; COLUMN_GROUPS],
+    products: &mut [Products],
+) {
+    let joints = columns.first().map_or(0, |points| points.len() / PLANES);
+    if joints == 0 {
+        return;
+    }
+    for (rows, products) in rows.chunks_exact(PLANES * joints).zip(products) {
+        for (plane, (rows, sums)) in rows.chunks_exact(joints).zip(&mut products.0).enumerate() {
+            let columns = columns.map(|points| &points[plane * joints..(plane + 1) * joints]);
+            *sums = plane_sums(rows, columns);
         }
     }
-    [dot, cross, height]
+}
+
+/// Returns the sums of one plane's products over the joints.
+#[inline(always)]
+fn plane_sums(rows: &[Spread], [a, b]: [&[Vec4]; COLUMN_GROUPS]) -> [Sums; COLUMN_GROUPS] {
+    let mut sums = [[Vec4::ZERO; LANES]; COLUMN_GROUPS];
+    for ((spread, &a), &b) in rows.iter().zip(a).zip(b) {
+        for lane in 0..LANES {
+            sums[0][lane] += spread[lane] * a;
+            sums[1][lane] += spread[lane] * b;
+        }
+    }
+    sums
 }

@@ -1,7 +1,7 @@
 //! Terms of pairs of frames, from which the distances of all windows follow.
 
 use super::align::{Alignment, PairMoments};
-use super::cloud::{Cloud, LANES, Shares, Spread, tile};
+use super::cloud::{COLUMN_GROUPS, Cloud, LANES, Products, Shares, Spread, Sums, multiply};
 use super::points::checked_sum;
 use super::{DistanceMatrix, PointClouds, RegistrationError, align};
 use crate::clip::Clip;
@@ -74,7 +74,7 @@ pub struct PairTerms {
     rows: Range<usize>,
     /// The end of those that are compared so far.
     done: usize,
-    /// Per row: the products of [`tile`], `width` of each.
+    /// Per row: the three [`Products::terms`], `width` of each.
     terms: Vec<f32>,
     /// Number of the target's samples, padded to whole groups.
     width: usize,
@@ -298,25 +298,31 @@ impl PairTerms {
         for group in groups.clone() {
             self.source.spread(group, &self.shares, &mut self.spread);
         }
-        for column in first..last {
-            let columns = self.target.group(column);
-            let tiles = self.spread.chunks_exact(self.shares.len()).map(|rows| tile(rows, columns));
-            for (tile_row, [dot, cross, height]) in tiles.enumerate() {
-                let first = self.first_column((groups.start + tile_row) * LANES);
-                if column * LANES < first {
-                    continue;
-                }
-                for lane in 0..LANES {
-                    let row = rows.start + tile_row * LANES + lane;
-                    if row >= self.source.samples {
-                        break;
-                    }
-                    let (at, width) =
-                        (self.row_start(row) + column * LANES - first, self.width - first);
-                    for (term, sums) in [dot, cross, height].into_iter().enumerate() {
-                        sums[lane].write_to_slice(&mut self.terms[at + term * width..][..LANES]);
+        let mut products = [Products::default(); GROUPS_AT_ONCE];
+        for first in (first..last).step_by(COLUMN_GROUPS) {
+            let columns: [usize; COLUMN_GROUPS] = std::array::from_fn(|at| first + at);
+            // Beyond the end the last group is multiplied once more.
+            let points = columns.map(|column| self.target.group(column.min(last - 1)));
+            multiply(&self.spread, points, &mut products);
+            for (group, products) in groups.clone().zip(&products) {
+                for (at, &column) in columns.iter().enumerate() {
+                    if column < last && column >= self.first_column(group * LANES) / LANES {
+                        self.store(group, column, products.terms(at));
                     }
                 }
+            }
+        }
+    }
+
+    /// Stores the terms of a group of rows with a group of columns.
+    fn store(&mut self, group: usize, column: usize, terms: [Sums; 3]) {
+        let first = self.first_column(group * LANES);
+        let width = self.width - first;
+        let rows = group * LANES..((group + 1) * LANES).min(self.source.samples);
+        for (lane, row) in rows.enumerate() {
+            let at = self.row_start(row) + column * LANES - first;
+            for (term, sums) in terms.iter().enumerate() {
+                sums[lane].write_to_slice(&mut self.terms[at + term * width..][..LANES]);
             }
         }
     }

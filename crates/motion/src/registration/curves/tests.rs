@@ -176,6 +176,9 @@ struct GoldenWarp {
     at_frames: Vec<f64>,
 }
 
+/// The bound of the error of the mean squared distance per point, m².
+const BOUND: f64 = 3e-7;
+
 #[test]
 fn matrix_path_and_warp_agree_with_scipy() {
     let golden: Golden =
@@ -192,7 +195,8 @@ fn matrix_path_and_warp_agree_with_scipy() {
         assert_eq!((matrix.rows(), matrix.columns()), (case.rms_m.len(), case.rms_m[0].len()));
         for (row, wanted) in case.rms_m.iter().enumerate() {
             for (found, wanted) in matrix.row(row).iter().zip(wanted) {
-                assert!((found - wanted).abs() < 1e-5, "{found} {wanted}");
+                let [found, wanted] = [found, wanted].map(|of| f64::from(*of).powi(2));
+                assert!((found - wanted).abs() < BOUND, "{found} {wanted}");
             }
         }
         let found = terms.alignment(5, 9, case.window, 0.0).unwrap().transform;
@@ -209,7 +213,9 @@ fn matrix_path_and_warp_agree_with_scipy() {
                 };
                 let found = Registration::new(&terms, &matrix, &options).unwrap();
                 assert_eq!(found.path().cells, path.cells);
-                assert!((found.path().mean_m - path.mean_m).abs() < 1e-6);
+                // One cell may be of equal windows.
+                let within = BOUND.sqrt() / path.cells.len() as f64;
+                assert!((found.path().mean_m - path.mean_m).abs() < within);
                 for (frame, &wanted) in warp.at_frames.iter().enumerate() {
                     let at = found.warp().at(frame as f64);
                     // The straightening is known to 1e-5 there.
