@@ -103,6 +103,7 @@ mod path_error;
 mod points;
 mod pose;
 mod posed_clip;
+mod row_sweep;
 mod row_terms;
 mod self_terms;
 mod sweep;
@@ -120,6 +121,7 @@ pub use path::{
 pub use path_error::PathError;
 pub use points::{REFERENCE_HEIGHT_M, limb_weights, rms_cm, uniform_weights};
 pub use pose::{PoseMatch, PoseSearch, PoseWeights};
+pub(crate) use row_sweep::RowSweep;
 pub(crate) use row_terms::RowTerms;
 pub(crate) use self_terms::{PausedSelfSweep, SelfSweep, SelfTerms, SymmetricDistances};
 pub(crate) use sweep::ROWS_PER_SUM;

@@ -20,7 +20,7 @@ const MAX_BYTES: usize = 300_000_000;
 /// which the clips are cut, which are kept to the end, and some of the 7,600 tiles. The memory of a
 /// tile is freed before the next, and all have the same size; the overview has its size from the
 /// first one on. Only the candidates grow, up to [`max_candidate_bytes`], which is added.
-const STEPS: usize = if cfg!(debug_assertions) { 500 } else { usize::MAX };
+const STEPS: usize = if cfg!(debug_assertions) { 160 } else { usize::MAX };
 
 /// Returns the greatest memory of the 500,000 candidates that are kept at a time. A growing vector
 /// has twice the capacity of its content, plus the old half while it moves.
@@ -69,9 +69,9 @@ fn search_in_30000_frames_takes_300_mb() {
     ALLOCATOR.reset_peak_usage();
     let options = GraphOptions { edge_threshold_cm: 20.0, ..GraphOptions::default() };
     let mut stream = CandidateStream::new(&set, &options).expect("options that fit");
-    let parts = 6 * 21;
+    let parts = 6 * 11;
     let progress = stream.advance(STEPS).expect("positions are finite");
-    assert!(progress.done > parts + 300, "{progress:?}");
+    assert!(progress.done > parts + 90, "{progress:?}");
     let all_is_done = progress.is_complete();
     let searched = ALLOCATOR.peak_usage() - before;
     if all_is_done {

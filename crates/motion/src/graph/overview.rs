@@ -2,7 +2,7 @@
 
 use super::cells::{Histogram, smaller, smallest};
 use super::parts::{Part, Parts};
-use super::{FrameSet, GraphError, Place, StreamRow};
+use super::{FrameSet, Place, StreamRow};
 use crate::blend::align_onto;
 use crate::registration::{DistanceMatrix, Progress};
 use std::ops::Range;
@@ -197,13 +197,15 @@ impl DistanceOverview {
         let within = |of: Range<usize>| of.start.min(frames)..of.end.min(frames);
         let (rows, columns) = (within(rows), within(columns));
         let width = columns.len().div_ceil(factor);
-        let (down, across) = (self.parts.between(&rows), self.parts.between(&columns));
+        let (down, across) = (pieces(&self.parts, &rows), pieces(&self.parts, &columns));
         DistanceDetail {
             parts: Arc::clone(&self.parts),
             picture: vec![f32::NAN; rows.len().div_ceil(factor) * width],
             width,
             factor,
-            tiles: down.flat_map(|a| across.clone().map(move |b| (a, b))).collect(),
+            tiles: (down.iter())
+                .flat_map(|a| across.iter().map(|b| [a.clone(), b.clone()]))
+                .collect(),
             rows,
             columns,
             done: 0,
@@ -217,6 +219,33 @@ fn squares(of: Range<usize>, factor: usize, frames: usize) -> impl Iterator<Item
     (of.start.min(end)..end).step_by(factor).map(move |from| from..(from + factor).min(end))
 }
 
+/// The greatest number of rows or columns of a tile of a [`DistanceDetail`].
+const TILE: usize = 256;
+
+/// Some windows of a part of the set, at most [`TILE`].
+#[derive(Clone, Debug)]
+struct Piece {
+    part: usize,
+    /// The numbers in the set of their first frames.
+    numbers: Range<usize>,
+}
+
+/// Returns the windows that start in these frames of the set, in pieces that are cut at the parts'
+/// ends and at every [`TILE`]-th frame of the set.
+fn pieces(parts: &Parts, of: &Range<usize>) -> Vec<Piece> {
+    let mut pieces = Vec::new();
+    for part in parts.between(of) {
+        let Some(all) = parts.made().get(part).map(Part::numbers) else { continue };
+        let (mut start, end) = (all.start.max(of.start), all.end.min(of.end));
+        while start < end {
+            let next = end.min((start / TILE + 1) * TILE);
+            pieces.push(Piece { part, numbers: start..next });
+            start = next;
+        }
+    }
+    pieces
+}
+
 /// The computation of a part of the matrix of all distances, tile by tile, on demand.
 #[derive(Clone, Debug)]
 pub struct DistanceDetail {
@@ -226,25 +255,22 @@ pub struct DistanceDetail {
     factor: usize,
     width: usize,
     picture: Vec<f32>,
-    /// The indices of two parts.
-    tiles: Vec<(usize, usize)>,
+    /// Rows and columns.
+    tiles: Vec<[Piece; 2]>,
     done: usize,
 }
 
 impl DistanceDetail {
-    /// Computes up to `tiles` more tiles of at most 256 × 256 distances, 1.5 ms each, and returns
+    /// Computes up to `tiles` more tiles of at most 256 × 256 distances, 1 ms each, and returns
     /// the number of completed tiles.
-    ///
-    /// # Errors
-    /// [`GraphError::Registration`]; not for an overview that a stream made.
-    pub fn advance(&mut self, tiles: usize) -> Result<Progress, GraphError> {
+    pub fn advance(&mut self, tiles: usize) -> Progress {
         let total = self.tiles.len();
         let end = self.done.saturating_add(tiles).min(total);
         for at in self.done..end {
-            self.tile(at)?;
-            self.done = at + 1;
+            self.tile(at);
         }
-        Ok(Progress { done: self.done, total })
+        self.done = self.done.max(end);
+        Progress { done: self.done, total }
     }
 
     /// Returns the computed part of the picture, row-major; NaN for squares without computed
@@ -254,29 +280,36 @@ impl DistanceDetail {
         &self.picture
     }
 
-    fn tile(&mut self, at: usize) -> Result<(), GraphError> {
-        let Some(&(a, b)) = self.tiles.get(at) else {
-            return Ok(());
+    fn tile(&mut self, at: usize) {
+        let Some([down, across]) = self.tiles.get(at) else {
+            return;
         };
-        // One tile covers both of its places in the symmetric matrix.
-        let (Some(p), Some(q)) = (self.parts.made().get(a.min(b)), self.parts.made().get(a.max(b)))
+        // Distances are symmetric: those of a later window with an earlier one are computed the
+        // other way round. Where both are in one piece, it is compared with itself.
+        let is_one =
+            down.part == across.part && down.numbers.start / TILE == across.numbers.start / TILE;
+        let start = down.numbers.start.min(across.numbers.start);
+        let whole = start..down.numbers.end.max(across.numbers.end);
+        let (before, behind) = if is_one {
+            (&whole, &whole)
+        } else if down.numbers.start < across.numbers.start {
+            (&down.numbers, &across.numbers)
+        } else {
+            (&across.numbers, &down.numbers)
+        };
+        let part = |piece: usize| self.parts.made().get(piece);
+        let (Some(p), Some(q)) =
+            (part(down.part.min(across.part)), part(down.part.max(across.part)))
         else {
-            return Ok(());
+            return;
         };
-        let (_, distances) = p.tile(q, self.parts.window())?;
+        let frames = [&p.frames(before), &q.frames(behind)];
+        let distances = p.sweep(q, self.parts.window(), frames).finish();
         let scale = self.parts.set().cm_per_m() as f32;
-        let (down, across) = if a <= b { (p, q) } else { (q, p) };
-        let seen = |part: &Part, of: &Range<usize>| {
-            part.numbers().start.max(of.start)..part.numbers().end.min(of.end)
-        };
-        let columns = seen(across, &self.columns);
-        for row in seen(down, &self.rows) {
-            let i = row - down.number + (down.starts.start - down.from);
+        for row in down.numbers.clone() {
             let start = (row - self.rows.start) / self.factor * self.width;
-            for column in columns.clone() {
-                let j = column - across.number + (across.starts.start - across.from);
-                // Distances within one part are symmetric too.
-                let (i, j) = if row <= column { (i, j) } else { (j, i) };
+            for column in across.numbers.clone() {
+                let [i, j] = [row.min(column) - before.start, row.max(column) - behind.start];
                 let found = distances.get(i, j).map(|distance| distance * scale);
                 if let (Some(texel), Some(found)) = (
                     self.picture.get_mut(start + (column - self.columns.start) / self.factor),
@@ -287,6 +320,5 @@ impl DistanceDetail {
                 }
             }
         }
-        Ok(())
     }
 }

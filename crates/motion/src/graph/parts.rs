@@ -2,12 +2,15 @@
 
 use super::all_pairs::level_m;
 use super::{FrameSet, GraphError, Place};
-use crate::registration::{DistanceMatrix, PairTerms, PointClouds};
+use crate::registration::{PointClouds, RowSweep};
 use std::ops::Range;
 use std::sync::Arc;
 
 /// Number of frames of a part.
-pub(super) const PART: usize = 256;
+///
+/// Two parts are compared with the frames of a window behind each, and a part with itself compares
+/// every pair twice. Measured, both smaller and larger parts take longer.
+pub(super) const PART: usize = 512;
 
 /// All windows of a set in parts of at most [`PART`], each with its points: two of them make a tile
 /// of the matrix of all distances. Parts are cut at the ends of clips and at every [`PART`]-th
@@ -41,18 +44,21 @@ impl Part {
         self.number..self.number + self.starts.len()
     }
 
-    /// Returns the pair terms of this and another part, and the distances of all their windows,
-    /// including those to either side.
-    pub(super) fn tile(
+    /// Returns the frames of its clip with these numbers in the set, which are among its own.
+    pub(super) fn frames(&self, numbers: &Range<usize>) -> Range<usize> {
+        let frame = |number: usize| self.starts.start + number.saturating_sub(self.number);
+        frame(numbers.start)..frame(numbers.end)
+    }
+
+    /// Returns the computation of the distances of the windows of this and another part that start
+    /// in these frames of their clips, and in the frames to either side of the parts.
+    pub(super) fn sweep(
         &self,
         other: &Self,
         window: usize,
-    ) -> Result<(PairTerms, DistanceMatrix), GraphError> {
-        let mut terms = PairTerms::of_clouds(&self.clouds, &other.clouds)?;
-        terms.finish();
-        let everything = 0..usize::MAX;
-        let distances = terms.distances(window, &everything, &everything)?;
-        Ok((terms, distances))
+        frames: [&Range<usize>; 2],
+    ) -> RowSweep {
+        RowSweep::new([&self.clouds, &other.clouds], window, frames)
     }
 }
 

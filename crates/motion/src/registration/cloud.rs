@@ -269,7 +269,7 @@ pub(super) fn multiply(
 }
 
 /// Returns the sums of one plane's products over the joints.
-#[inline(always)]
+#[inline]
 fn plane_sums(rows: &[Spread], [a, b]: [&[Vec4]; COLUMN_GROUPS]) -> [Sums; COLUMN_GROUPS] {
     let mut sums = [[Vec4::ZERO; LANES]; COLUMN_GROUPS];
     for ((spread, &a), &b) in rows.iter().zip(a).zip(b) {

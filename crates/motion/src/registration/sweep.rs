@@ -105,9 +105,9 @@ impl PausedSweep {
     }
 }
 
-/// The data of a sweep besides the terms.
+/// The data of a sweep besides the terms. Every call must be given the terms of the first one.
 #[derive(Clone, Debug)]
-struct Sums {
+pub(super) struct Sums {
     window: usize,
     rows: Range<usize>,
     columns: Range<usize>,
@@ -119,7 +119,7 @@ struct Sums {
     height: Vec<f64>,
     source: Moments,
     target: Moments,
-    rms_m: Vec<f32>,
+    pub(super) rms_m: Vec<f32>,
 }
 
 /// Contributions of each window's own frames: the sum of the centres, and the spread about their
@@ -165,38 +165,17 @@ impl<'a> Sweep<'a> {
         rows: Range<usize>,
         columns: Range<usize>,
     ) -> Self {
-        let samples = terms.samples_in(window);
-        let diagonals = rows.len() + columns.len();
-        let sums = Sums {
-            window,
-            done: 0,
-            dot: vec![0.0; diagonals],
-            cross: vec![0.0; diagonals],
-            height: vec![0.0; diagonals],
-            source: Moments::new(&terms.source, &rows, samples),
-            target: Moments::new(&terms.target, &columns, samples),
-            // Filled row by row, as the terms are.
-            rms_m: Vec::new(),
-            rows,
-            columns,
-        };
-        let mut sweep = Self { terms, sums };
-        let cells = sweep.sums.row_start(terms, sweep.sums.rows.len());
-        sweep.sums.rms_m.reserve_exact(cells);
-        sweep
+        Self { terms, sums: Sums::new(terms, window, rows, columns) }
     }
 
     /// Computes up to `rows` more rows, and returns the progress.
     pub fn advance(&mut self, rows: usize) -> Progress {
-        let sums = &mut self.sums;
-        let end = sums.done.saturating_add(rows).min(sums.progress().total);
-        let samples = self.terms.samples_in(sums.window);
-        for row in sums.done..end {
-            sums.enter_row(self.terms, row, samples);
-            sums.distances(self.terms, row, samples);
+        for _ in 0..rows {
+            if !self.sums.advance(self.terms) {
+                break;
+            }
         }
-        sums.done = sums.done.max(end);
-        sums.progress()
+        self.sums.progress()
     }
 
     /// Stops borrowing the terms, so that the rest can be computed later.
@@ -209,17 +188,7 @@ impl<'a> Sweep<'a> {
     #[must_use]
     pub fn finish(mut self) -> DistanceMatrix {
         self.advance(usize::MAX);
-        let Self { terms, sums } = self;
-        let stride = terms.stride();
-        DistanceMatrix {
-            stride,
-            window: sums.window,
-            source_start: terms.source.start + sums.rows.start * stride,
-            target_start: terms.target.start + sums.columns.start * stride,
-            rows: sums.rows.len(),
-            columns: sums.columns.len(),
-            rms_m: sums.rms_m,
-        }
+        self.sums.into_matrix(self.terms)
     }
 
     /// Computes the remaining rows of a clip compared with itself, and returns them one after the
@@ -231,6 +200,59 @@ impl<'a> Sweep<'a> {
 }
 
 impl Sums {
+    /// Begins the sweep of the windows that start at the samples `rows` and `columns`.
+    pub(super) fn new(
+        terms: &PairTerms,
+        window: usize,
+        rows: Range<usize>,
+        columns: Range<usize>,
+    ) -> Self {
+        let samples = terms.samples_in(window);
+        let diagonals = rows.len() + columns.len();
+        let mut sums = Self {
+            window,
+            done: 0,
+            dot: vec![0.0; diagonals],
+            cross: vec![0.0; diagonals],
+            height: vec![0.0; diagonals],
+            source: Moments::new(&terms.source, &rows, samples),
+            target: Moments::new(&terms.target, &columns, samples),
+            // Filled row by row, as the terms are.
+            rms_m: Vec::new(),
+            rows,
+            columns,
+        };
+        let cells = sums.row_start(terms, sums.rows.len());
+        sums.rms_m.reserve_exact(cells);
+        sums
+    }
+
+    /// Computes the next row; returns `false` when there is none.
+    pub(super) fn advance(&mut self, terms: &PairTerms) -> bool {
+        let Progress { done, total } = self.progress();
+        if done < total {
+            let samples = terms.samples_in(self.window);
+            self.enter_row(terms, done, samples);
+            self.distances(terms, done, samples);
+            self.done = done + 1;
+        }
+        done < total
+    }
+
+    /// Returns the computed rows as a matrix.
+    pub(super) fn into_matrix(self, terms: &PairTerms) -> DistanceMatrix {
+        let stride = terms.stride();
+        DistanceMatrix {
+            stride,
+            window: self.window,
+            source_start: terms.source.start + self.rows.start * stride,
+            target_start: terms.target.start + self.columns.start * stride,
+            rows: self.rows.len(),
+            columns: self.columns.len(),
+            rms_m: self.rms_m,
+        }
+    }
+
     /// Returns the first column of a row that is summed: of a clip with itself, that on the
     /// diagonal.
     fn first_column(&self, terms: &PairTerms, row: usize) -> usize {
@@ -241,6 +263,11 @@ impl Sums {
     fn row_start(&self, terms: &PairTerms, row: usize) -> usize {
         let columns = self.columns.len() - self.first_column(terms, 0).min(self.columns.len());
         if terms.is_triangle() { packed_start(columns, row) } else { row * columns }
+    }
+
+    /// Returns the number of computed rows.
+    pub(super) fn done(&self) -> usize {
+        self.done
     }
 
     fn progress(&self) -> Progress {

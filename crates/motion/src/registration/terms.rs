@@ -70,14 +70,16 @@ pub struct PairTerms {
     /// Whether a clip is compared with itself: only pairs with column ≥ row are multiplied and
     /// stored, in whole groups.
     triangle: bool,
-    /// The rows that are compared and stored. They begin with a whole group.
+    /// The rows that are compared. They begin with a whole group.
     rows: Range<usize>,
+    /// The columns that are compared, in whole groups.
+    columns: Range<usize>,
+    /// The number of rows in memory, each of which takes the place of one before; without it all.
+    kept: Option<usize>,
     /// The end of those that are compared so far.
     done: usize,
-    /// Per row: the three [`Products::terms`], `width` of each.
+    /// Per row: the three [`Products::terms`], each of all columns that are stored.
     terms: Vec<f32>,
-    /// Number of the target's samples, padded to whole groups.
-    width: usize,
     spread: Vec<Spread>,
 }
 
@@ -177,8 +179,9 @@ impl PairTerms {
             triangle,
             done: rows.start,
             rows,
+            columns: 0..target.cloud.groups() * LANES,
+            kept: None,
             terms: Vec::new(),
-            width: target.cloud.groups() * LANES,
             source: Arc::clone(&source.cloud),
             target: Arc::clone(&target.cloud),
             spread: Vec::new(),
@@ -187,14 +190,19 @@ impl PairTerms {
         terms
     }
 
-    /// Reserves the memory of all rows, exactly: grown step by step, it would take twice as much.
+    /// Reserves the memory of all rows that are kept, exactly: grown step by step, it would take twice as much.
     /// It is only reserved, because to clear all of it at once would take longer than a frame of
     /// the screen.
     fn reserve(&mut self) {
         // Whole groups are compared.
         let end = self.rows.end.next_multiple_of(LANES).min(self.source.samples);
-        let more = self.row_start(end).saturating_sub(self.terms.len());
+        let more = self.length(end).saturating_sub(self.terms.len());
         self.terms.reserve_exact(more);
+    }
+
+    /// Returns the number of terms in memory as soon as the rows before `end` are compared.
+    fn length(&self, end: usize) -> usize {
+        self.kept.map_or_else(|| self.row_start(end), |kept| 3 * self.columns.len() * kept)
     }
 
     /// Prepares the comparison of two clips whose point clouds are known. Both clouds must have the
@@ -237,6 +245,31 @@ impl PairTerms {
         Ok(Self::of(source, target, usize::MAX, is_itself, rows))
     }
 
+    /// Prepares the comparison of the source's samples `rows` with the target's samples `columns`,
+    /// both extended to whole groups, of which the last `kept` rows at least are in memory.
+    pub(super) fn passing(
+        source: &PointClouds,
+        target: &PointClouds,
+        rows: &Range<usize>,
+        columns: &Range<usize>,
+        kept: usize,
+    ) -> Self {
+        let groups = |of: &Range<usize>, cloud: &Cloud| {
+            of.start / LANES * LANES..of.end.div_ceil(LANES).min(cloud.groups()) * LANES
+        };
+        let compared = groups(rows, &source.cloud);
+        let rows = compared.start..compared.end.min(source.samples());
+        let none = rows.start..rows.start;
+        let mut terms = Self {
+            columns: groups(columns, &target.cloud),
+            kept: Some(kept + GROUPS_AT_ONCE * LANES),
+            ..Self::of(source, target, usize::MAX, false, none)
+        };
+        terms.rows = rows;
+        terms.reserve();
+        terms
+    }
+
     /// Extends the rows that are compared to those before `end`; the new ones are not compared yet.
     ///
     /// # Errors
@@ -270,6 +303,13 @@ impl PairTerms {
         self.progress()
     }
 
+    /// Compares the rows before `end`, as far as they are not compared yet.
+    pub(super) fn advance_to(&mut self, end: usize) {
+        if self.done < end.min(self.rows.end) {
+            self.advance(end - self.done);
+        }
+    }
+
     /// Compares all remaining rows.
     pub fn finish(&mut self) {
         self.advance(usize::MAX);
@@ -292,8 +332,9 @@ impl PairTerms {
         let rows = groups.start * LANES..groups.end * LANES;
         let first =
             if self.triangle { groups.start } else { rows.start.saturating_sub(self.band) / LANES };
-        let last = rows.end.saturating_add(self.band).div_ceil(LANES).min(self.target.groups());
-        self.terms.resize(self.row_start(rows.end.min(self.source.samples)), 0.0);
+        let first = first.max(self.columns.start / LANES);
+        let last = rows.end.saturating_add(self.band).div_ceil(LANES).min(self.columns.end / LANES);
+        self.terms.resize(self.length(rows.end.min(self.source.samples)), 0.0);
         self.spread.clear();
         for group in groups.clone() {
             self.source.spread(group, &self.shares, &mut self.spread);
@@ -317,7 +358,7 @@ impl PairTerms {
     /// Stores the terms of a group of rows with a group of columns.
     fn store(&mut self, group: usize, column: usize, terms: [Sums; 3]) {
         let first = self.first_column(group * LANES);
-        let width = self.width - first;
+        let width = self.columns.end - first;
         let rows = group * LANES..((group + 1) * LANES).min(self.source.samples);
         for (lane, row) in rows.enumerate() {
             let at = self.row_start(row) + column * LANES - first;
@@ -329,11 +370,14 @@ impl PairTerms {
 
     /// Returns the first stored column of a row.
     fn first_column(&self, row: usize) -> usize {
-        if self.triangle { row / LANES * LANES } else { 0 }
+        if self.triangle { row / LANES * LANES } else { self.columns.start }
     }
 
     /// Returns the offset of a stored row's terms.
     fn row_start(&self, row: usize) -> usize {
+        if let Some(kept) = self.kept {
+            return 3 * self.columns.len() * (row % kept);
+        }
         self.offset(row) - self.offset(self.rows.start)
     }
 
@@ -346,12 +390,12 @@ impl PairTerms {
         } else {
             0
         };
-        3 * (row * self.width - missing)
+        3 * (row * self.columns.len() - missing)
     }
 
     pub(super) fn row(&self, row: usize) -> TermRow<'_> {
         let first = self.first_column(row);
-        let (start, width) = (self.row_start(row), self.width - first);
+        let (start, width) = (self.row_start(row), self.columns.end - first);
         let row = &self.terms[start..start + 3 * width];
         TermRow {
             first,
@@ -361,9 +405,10 @@ impl PairTerms {
         }
     }
 
-    /// Returns whether these rows are compared and stored.
+    /// Returns whether these rows are compared and in memory.
     pub(super) fn holds(&self, rows: &Range<usize>) -> bool {
-        rows.start >= self.rows.start && rows.end <= self.done
+        let dropped = self.kept.map_or(0, |kept| self.done.saturating_sub(kept));
+        rows.start >= self.rows.start.max(dropped) && rows.end <= self.done
     }
 
     pub(super) fn samples_in(&self, window: usize) -> usize {
@@ -397,8 +442,8 @@ impl PairTerms {
     /// frame `source` and frame `target`. O(window).
     ///
     /// # Errors
-    /// [`RegistrationError`] before all rows are compared, or when a window crosses the end of the
-    /// compared part.
+    /// [`RegistrationError`] before the rows of the windows are compared, or when a window crosses
+    /// the end of the compared part.
     pub fn alignment(
         &self,
         source: usize,
@@ -406,7 +451,6 @@ impl PairTerms {
         window: usize,
         fallback_yaw: f64,
     ) -> Result<Alignment, RegistrationError> {
-        self.complete()?;
         let (row, column) = (
             source.saturating_sub(self.source.start) / self.stride,
             target.saturating_sub(self.target.start) / self.stride,
@@ -423,7 +467,10 @@ impl PairTerms {
                 });
             }
         }
-        if row < self.rows.start || row + samples > self.done {
+        let is_compared = self.columns.contains(&column)
+            && self.columns.contains(&(column + samples - 1))
+            && self.holds(&(row..row + samples));
+        if !is_compared {
             let Progress { done, total } = self.progress();
             return Err(RegistrationError::Unfinished { done, total });
         }

@@ -235,16 +235,15 @@ impl Tiles {
         }
         let (_, mut detail, _) =
             self.begun.take().unwrap_or_else(|| (tile, Arc::new(detail()), true));
-        let mut complete = Ok(false);
-        while self.budget > 0 && complete == Ok(false) {
+        let mut is_complete = false;
+        while self.budget > 0 && !is_complete {
             self.budget = self.budget.saturating_sub(COMPUTED);
-            complete = Arc::make_mut(&mut detail).advance(1).map(|progress| progress.is_complete());
+            is_complete = Arc::make_mut(&mut detail).advance(1).is_complete();
         }
-        if complete == Ok(false) {
+        if !is_complete {
             self.begun = Some((tile, detail, true));
             return None;
         }
-        // A tile that cannot be computed stays empty.
         Some(detail.picture().to_vec())
     }
 

@@ -7,8 +7,8 @@ use segue_motion::graph::{
 };
 use std::sync::Arc;
 
-/// The number of pairs of parts that one job compares, about: 1.5 ms each.
-const PAIRS_PER_JOB: usize = 64;
+/// The number of pairs of parts that one job compares, about: 4 ms each.
+const PAIRS_PER_JOB: usize = 16;
 
 /// The search of a [`CandidateStream`] whose rows are jobs. The parts of the clips are prepared
 /// here, too, in slices, because pictures of the distances need them.
