@@ -339,29 +339,34 @@ impl PairTerms {
         for group in groups.clone() {
             self.source.spread(group, &self.shares, &mut self.spread);
         }
+        let starts: [[usize; LANES]; GROUPS_AT_ONCE] = std::array::from_fn(|group| {
+            std::array::from_fn(|lane| {
+                self.row_start((rows.start + group * LANES + lane).min(rows.end - 1))
+            })
+        });
         let mut products = [Products::default(); GROUPS_AT_ONCE];
         for first in (first..last).step_by(COLUMN_GROUPS) {
             let columns: [usize; COLUMN_GROUPS] = std::array::from_fn(|at| first + at);
             // Beyond the end the last group is multiplied once more.
             let points = columns.map(|column| self.target.group(column.min(last - 1)));
             multiply(&self.spread, points, &mut products);
-            for (group, products) in groups.clone().zip(&products) {
+            for ((group, products), starts) in groups.clone().zip(&products).zip(&starts) {
                 for (at, &column) in columns.iter().enumerate() {
                     if column < last && column >= self.first_column(group * LANES) / LANES {
-                        self.store(group, column, products.terms(at));
+                        self.store(group, starts, column, products.terms(at));
                     }
                 }
             }
         }
     }
 
-    /// Stores the terms of a group of rows with a group of columns.
-    fn store(&mut self, group: usize, column: usize, terms: [Sums; 3]) {
+    /// Stores the terms of a group of rows, which begin at `starts`, with a group of columns.
+    fn store(&mut self, group: usize, starts: &[usize; LANES], column: usize, terms: [Sums; 3]) {
         let first = self.first_column(group * LANES);
         let width = self.columns.end - first;
-        let rows = group * LANES..((group + 1) * LANES).min(self.source.samples);
-        for (lane, row) in rows.enumerate() {
-            let at = self.row_start(row) + column * LANES - first;
+        let rows = self.source.samples.saturating_sub(group * LANES);
+        for (lane, start) in starts.iter().enumerate().take(rows) {
+            let at = start + column * LANES - first;
             for (term, sums) in terms.iter().enumerate() {
                 sums[lane].write_to_slice(&mut self.terms[at + term * width..][..LANES]);
             }
