@@ -234,13 +234,16 @@ pub(crate) fn gradient_bar(rect: Rect, corner: f32, stops: &[(f32, Color32)], pa
         return;
     }
     let corner = corner.min(rect.height() / 2.0).min(rect.width() / 2.0);
-    let mut columns: Vec<f32> =
-        stops.iter().map(|&(at, _)| rect.left() + at.clamp(0.0, 1.0) * rect.width()).collect();
-    for step in 0..=8_u8 {
+    let cuts = stops.iter().map(|&(at, _)| rect.left() + at.clamp(0.0, 1.0) * rect.width());
+    let round = (0..=8_u8).flat_map(|step| {
         let offset = corner * f32::from(step) / 8.0;
-        columns.extend([rect.left() + offset, rect.right() - offset]);
+        [rect.left() + offset, rect.right() - offset]
+    });
+    // Sorted by insertion: a browser takes longer to compile a sort for long lists than to run it.
+    let mut columns: Vec<f32> = Vec::new();
+    for x in cuts.chain(round) {
+        columns.insert(columns.partition_point(|&known| known <= x), x);
     }
-    columns.sort_by(f32::total_cmp);
     let mut mesh = Mesh::default();
     for x in columns {
         // The height that the round corner takes at this column.

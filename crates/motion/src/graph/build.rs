@@ -455,9 +455,10 @@ impl MotionGraph {
         let mut pruned = Self {
             set: Arc::clone(&self.set),
             options: self.options,
-            graph: DiGraph::new(),
-            jumps: Vec::new(),
-            origins: Vec::new(),
+            // Vectors that grow would copy hundreds of thousands of edges several times.
+            graph: DiGraph::with_capacity(kept.len(), self.graph.edge_count()),
+            jumps: Vec::with_capacity(self.jumps.len()),
+            origins: Vec::with_capacity(self.jumps.len()),
             left_out: self.left_out,
         };
         let mut new = vec![None; self.graph.node_count()];
