@@ -202,8 +202,8 @@ impl AllPairs {
     /// `a`: `a_world_from_b_world`. O(window).
     ///
     /// # Errors
-    /// [`GraphError::Registration`] before all pairs are compared, or when a window crosses the end
-    /// of its clip.
+    /// [`GraphError::Registration`] before the pairs of the windows are compared, or when a window
+    /// crosses the end of its clip.
     pub fn alignment(&self, a: Place, b: Place, window: usize) -> Result<Alignment, GraphError> {
         let (first, second) = (a.min(b), a.max(b));
         let facing = |place: Place| {

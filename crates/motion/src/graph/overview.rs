@@ -1,7 +1,7 @@
 //! Coarse pictures of all distances.
 
 use super::cells::{Histogram, smaller, smallest};
-use super::parts::{Part, Parts};
+use super::parts::{PART, Part, Parts};
 use super::{FrameSet, Place, StreamRow};
 use crate::blend::align_onto;
 use crate::registration::{DistanceMatrix, Progress};
@@ -219,8 +219,10 @@ fn squares(of: Range<usize>, factor: usize, frames: usize) -> impl Iterator<Item
     (of.start.min(end)..end).step_by(factor).map(move |from| from..(from + factor).min(end))
 }
 
-/// The greatest number of rows or columns of a tile of a [`DistanceDetail`].
+/// The greatest number of rows or columns of a tile of a [`DistanceDetail`]: so few that it is
+/// computed within a frame of the screen. Parts are cut at multiples of it.
 const TILE: usize = 256;
+const _: () = assert!(PART.is_multiple_of(TILE));
 
 /// Some windows of a part of the set, at most [`TILE`].
 #[derive(Clone, Debug)]
@@ -255,7 +257,7 @@ pub struct DistanceDetail {
     factor: usize,
     width: usize,
     picture: Vec<f32>,
-    /// Rows and columns.
+    /// The rows and columns of each tile.
     tiles: Vec<[Piece; 2]>,
     done: usize,
 }
@@ -285,31 +287,32 @@ impl DistanceDetail {
             return;
         };
         // Distances are symmetric: those of a later window with an earlier one are computed the
-        // other way round. Where both are in one piece, it is compared with itself.
+        // other way round. Where rows and columns may overlap, all windows from the first to the
+        // last are compared with themselves.
         let is_one =
             down.part == across.part && down.numbers.start / TILE == across.numbers.start / TILE;
         let start = down.numbers.start.min(across.numbers.start);
         let whole = start..down.numbers.end.max(across.numbers.end);
-        let (before, behind) = if is_one {
+        let (earlier, later) = if is_one {
             (&whole, &whole)
         } else if down.numbers.start < across.numbers.start {
             (&down.numbers, &across.numbers)
         } else {
             (&across.numbers, &down.numbers)
         };
-        let part = |piece: usize| self.parts.made().get(piece);
+        let part = |index: usize| self.parts.made().get(index);
         let (Some(p), Some(q)) =
             (part(down.part.min(across.part)), part(down.part.max(across.part)))
         else {
             return;
         };
-        let frames = [&p.frames(before), &q.frames(behind)];
+        let frames = [&p.frames(earlier), &q.frames(later)];
         let distances = p.sweep(q, self.parts.window(), frames).finish();
         let scale = self.parts.set().cm_per_m() as f32;
         for row in down.numbers.clone() {
             let start = (row - self.rows.start) / self.factor * self.width;
             for column in across.numbers.clone() {
-                let [i, j] = [row.min(column) - before.start, row.max(column) - behind.start];
+                let [i, j] = [row.min(column) - earlier.start, row.max(column) - later.start];
                 let found = distances.get(i, j).map(|distance| distance * scale);
                 if let (Some(texel), Some(found)) = (
                     self.picture.get_mut(start + (column - self.columns.start) / self.factor),

@@ -2,19 +2,19 @@
 
 use super::all_pairs::level_m;
 use super::{FrameSet, GraphError, Place};
-use crate::registration::{PointClouds, RowSweep};
+use crate::registration::{PointClouds, RowSweep, check_pairs};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Number of frames of a part.
+/// The greatest number of windows of a part.
 ///
-/// Two parts are compared with the frames of a window behind each, and a part with itself compares
-/// every pair twice. Measured, both smaller and larger parts take longer.
+/// Small parts compare the frames of the window behind each part too often; large ones waste more
+/// on parts with themselves, where every pair is compared twice. 512 was the fastest measured.
 pub(super) const PART: usize = 512;
 
 /// All windows of a set in parts of at most [`PART`], each with its points: two of them make a tile
 /// of the matrix of all distances. Parts are cut at the ends of clips and at every [`PART`]-th
-/// frame of the set, so that a picture of the matrix with the same cuts is made of whole tiles.
+/// frame of the set, where pictures of the matrix are cut, too.
 #[derive(Clone, Debug)]
 pub(super) struct Parts {
     set: Arc<FrameSet>,
@@ -51,7 +51,7 @@ impl Part {
     }
 
     /// Returns the computation of the distances of the windows of this and another part that start
-    /// in these frames of their clips, and in the frames to either side of the parts.
+    /// in these frames of their clips; they may start one frame to either side of the parts.
     pub(super) fn sweep(
         &self,
         other: &Self,
@@ -64,7 +64,12 @@ impl Part {
 
 impl Parts {
     /// Returns the parts, none of which is made yet.
+    ///
+    /// # Errors
+    /// [`GraphError`] without clips, or when a window has too many frames for comparing two parts.
     pub(super) fn new(set: &Arc<FrameSet>, window: usize) -> Result<Self, GraphError> {
+        let frames = window.saturating_add(PART);
+        check_pairs(frames.saturating_mul(frames), || 2)?;
         let mut remaining = Vec::new();
         for clip in 0..set.clips().len() {
             let windows = (set.frames_of(clip) + 1).saturating_sub(window);

@@ -91,7 +91,7 @@ impl CandidateStream {
     }
 
     /// Processes up to `steps` more steps, and returns the progress: each step prepares one part,
-    /// or compares two. A step takes about 3 ms.
+    /// or compares two. A step takes about 3 ms, in a browser 4 ms.
     ///
     /// # Errors
     /// [`GraphError::Registration`] when a position is not finite.

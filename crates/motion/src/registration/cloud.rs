@@ -9,11 +9,12 @@ use std::ops::Range;
 /// Number of samples in one SIMD register.
 pub(super) const LANES: usize = 4;
 
-/// Numbers of a joint by which pairs are multiplied: x, z, x + z and the height. In the left factor
-/// the third is x - z.
+/// The number of planes of a group: x, z, x + z and the height of every joint. The left factor has
+/// x - z in place of x + z.
 const PLANES: usize = 4;
 
-/// Number of the target's groups that are multiplied with a group of the source at once.
+/// Number of the target's groups that are multiplied with a group of the source at once: eight sums
+/// and their factors fit into 16 registers.
 pub(super) const COLUMN_GROUPS: usize = 2;
 
 /// Four samples of a joint, each broadcast to a whole register and weighted: the left factor of the
@@ -22,7 +23,7 @@ pub(super) type Spread = [Vec4; LANES];
 
 /// The sums of products of [`LANES`] samples of the source with [`LANES`] of the target, by the
 /// source's sample.
-pub(super) type Sums = [Vec4; LANES];
+pub(super) type GroupSums = [Vec4; LANES];
 
 /// The joints with a weight above 0, with their weights as shares of 1.
 #[derive(Clone, Debug)]
@@ -216,7 +217,7 @@ impl Cloud {
 /// The products of a group of source samples with [`COLUMN_GROUPS`] of target samples, summed over
 /// the joints.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Products([[Sums; COLUMN_GROUPS]; PLANES]);
+pub(super) struct Products([[GroupSums; COLUMN_GROUPS]; PLANES]);
 
 impl Default for Products {
     fn default() -> Self {
@@ -231,9 +232,9 @@ impl Products {
     /// The first two are the parts of a product of complex numbers. They need three products of
     /// real numbers in place of four, since Σw(x - z)(x' + z') = Σw(x z' - z x') + Σw x x' -
     /// Σw z z' (Higham, "Stability of a Method for Multiplying Complex Matrices with Three Real
-    /// Matrix Multiplications", 1992). That of equal poses, Σw(x z' - z x'), is not exactly 0 then:
-    /// the distance changes by the square of this error, and stays 0.
-    pub(super) fn terms(&self, group: usize) -> [Sums; 3] {
+    /// Matrix Multiplications", 1992). For equal poses Σw(x z' - z x') is not exactly 0 then. Their
+    /// squared distance falls by about the square of this error, and is clamped to 0.
+    pub(super) fn terms(&self, group: usize) -> [GroupSums; 3] {
         let [x, z, mixed, height] = self.0.each_ref().map(|plane| &plane[group]);
         [
             std::array::from_fn(|row| x[row] + z[row]),
@@ -270,7 +271,7 @@ pub(super) fn multiply(
 
 /// Returns the sums of one plane's products over the joints.
 #[inline]
-fn plane_sums(rows: &[Spread], [a, b]: [&[Vec4]; COLUMN_GROUPS]) -> [Sums; COLUMN_GROUPS] {
+fn plane_sums(rows: &[Spread], [a, b]: [&[Vec4]; COLUMN_GROUPS]) -> [GroupSums; COLUMN_GROUPS] {
     let mut sums = [[Vec4::ZERO; LANES]; COLUMN_GROUPS];
     for ((spread, &a), &b) in rows.iter().zip(a).zip(b) {
         for lane in 0..LANES {

@@ -5,8 +5,9 @@ use super::{Alignment, DistanceMatrix, PairTerms, PointClouds, RegistrationError
 use std::ops::Range;
 
 /// The comparison of two clouds and the distances of their windows, row by row from the first to
-/// the last. Only the terms of the windows of the last rows are in memory: these stay in a
-/// processor's second-level cache, also where all terms do not.
+/// the last: those of [`PairTerms::distances`] for the same ranges, to the last bit. Only the terms
+/// of the last rows are in memory. They fit into a second-level cache, even where those of all rows
+/// do not.
 #[derive(Clone, Debug)]
 pub(crate) struct RowSweep {
     terms: PairTerms,
@@ -33,8 +34,13 @@ impl RowSweep {
         let samples = (window - 1) / source.stride + 1;
         let compared = |of: &Range<usize>| of.start..of.end + samples - 1;
         // A row of distances needs the terms of its windows, and of the frame before them.
-        let terms =
-            PairTerms::passing(source, target, &compared(&rows), &compared(&columns), samples + 1);
+        let terms = PairTerms::with_ring(
+            source,
+            target,
+            &compared(&rows),
+            &compared(&columns),
+            samples + 1,
+        );
         Self {
             sums: Sums::new(&terms, window, rows.clone(), columns.clone()),
             terms,
@@ -46,6 +52,9 @@ impl RowSweep {
 
     /// Computes the rows before `end`, as far as there are any.
     pub(crate) fn advance(&mut self, end: usize) {
+        if self.columns == 0 {
+            return;
+        }
         let samples = self.terms.samples_in(self.window);
         for row in self.sums.done()..end.min(self.rows.len()) {
             self.terms.advance_to(self.rows.start + row + samples);
@@ -59,11 +68,11 @@ impl RowSweep {
         self.sums.rms_m.get(start..start.saturating_add(self.columns)).unwrap_or_default()
     }
 
-    /// Returns the alignment of two windows, as [`PairTerms::alignment`] does, of a row that was
-    /// computed last or second last.
+    /// Returns the alignment of two windows, as [`PairTerms::alignment`] does, of one of the last two
+    /// computed rows.
     ///
     /// # Errors
-    /// [`RegistrationError`] where their terms are not in memory.
+    /// [`RegistrationError`] where their terms are not in memory: not yet, or not any more.
     pub(crate) fn alignment(
         &self,
         source: usize,
@@ -82,6 +91,7 @@ impl RowSweep {
 
 #[cfg(test)]
 mod tests {
+    use super::super::cloud::LANES;
     use super::super::fixtures::Walk;
     use super::super::limb_weights;
     use super::*;
@@ -114,7 +124,7 @@ mod tests {
             all.finish();
             let wanted = all.distances(window, &sources, &targets).unwrap();
             let mut sweep = RowSweep::new([&source, &target], window, [&sources, &targets]);
-            for end in (0..wanted.rows() + 1).step_by(piece).skip(1) {
+            for end in (0..=wanted.rows()).step_by(piece).skip(1) {
                 prop_assert!(sweep.row(end).is_empty());
                 sweep.advance(end);
                 for row in end.saturating_sub(piece)..end {
@@ -139,6 +149,54 @@ mod tests {
             let last = wanted.frames(wanted.rows(), 0).0;
             prop_assert!(sweep.alignment(last + 40 * stride, targets.start, 0.1).is_err());
             prop_assert_eq!(sweep.finish(), wanted);
+        }
+    }
+
+    fn sweep(
+        frames: [usize; 2],
+        window: usize,
+        sources: &Range<usize>,
+        targets: &Range<usize>,
+    ) -> RowSweep {
+        let clips = frames.map(|frames| Walk { frames, ..Walk::default() }.clip());
+        let weights = limb_weights(clips[0].skeleton());
+        let level = PointClouds::level_m(&clips[0], &weights).unwrap();
+        let clouds = clips
+            .each_ref()
+            .map(|clip| PointClouds::new(clip, 0..clip.frames(), &weights, 1, level).unwrap());
+        RowSweep::new(clouds.each_ref(), window, [sources, targets])
+    }
+
+    #[test]
+    fn no_windows_have_no_distances() {
+        let all = 0..usize::MAX;
+        for (frames, window, sources, targets, size) in [
+            ([1, 1], 1, &all, &all, (1, 1)),
+            ([1, 30], 1, &all, &all, (1, 30)),
+            ([9, 30], 10, &all, &all, (0, 21)),
+            ([30, 9], 10, &all, &all, (21, 0)),
+            ([9, 9], 10, &all, &all, (0, 0)),
+            ([30, 40], 10, &(5..5), &all, (0, 31)),
+            ([30, 40], 10, &all, &(50..60), (21, 0)),
+        ] {
+            let mut sweep = sweep(frames, window, sources, targets);
+            sweep.advance(3);
+            assert_eq!(sweep.row(0).len(), if size.0 > 0 { size.1 } else { 0 });
+            let found = sweep.finish();
+            assert_eq!((found.rows(), found.columns()), size);
+            assert_eq!(found.rms_m().len(), size.0 * size.1);
+        }
+    }
+
+    #[test]
+    fn windows_outside_the_columns_have_no_alignment() {
+        let mut sweep = sweep([60, 90], 5, &(0..20), &(40..50));
+        sweep.advance(10);
+        for target in [0, 20, 39 - LANES, 50 + LANES, 80] {
+            assert!(sweep.alignment(8, target, 0.0).is_err(), "{target}");
+        }
+        for target in [40, 49] {
+            assert!(sweep.alignment(8, target, 0.0).is_ok());
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Terms of pairs of frames, from which the distances of all windows follow.
 
 use super::align::{Alignment, PairMoments};
-use super::cloud::{COLUMN_GROUPS, Cloud, LANES, Products, Shares, Spread, Sums, multiply};
+use super::cloud::{COLUMN_GROUPS, Cloud, GroupSums, LANES, Products, Shares, Spread, multiply};
 use super::points::checked_sum;
 use super::{DistanceMatrix, PointClouds, RegistrationError, align};
 use crate::clip::Clip;
@@ -33,8 +33,8 @@ pub(crate) const MAX_PAIRS: usize = 1 << 26;
 /// products.
 const ROUNDING: f64 = 1e-6;
 
-/// The number of groups of source samples that are multiplied with a group of target samples while
-/// that is in the first-level cache.
+/// The number of groups of source samples that are multiplied with [`COLUMN_GROUPS`] groups of
+/// target samples while these are in the first-level cache.
 const GROUPS_AT_ONCE: usize = 4;
 
 /// The terms of all pairs of frames of two clips, from which the distance of any two windows of any
@@ -50,8 +50,8 @@ const GROUPS_AT_ONCE: usize = 4;
 ///
 /// # Accuracy
 /// The clouds are multiplied relative to their own centres in `f32`, everything else is `f64`. The
-/// error of the mean squared distance per point is less than 3e-7 m² for a body of human size: 0.5
-/// mm where windows are nearly equal, 6 µm at 2.5 cm. The distance of equal poses is 0. The bits
+/// error of the mean squared distance per point is less than 4e-7 m² for a body of human size: 0.6
+/// mm where windows are nearly equal, 8 µm at 2.5 cm. The distance of equal poses is 0. The bits
 /// are the same on every machine.
 ///
 /// # Slices
@@ -74,9 +74,10 @@ pub struct PairTerms {
     rows: Range<usize>,
     /// The columns that are compared, in whole groups.
     columns: Range<usize>,
-    /// The number of rows in memory, each of which takes the place of one before; without it all.
-    kept: Option<usize>,
-    /// The end of those that are compared so far.
+    /// The number of rows in memory, where each takes the place of the one that many rows before.
+    /// `None`: all rows are in memory.
+    ring_rows: Option<usize>,
+    /// The end of the rows that are compared so far.
     done: usize,
     /// Per row: the three [`Products::terms`], each of all columns that are stored.
     terms: Vec<f32>,
@@ -180,7 +181,7 @@ impl PairTerms {
             done: rows.start,
             rows,
             columns: 0..target.cloud.groups() * LANES,
-            kept: None,
+            ring_rows: None,
             terms: Vec::new(),
             source: Arc::clone(&source.cloud),
             target: Arc::clone(&target.cloud),
@@ -190,7 +191,7 @@ impl PairTerms {
         terms
     }
 
-    /// Reserves the memory of all rows that are kept, exactly: grown step by step, it would take twice as much.
+    /// Reserves the memory of the terms, exactly: grown step by step, it would take twice as much.
     /// It is only reserved, because to clear all of it at once would take longer than a frame of
     /// the screen.
     fn reserve(&mut self) {
@@ -202,7 +203,7 @@ impl PairTerms {
 
     /// Returns the number of terms in memory as soon as the rows before `end` are compared.
     fn length(&self, end: usize) -> usize {
-        self.kept.map_or_else(|| self.row_start(end), |kept| 3 * self.columns.len() * kept)
+        self.ring_rows.map_or_else(|| self.row_start(end), |rows| 3 * self.columns.len() * rows)
     }
 
     /// Prepares the comparison of two clips whose point clouds are known. Both clouds must have the
@@ -246,8 +247,9 @@ impl PairTerms {
     }
 
     /// Prepares the comparison of the source's samples `rows` with the target's samples `columns`,
-    /// both extended to whole groups, of which the last `kept` rows at least are in memory.
-    pub(super) fn passing(
+    /// both extended to whole groups. Only the last rows are in memory: those that were asked for
+    /// last, and at least `kept` in all.
+    pub(super) fn with_ring(
         source: &PointClouds,
         target: &PointClouds,
         rows: &Range<usize>,
@@ -262,7 +264,8 @@ impl PairTerms {
         let none = rows.start..rows.start;
         let mut terms = Self {
             columns: groups(columns, &target.cloud),
-            kept: Some(kept + GROUPS_AT_ONCE * LANES),
+            // Whole groups are compared: up to three rows more than are asked for.
+            ring_rows: Some((kept + LANES).min(rows.len()).max(1)),
             ..Self::of(source, target, usize::MAX, false, none)
         };
         terms.rows = rows;
@@ -330,23 +333,24 @@ impl PairTerms {
 
     fn multiply(&mut self, groups: Range<usize>) {
         let rows = groups.start * LANES..groups.end * LANES;
-        let first =
+        let first_group =
             if self.triangle { groups.start } else { rows.start.saturating_sub(self.band) / LANES };
-        let first = first.max(self.columns.start / LANES);
+        let first_group = first_group.max(self.columns.start / LANES);
         let last = rows.end.saturating_add(self.band).div_ceil(LANES).min(self.columns.end / LANES);
         self.terms.resize(self.length(rows.end.min(self.source.samples)), 0.0);
         self.spread.clear();
         for group in groups.clone() {
             self.source.spread(group, &self.shares, &mut self.spread);
         }
+        // Rows of groups that are not compared have no place.
         let starts: [[usize; LANES]; GROUPS_AT_ONCE] = std::array::from_fn(|group| {
             std::array::from_fn(|lane| {
                 self.row_start((rows.start + group * LANES + lane).min(rows.end - 1))
             })
         });
         let mut products = [Products::default(); GROUPS_AT_ONCE];
-        for first in (first..last).step_by(COLUMN_GROUPS) {
-            let columns: [usize; COLUMN_GROUPS] = std::array::from_fn(|at| first + at);
+        for column in (first_group..last).step_by(COLUMN_GROUPS) {
+            let columns: [usize; COLUMN_GROUPS] = std::array::from_fn(|at| column + at);
             // Beyond the end the last group is multiplied once more.
             let points = columns.map(|column| self.target.group(column.min(last - 1)));
             multiply(&self.spread, points, &mut products);
@@ -361,7 +365,13 @@ impl PairTerms {
     }
 
     /// Stores the terms of a group of rows, which begin at `starts`, with a group of columns.
-    fn store(&mut self, group: usize, starts: &[usize; LANES], column: usize, terms: [Sums; 3]) {
+    fn store(
+        &mut self,
+        group: usize,
+        starts: &[usize; LANES],
+        column: usize,
+        terms: [GroupSums; 3],
+    ) {
         let first = self.first_column(group * LANES);
         let width = self.columns.end - first;
         let rows = self.source.samples.saturating_sub(group * LANES);
@@ -380,8 +390,8 @@ impl PairTerms {
 
     /// Returns the offset of a stored row's terms.
     fn row_start(&self, row: usize) -> usize {
-        if let Some(kept) = self.kept {
-            return 3 * self.columns.len() * (row % kept);
+        if let Some(rows) = self.ring_rows {
+            return 3 * self.columns.len() * (row % rows);
         }
         self.offset(row) - self.offset(self.rows.start)
     }
@@ -412,7 +422,7 @@ impl PairTerms {
 
     /// Returns whether these rows are compared and in memory.
     pub(super) fn holds(&self, rows: &Range<usize>) -> bool {
-        let dropped = self.kept.map_or(0, |kept| self.done.saturating_sub(kept));
+        let dropped = self.ring_rows.map_or(0, |rows| self.done.saturating_sub(rows));
         rows.start >= self.rows.start.max(dropped) && rows.end <= self.done
     }
 
@@ -474,6 +484,7 @@ impl PairTerms {
         }
         let is_compared = self.columns.contains(&column)
             && self.columns.contains(&(column + samples - 1))
+            && (!self.triangle || column >= row)
             && self.holds(&(row..row + samples));
         if !is_compared {
             let Progress { done, total } = self.progress();
@@ -512,7 +523,10 @@ impl PairTerms {
 }
 
 /// Refuses more than [`MAX_PAIRS`] pairs; `stride` returns one that would fit.
-fn check_pairs(pairs: usize, stride: impl FnOnce() -> usize) -> Result<(), RegistrationError> {
+pub(crate) fn check_pairs(
+    pairs: usize,
+    stride: impl FnOnce() -> usize,
+) -> Result<(), RegistrationError> {
     if pairs > MAX_PAIRS {
         return Err(RegistrationError::TooManyPairs { pairs, most: MAX_PAIRS, stride: stride() });
     }

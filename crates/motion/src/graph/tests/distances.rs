@@ -3,7 +3,7 @@
 use super::*;
 use crate::blend::align_onto;
 use crate::math::Planar;
-use crate::registration::rms_cm;
+use crate::registration::{RegistrationError, rms_cm};
 use proptest::prelude::*;
 use std::ops::Range;
 
@@ -70,10 +70,24 @@ fn assert_overview_equals(overview: &DistanceOverview, all: &FrameDistances) {
         (0..frames, 0..frames, 2),
         (frames / 3..frames / 2, frames / 4..frames, 1),
         (5..6, 0..frames, 3),
+        // Overlapping or apart, within the tiles of 256 frames or across them.
+        (frames / 20..frames / 5, frames / 10..frames / 4, 1),
+        (frames / 20..frames / 15, frames / 10..frames / 8, 1),
     ] {
-        let mut detail = overview.detail(rows.clone(), columns.clone(), factor);
-        while !detail.advance(1).is_complete() {}
-        same(detail.picture(), &nearest(rows, columns, factor), "nearby");
+        let picture = |rows: &Range<usize>, columns: &Range<usize>| {
+            let mut detail = overview.detail(rows.clone(), columns.clone(), factor);
+            while !detail.advance(1).is_complete() {}
+            detail.picture().to_vec()
+        };
+        let found = picture(&rows, &columns);
+        let turned = picture(&columns, &rows);
+        let height = rows.len().div_ceil(factor);
+        for (at, cell) in found.iter().enumerate() {
+            let width = found.len() / height;
+            let there = turned[at % width * height + at / width];
+            assert_eq!(cell.to_bits(), there.to_bits(), "turned {at}: {cell} {there}");
+        }
+        same(&found, &nearest(rows, columns, factor), "nearby");
     }
     let counts =
         (overview.histogram(), all.histogram(DistanceOverview::BIN_CM, DistanceOverview::BINS));
@@ -316,6 +330,49 @@ proptest! {
             }
         }
     }
+}
+
+#[test]
+fn candidates_beside_the_cut_between_parts_are_found() {
+    // A walk that does not repeat itself has no equal neighbours, which might swap places.
+    let walk = Walk { frames: 640, cadence: 0.931_71, turning: 0.37, ..Walk::default() };
+    let source = Arc::new(Motion::analyze(walk.clip()));
+    let set = Arc::new(FrameSet::new(vec![source], HEIGHT).unwrap());
+    for window in [1, 9] {
+        let options = options(Construction::Minima, window, 30.0);
+        let all = compared(&set);
+        let held = Candidates::find(&all, &all.distances(window).unwrap(), &options).unwrap();
+        let stream = CandidateStream::new(&set, &options).unwrap();
+        assert_eq!(stream.parts(), 2);
+        let (streamed, _) = stream.finish().unwrap();
+        let places = |of: &Candidates| {
+            let mut places: Vec<_> =
+                of.found().iter().map(|found| (found.leave.frame, found.enter.frame)).collect();
+            places.sort_unstable();
+            places
+        };
+        let places = [places(&held), places(&streamed)];
+        assert!(places[0] == places[1]);
+        for beside in [504..512, 512..520] {
+            let is_there = |&(leave, enter)| beside.contains(&leave) || beside.contains(&enter);
+            assert!(places[0].iter().any(is_there), "{window} {beside:?}");
+        }
+    }
+}
+
+#[test]
+fn stream_with_windows_of_too_many_frames_is_refused() {
+    let set = three([9_000, 30, 30]);
+    let refused = |window| {
+        let options = options(Construction::Minima, window, 12.0);
+        let error = CandidateStream::new(&set, &options).map(|_| ()).unwrap_err();
+        assert_eq!(StreamComputer::new(&set, window).map(|_| ()).unwrap_err(), error);
+        error
+    };
+    assert!(matches!(
+        refused(8_000),
+        GraphError::Registration(RegistrationError::TooManyPairs { .. })
+    ));
 }
 
 #[test]

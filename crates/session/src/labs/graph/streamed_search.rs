@@ -7,7 +7,7 @@ use segue_motion::graph::{
 };
 use std::sync::Arc;
 
-/// The number of pairs of parts that one job compares, about: 4 ms each.
+/// The least number of pairs of parts that one job compares, 4 ms each: jobs have whole rows.
 const PAIRS_PER_JOB: usize = 16;
 
 /// The search of a [`CandidateStream`] whose rows are jobs. The parts of the clips are prepared
