@@ -68,8 +68,8 @@ impl RowSweep {
         self.sums.rms_m.get(start..start.saturating_add(self.columns)).unwrap_or_default()
     }
 
-    /// Returns the alignment of two windows, as [`PairTerms::alignment`] does, of one of the last two
-    /// computed rows.
+    /// Returns the alignment of two windows, as [`PairTerms::alignment`] does, of one of the last
+    /// two computed rows.
     ///
     /// # Errors
     /// [`RegistrationError`] where their terms are not in memory: not yet, or not any more.
