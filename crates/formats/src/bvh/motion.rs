@@ -208,13 +208,11 @@ impl Rows<'_, '_> {
     }
 
     /// Reads a line that holds one row of plain numbers and nothing else; otherwise changes
-    /// nothing.
+    /// nothing, so that the row is still the one before.
     // Not inlined: browsers optimise a function only between calls, and a whole file would be read
     // before its reader is fast.
     #[inline(never)]
     fn plain_line(&mut self) -> bool {
-        // On failure, the numbers before the first odd one are read again, and those after it are
-        // still those of the row before.
         if self.lexer.commas {
             return false;
         }
