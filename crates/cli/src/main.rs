@@ -21,9 +21,13 @@ mod write;
 use clap::{ArgMatches, Args as _, Command, FromArgMatches, ValueEnum};
 use clap_complete::Shell;
 use labs::LAB_COMMANDS;
+use mimalloc::MiMalloc;
 use status::{EXIT_CODES, Failure, Status};
 use std::io::{self, Write as _};
 use std::process::ExitCode;
+
+#[global_allocator]
+static ALLOCATOR: MiMalloc = MiMalloc;
 
 /// The part of the main help behind the commands.
 const EXAMPLES: &str = "\

@@ -5,11 +5,16 @@
 //! has it.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use mimalloc::MiMalloc;
 use segue_formats::bvh::{WriteOptions, write};
 use segue_formats::{ImportOptions, import};
 use segue_motion::synth::{Action, Params, synthesize};
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
+
+/// That of the command line and of the Python package.
+#[global_allocator]
+static ALLOCATOR: MiMalloc = MiMalloc;
 
 /// The size of a long capture session.
 const LARGE: usize = 100_000_000;
