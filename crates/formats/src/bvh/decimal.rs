@@ -96,7 +96,7 @@ impl Digits {
     fn with_zero(self) -> Option<Self> {
         let sign = self.0 & MINUS;
         let digits = self.0 ^ sign;
-        (digits & 0xff == 0).then_some(Self(digits >> 8 | sign))
+        (digits as u8 == 0).then_some(Self(digits >> 8 | sign))
     }
 
     /// Returns the number that the digits are, without their sign.
@@ -264,7 +264,7 @@ impl Lines {
             });
             let (number, next) = match number {
                 Some(number) => number,
-                None => other_number(rest, &usual, &fewer, &mut points)?,
+                None => other_number(rest, &fewer, &mut points)?,
             };
             match number {
                 Number::Digits(digits) => *place = digits,
@@ -323,19 +323,17 @@ fn one_digit(text: &[u8], zeros: usize) -> Option<(Number, &[u8])> {
     is_one.then(|| (Number::Digits(digit), &text[2 + usize::from(negative)..]))
 }
 
-/// Reads a number that is not a `usual` one, after blanks, [`BEFORE`] bytes into the text; `fewer`
+/// Reads a number that is not a usual one, after blanks, [`BEFORE`] bytes into the text; `fewer`
 /// has one decimal less. Returns it and what begins so many bytes before the next number.
 // Not inlined: the loop over the usual numbers is faster by a fifth without it.
 #[inline(never)]
 fn other_number<'t>(
     text: &'t [u8],
-    usual: &UsualDecimals,
     fewer: &UsualDecimals,
     points: &mut OtherPoints,
 ) -> Option<(Number, &'t [u8])> {
     // Where zeros at the end are left out, a tenth of the numbers have one decimal less.
-    if usual.decimals > 0
-        && let Some((Number::Digits(digits), next)) = fewer.number(text)
+    if let Some((Number::Digits(digits), next)) = fewer.number(text)
         && let Some(digits) = digits.with_zero()
     {
         points.numbers += 1;
