@@ -177,7 +177,7 @@ struct GoldenWarp {
 }
 
 /// The bound of the error of the mean squared distance per point, m².
-const BOUND: f64 = 4e-7;
+const BOUND: f64 = 3e-7;
 
 #[test]
 fn matrix_path_and_warp_agree_with_scipy() {

@@ -30,8 +30,9 @@ fn terms(a: &Clip, b: &Clip, stride: usize) -> PairTerms {
     terms
 }
 
-/// The bound of the error of the mean squared distance per point, m².
-const BOUND: f64 = 4e-7;
+/// The greatest error of the mean squared distance per point in these clips, m². Harder poses may
+/// reach 4e-7, the bound that is documented.
+const BOUND: f64 = 3e-7;
 
 fn near(fast: f32, slow: f32) -> bool {
     (f64::from(fast).powi(2) - f64::from(slow).powi(2)).abs() < BOUND
@@ -72,8 +73,6 @@ fn distances_agree_with_the_definition() {
     }
 }
 
-/// 1.6 km from the origin, at walking pace for minutes: the centres are large, and the remaining
-/// distances are not.
 #[test]
 fn distance_of_a_pose_and_the_same_turned_is_within_the_bound() {
     let (walk, directions) = (Walk::default().clip(), 48);
@@ -97,6 +96,8 @@ fn distance_of_a_pose_and_the_same_turned_is_within_the_bound() {
     }
 }
 
+/// 1.6 km from the origin, at walking pace for minutes: the centres are large, and the remaining
+/// distances are not.
 #[test]
 fn distances_far_from_the_origin_keep_their_digits() {
     let walk =
