@@ -1,13 +1,14 @@
 //! Fast reading of lines of plain decimal numbers, which make up almost all of a motion file.
 //!
-//! Eight bytes are handled at a time in one 64-bit word, the first byte lowest: checking that they
-//! are digits and computing their number takes a handful of operations without a branch (D. Lemire,
-//! "Number parsing at a gigabyte per second", Software: Practice and Experience 51, 2021). The end
-//! of a number is found before and independently of its value, so that the next one can begin in
-//! the meantime. In most files nearly all numbers have the same number of decimals, and then the
-//! position of the point gives the rest.
+//! Eight bytes are handled at a time in one 64-bit word, the first byte lowest, where a handful of
+//! operations without a branch check that they are digits (compare D. Lemire, "Number parsing at a
+//! gigabyte per second", Software: Practice and Experience 51, 2021). The end of a number is found
+//! before and independently of its value, so that the next one can begin in the meantime. In most
+//! files nearly all numbers have the same number of decimals, and then the position of the point
+//! gives the rest. The values of a line are computed together.
 //!
-//! All other numbers are left to [`super::number`], which reads the same numbers slowly.
+//! A line with anything but plain numbers is left to [`super::number`], which reads the same
+//! numbers slowly.
 
 /// Returns a word with a byte in all eight places.
 const fn all(byte: u8) -> u64 {
@@ -54,10 +55,10 @@ pub(super) const MAX_MAGNITUDE: f64 = 1e30;
 /// The bit of a minus sign: that of a double, and in [`Digits`] one that no digit has.
 const MINUS: u64 = 1 << 63;
 
-/// Masks of so many of the last bytes of a word: 0 to 8; beyond, all of them.
+/// Masks of the last 1 to 7 bytes of a word, by their number; of all bytes for any other number.
 const LAST_BYTES: [u64; 16] = {
     let mut masks = [!0; 16];
-    let mut count = 0;
+    let mut count = 1;
     while count < 8 {
         masks[count] = !(!0 >> (8 * count));
         count += 1;
@@ -65,14 +66,14 @@ const LAST_BYTES: [u64; 16] = {
     masks
 };
 
-/// Eight digits, one in each byte, the first one lowest, so that missing ones are zeros; and the
-/// sign.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// Up to eight digits, one in each byte, the last one in the highest, with zeros in place of
+/// missing ones; and the sign.
+#[derive(Clone, Copy, Debug, Default)]
 struct Digits(u64);
 
 impl Digits {
-    /// Returns the last `count` of eight characters, or all where there are fewer. `None` if they
-    /// are not digits.
+    /// Returns the last `count` of eight characters, all of them from 8 on. `None` if they are not
+    /// digits; where `count` is 0, all of them must be.
     #[inline]
     fn last(word: u64, count: usize) -> Option<Self> {
         let digits = (word ^ all(b'0')) & LAST_BYTES[count & 15];
@@ -82,14 +83,10 @@ impl Digits {
         (others == 0).then_some(Self(digits))
     }
 
+    /// Returns digits without a sign with that of a number.
     #[inline]
     fn with_sign(self, negative: bool) -> Self {
-        Self(self.0 | u64::from(negative) << 63)
-    }
-
-    /// Returns a digit with zeros behind it.
-    fn one(digit: u8, zeros: usize) -> Self {
-        Self(u64::from(digit) << 56 >> (8 * zeros))
+        Self(self.0 | if negative { MINUS } else { 0 })
     }
 
     /// Returns the digits with one more zero behind them, if there is room for it.
@@ -100,7 +97,8 @@ impl Digits {
     }
 
     /// Returns the number that the digits are, without their sign.
-    // Shifts and sums, and one product of 32 bits: what a processor does for two numbers at once.
+    // Only operations that processors have for several 64-bit integers at once, so that the loop
+    // over a line is vectorised: shifts, sums and a product of 32 bits.
     #[inline]
     fn magnitude(self) -> u64 {
         let digits = self.0 & !MINUS;
@@ -114,10 +112,22 @@ impl Digits {
     /// Returns the number, divided by a power of ten.
     #[inline]
     fn over(self, divisor: f64) -> f64 {
-        // An integer below 2⁵² is the mantissa of itself plus 2⁵².
+        self.quotient(self.magnitude(), divisor)
+    }
+
+    /// Returns the number of these eight digits and of the `first` ones before them, at most
+    /// [`MAX_DIGITS`] in all, divided by a power of ten.
+    fn after(self, first: Self, divisor: f64) -> f64 {
+        self.quotient(first.magnitude() * 100_000_000 + self.magnitude(), divisor)
+    }
+
+    /// Returns a number below 2⁵², divided by a power of ten, with the sign of these digits.
+    #[inline]
+    fn quotient(self, magnitude: u64, divisor: f64) -> f64 {
+        // The mantissa of 2⁵² is zero, and its last bit is worth 1.
         const MANTISSA: f64 = 4_503_599_627_370_496.0;
-        let magnitude = f64::from_bits(MANTISSA.to_bits() | self.magnitude()) - MANTISSA;
-        f64::from_bits((magnitude / divisor).to_bits() | self.0 & MINUS)
+        let number = f64::from_bits(MANTISSA.to_bits() | magnitude) - MANTISSA;
+        f64::from_bits((number / divisor).to_bits() | self.0 & MINUS)
     }
 }
 
@@ -161,13 +171,11 @@ fn short_number(text: &[u8], start: usize, end: usize) -> Option<(f64, usize)> {
     }
     let end = end.wrapping_sub(8 + has_point);
     let first: &[u8; 8] = text.get(end.checked_sub(8)?..end)?.first_chunk()?;
-    let first = Digits::last(u64::from_le_bytes(*first), count - 8)?.magnitude();
-    let rest = Digits::last(digits, 8)?.magnitude();
-    let value = (first * 100_000_000 + rest) as f64 / divisor;
-    Some((if negative { -value } else { value }, at))
+    let first = Digits::last(u64::from_le_bytes(*first), count - 8)?;
+    Some((Digits::last(digits, 8)?.with_sign(negative).after(first, divisor), at))
 }
 
-/// The bytes before a number that are read with it.
+/// The number of bytes before a number that are read with it.
 const BEFORE: usize = 8;
 
 /// The number of decimals that most numbers of a file share. With it, the end of a number follows
@@ -177,22 +185,18 @@ struct UsualDecimals {
     decimals: usize,
     point: Point,
     /// Mask of the byte of the point among the last eight.
-    at: u64,
-    /// That byte.
-    expected: u64,
+    point_mask: u64,
 }
 
 impl UsualDecimals {
     fn new(decimals: usize) -> Option<Self> {
-        // A point without decimals is never usual: there may be no digit before it, either.
-        let at = if decimals == 0 { 0 } else { 0xff_u64 << 56 >> (8 * decimals) };
-        let expected = if decimals == 0 { 1 } else { all(b'.') & at };
-        Some(Self { decimals, point: *POINTS.get(decimals)?, at, expected })
+        let point_mask = 0xff_u64 << 56 >> (8 * decimals);
+        Some(Self { decimals, point: *POINTS.get(decimals)?, point_mask })
     }
 
     /// Reads a number with the usual decimals and a blank behind it, [`BEFORE`] bytes into the
-    /// text. Returns it and what begins so many bytes before the next number; `None` for any other
-    /// number.
+    /// text. Returns it and the rest of the text, from [`BEFORE`] bytes before the next number on;
+    /// `None` for any other number.
     #[inline]
     fn number<'t>(&self, text: &'t [u8]) -> Option<(Number, &'t [u8])> {
         // All bytes that matter are within these, so that their places need no further checks.
@@ -205,39 +209,39 @@ impl UsualDecimals {
         let [before @ .., _, _]: &[u8; 10] = after[whole..].first_chunk()?;
         let [_, last @ .., blank]: &[u8; 10] = after[whole..].first_chunk()?;
         let (last, before) = (u64::from_le_bytes(*last), u64::from_le_bytes(*before));
-        let negative = word as u8 == b'-';
-        let count = (whole + self.decimals).wrapping_sub(usize::from(negative));
-        if last & self.at != self.expected || !matches!(blank, b' ' | b'\t') {
+        if (last ^ all(b'.')) & self.point_mask != 0 || !matches!(blank, b' ' | b'\t') {
             return None;
         }
+        let negative = word as u8 == b'-';
+        let count = whole + self.decimals - usize::from(negative);
         let last = last & self.point.kept | before & !self.point.kept;
         let digits = Digits::last(last, count)?.with_sign(negative);
         let next = &text[(self.decimals & 7) + 2..][whole..];
         if count <= 8 {
             return Some((Number::Digits(digits), next));
         }
+        let word = if negative { word >> 8 } else { word };
         Some((Number::Value(self.longer(digits, word, count)?), next))
     }
 
-    /// Returns the value of the last eight digits of a number with those before them; the number
-    /// begins with a word and has so many digits.
+    /// Returns the value of a number of `count` digits, 9 to 15: `last` holds its sign and the last
+    /// eight, and `word` begins with the others.
+    // Not inlined, as other numbers are not.
     #[inline(never)]
     fn longer(&self, last: Digits, word: u64, count: usize) -> Option<f64> {
-        let negative = last.0 & MINUS;
-        let word = if negative == 0 { word } else { word >> 8 };
-        let before = Digits::last(word << (8 * (16 - count)), count - 8)?;
-        let digits = before.magnitude() * 100_000_000 + last.magnitude();
-        Some(f64::from_bits((digits as f64 / self.point.divisor).to_bits() | negative))
+        let first = Digits::last(word << (8 * (16 - count)), count - 8)?;
+        Some(last.after(first, self.point.divisor))
     }
 }
 
 /// A reader of lines of plain numbers.
 #[derive(Debug, Default)]
 pub(super) struct Lines {
-    /// The digits of each number, to be divided by the same power of ten. The divisions are done
-    /// together, because one alone takes as long as the rest of reading a number.
+    /// The digits of each number, to be divided by the power of ten of the usual decimals. The
+    /// divisions are done together, because one alone takes as long as the rest of reading a
+    /// number.
     digits: Vec<Digits>,
-    /// The column and the value of each number that is not so many digits.
+    /// The column and the value of each number that is not among `digits`.
     others: Vec<(usize, f64)>,
     /// The usual number of digits after the decimal point in the lines before.
     decimals: usize,
@@ -253,19 +257,15 @@ impl Lines {
         self.digits.resize(row.len(), Digits::default());
         self.others.clear();
         let usual = UsualDecimals::new(self.decimals)?;
+        // Without decimals these are the usual ones, by which a number has been refused already.
         let fewer = UsualDecimals::new(self.decimals.saturating_sub(1))?;
         let mut points = OtherPoints { decimals: self.decimals, ..OtherPoints::default() };
         let mut rest = text.get(at.checked_sub(BEFORE)?..)?;
         for (column, place) in self.digits.iter_mut().enumerate() {
-            let number = usual.number(rest).or_else(|| {
-                let digit = one_digit(rest, self.decimals);
-                points.whole += usize::from(digit.is_some());
-                digit
-            });
-            let (number, next) = match number {
-                Some(number) => number,
-                None => other_number(rest, &fewer, &mut points)?,
-            };
+            let (number, next) = usual
+                .number(rest)
+                .or_else(|| one_digit(rest, self.decimals, &mut points))
+                .or_else(|| other_number(rest, &fewer, &mut points))?;
             match number {
                 Number::Digits(digits) => *place = digits,
                 Number::Value(value) => self.others.push((column, value)),
@@ -301,30 +301,38 @@ struct OtherPoints {
     whole: usize,
 }
 
-/// A number that is not a usual one.
+/// A number of a line.
 #[derive(Clone, Copy, Debug)]
 enum Number {
-    /// With zeros behind it, it has the usual decimals.
+    /// Digits to be divided by the power of ten of the decimals that are looked for.
     Digits(Digits),
     Value(f64),
 }
 
-/// Reads one digit and a blank behind it, [`BEFORE`] bytes into the text: zeros of joints that do
-/// not turn are a quarter of some files. Returns it with `zeros` behind it and what begins so many
-/// bytes before the next number.
+/// Reads one digit with a blank behind it, [`BEFORE`] bytes into the text: zeros of joints that do
+/// not turn are a quarter of some files. Returns it with as many zeros as `decimals` behind it, and
+/// the rest of the text, from [`BEFORE`] bytes before the next number on.
 #[inline]
-fn one_digit(text: &[u8], zeros: usize) -> Option<(Number, &[u8])> {
+fn one_digit<'t>(
+    text: &'t [u8],
+    decimals: usize,
+    points: &mut OtherPoints,
+) -> Option<(Number, &'t [u8])> {
     let bytes: &[u8; BEFORE + 3] = text.first_chunk()?;
     let &[.., first, second, third] = bytes;
     let negative = first == b'-';
     let (digit, blank) = if negative { (second, third) } else { (first, second) };
-    let is_one = digit.is_ascii_digit() && matches!(blank, b' ' | b'\t');
-    let digit = Digits::one(digit & 15, zeros).with_sign(negative);
-    is_one.then(|| (Number::Digits(digit), &text[2 + usize::from(negative)..]))
+    if !digit.is_ascii_digit() || !matches!(blank, b' ' | b'\t') {
+        return None;
+    }
+    points.whole += 1;
+    let digits = Digits(u64::from(digit - b'0') << 56 >> (8 * decimals)).with_sign(negative);
+    Some((Number::Digits(digits), &text[2 + usize::from(negative)..]))
 }
 
 /// Reads a number that is not a usual one, after blanks, [`BEFORE`] bytes into the text; `fewer`
-/// has one decimal less. Returns it and what begins so many bytes before the next number.
+/// has one decimal less. Returns it and the rest of the text, from [`BEFORE`] bytes before the next
+/// number on.
 // Not inlined: the loop over the usual numbers is faster by a fifth without it.
 #[inline(never)]
 fn other_number<'t>(
@@ -469,6 +477,22 @@ mod tests {
         }
 
         #[test]
+        fn usual_number_of_any_bytes_equals_the_slow_path(
+            bytes in prop::collection::vec(
+                prop_oneof![4 => b'0'..=b'9', 1 => Just(b'.'), 1 => Just(b' '), 1 => any::<u8>()],
+                0..30,
+            ),
+            decimals in 0..8_usize,
+        ) {
+            let usual = UsualDecimals::new(decimals).unwrap();
+            if let Some((number, next)) = usual.number(&bytes) {
+                let word = &bytes[BEFORE..bytes.len() - next.len() + BEFORE - 1];
+                let word = std::str::from_utf8(word).unwrap();
+                prop_assert_eq!(Some(value(&usual, number)), slow(word));
+            }
+        }
+
+        #[test]
         fn usual_number_reads_numbers_of_its_shape(
             before in "[-0-9. ]{8}",
             whole in "-?[0-9]{1,7}|[0-9]{8}",
@@ -496,7 +520,7 @@ mod tests {
         #[test]
         fn lines_equal_their_words(
             words in prop::collection::vec("-?[0-9]{1,4}(\\.[0-9]{0,9})?|1e-7", 0..40),
-            gap in "[ \t]{1,70}",
+            gap in "[ \t]|[ \t]{1,70}",
             indent in "[ \t]{0,3}",
         ) {
             let text = format!("{indent}{}\n", words.join(&gap));
@@ -537,7 +561,7 @@ mod tests {
         assert_eq!(Lines::default().line(b"1.5 2.5\n", 0, &mut row), None);
         assert_eq!(Lines::default().line(b"        1.5 2.5\n", 8, &mut row), None);
         assert_eq!(row, [7.0, 8.0]);
-        // Digits alone need no bytes behind them.
+        // Single digits need no bytes behind them.
         assert_eq!(Lines::default().line(b"        1 -2 \n", 8, &mut row), Some(13));
         assert_eq!(row, [1.0, -2.0]);
     }
