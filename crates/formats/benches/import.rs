@@ -12,7 +12,7 @@ use segue_motion::synth::{Action, Params, synthesize};
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
 
-/// That of the command line and of the Python package.
+/// The allocator of the command line and of the Python package, whose speed is measured here.
 #[global_allocator]
 static ALLOCATOR: MiMalloc = MiMalloc;
 
